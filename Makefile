@@ -18,14 +18,18 @@ SOURCES := $(wildcard $(or $(LISTED),$(shell find $(PARTS) -type f -not -name '*
 # Warnings are errors in CI and in `make test`, never when a user just wants the demo.
 INSTALLED := $(if $(filter true,$(CI)),.venv/.strict,.venv/.installed)
 
+# CI checks the core that it ships: the plain checks come out of the wheel's build, whose objects they link.
+SHIPPED_CHECKS := $(if $(filter true,$(CI)),dist/.wheel)
+CHECKS_TOO := $(if $(SHIPPED_CHECKS),-Cbuild-dir=$(CURDIR)/build/wheel -Ccmake.define.JOINTID_BUILD_CHECKS=ON)
+
 # After `make develop`, .venv/.editable lists the Python files that are used in place. Then only the compiled part,
 # or another list of files, needs an installation, and that one is in place again.
 MODULES := $(sort $(filter python/%.py,$(SOURCES)))
 IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
-.PHONY: help demo test checks check-plain check-address check-thread pytest vcan lint stub format \
-        develop list-changed sdist check-sdist study bench notebooks fuzz mutants write-faults soak clean
+.PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants write-faults soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -34,35 +38,48 @@ demo: $(INSTALLED)  ## identify a real robot joint from its log; writes demo/rep
 	@$(BIN)/jointid demo --output demo
 	@echo "Open demo/report.html in a browser."
 
-test: checks pytest  ## core checks (plain, ASan+UBSan, TSan), then pytest
+# DONE names parts that .ci/run has seen to already, beside other work.
+test: $(filter-out $(DONE),checks pytest-guest) pytest-rest  ## core checks (plain, ASan+UBSan, TSan), then pytest
 
-checks: .venv/.test-tools
+checks: .venv/.test-tools $(SHIPPED_CHECKS)
 	@mkdir -p build
 	@for name in plain address thread; do \
 	  echo "Core checks, $$name:"; \
 	  tools/core_checks.sh $$name; \
 	done
 
+check-plain: $(SHIPPED_CHECKS)
+
 check-plain check-address check-thread: check-%: .venv/.test-tools  ## (each alone)
 	@mkdir -p build
 	@tools/core_checks.sh $*
 
-pytest: .venv/.strict .venv/.test-tools  ## the Python tests alone
-	@echo "Python tests:"
-	@# The guest alone: its drive has to answer within 200 ms. Then the rest, whose summary closes the output.
+pytest: pytest-guest pytest-rest  ## the Python tests alone
+
+# The guest alone: its drive has to answer within 200 ms. Then the rest, whose summary closes the output.
+pytest-guest: .venv/.strict .venv/.test-tools
+	@echo "Python tests on the kernel's own CAN:"
 	@$(BIN)/python -m pytest tests/canlab
-	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --ignore tests/canlab
+
+pytest-rest: .venv/.strict .venv/.test-tools
+	@echo "Python tests:"
+	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --ignore tests/canlab
 
 vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
 	@tools/install_vcan.sh
 	@JOINTID_REQUIRE_VCAN=1 $(BIN)/python -m pytest tests/canlab
 
-lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub
+browser: .venv/.strict .venv/.test-tools  ## install Chromium (root or sudo), then look at the pages in it
+	@tools/install_browser.sh
+	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py tests/app/test_app_in_browser.py
+
+lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub, workflow
 	@echo "ruff check";         $(BIN)/ruff check
 	@echo "ruff format";        $(BIN)/ruff format --check --quiet
 	@echo "mypy";               $(BIN)/mypy
 	@echo "clang-format";       find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format --dry-run -Werror
 	@echo stub;                 $(BIN)/python tools/stub.py --check
+	@echo workflow;             $(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/ci.yml
 
 format: .venv/.lint-tools  ## format Python and C++ in place
 	@$(BIN)/ruff check --fix --quiet || true
@@ -89,8 +106,8 @@ sdist: .venv/.test-tools  ## dist/jointid-VERSION.tar.gz
 # In an environment that holds nothing but what pyproject.toml asks for.
 dist/.wheel: .venv/.test-tools $(SOURCES)
 	@echo "Building the sdist and a wheel from it, warnings are errors (a minute or two)"
-	@rm -f dist/jointid-*
-	@$(BIN)/python -m build -qq $(STRICT) --outdir dist .
+	@rm -rf dist/jointid-* build/wheel
+	@$(BIN)/python -m build -qq $(STRICT) $(CHECKS_TOO) --outdir dist .
 	@touch $@
 
 check-sdist: dist/.wheel  ## a wheel from the sdist installs, imports and runs in an environment of its own
@@ -100,6 +117,13 @@ check-sdist: dist/.wheel  ## a wheel from the sdist installs, imports and runs i
 	@build/sdist-venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check dist/jointid-*.whl
 	@sdist="$$PWD/build/sdist-venv/bin"; cd / && "$$sdist/python" -c 'import jointid' && "$$sdist/jointid" --help >/dev/null
 	@echo "The sdist works."
+
+# PYTHONS='python3.12 python3.13' builds for these.
+wheels: .venv/.created  ## wheels for Linux in dist/wheels, each tried where no compiler is; by hand
+	@tools/wheels.sh $(PYTHONS)
+
+matrix: .venv/.created  ## Debian 13 by chroot, gcc 14, clang 19, oldest and newest dependencies; by hand, as root, an hour
+	@tools/matrix.sh $(MATRIX)
 
 study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to docs/
 	@$(BIN)/python benchmarks/accuracy_study.py
@@ -116,12 +140,18 @@ bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
 	@$(BIN)/python benchmarks/latency.py --output docs/latency.md
+	@$(BIN)/python benchmarks/projections.py --output docs/projection.md
 
 notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
 
-fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, every value everywhere; by hand, hours
-	@JOINTID_FUZZ=$(or $(CASES),1000000) $(BIN)/python -m pytest --numprocesses auto tests/fuzz tests/base/test_read_back.py
+docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site; LINKS=1 asks other hosts, too
+	@PYTHONPATH=tools $(BIN)/python -m documentation $(if $(LINKS),--links)
+
+# CASES=5000 SEED=0 make fuzz: another number, and where to begin.
+fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
+	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) \
+	  tools/fuzz.sh --numprocesses auto --dist load tests/fuzz tests/base/test_read_back.py
 
 mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
 	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
@@ -135,6 +165,8 @@ soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of session
 clean:  ## remove everything made here, .venv too
 	@rm -rf .venv build dist demo .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of the others run at the same time
 
 .venv/.created:
 	@python="$$(tools/find_python.sh)"; \
@@ -151,6 +183,11 @@ clean:  ## remove everything made here, .venv too
 .venv/.lint-tools: .venv/.created pyproject.toml
 	@echo "Installing ruff, mypy, clang-format and the stub generator"
 	@$(INSTALL) --group lint
+	@touch $@
+
+.venv/.docs-tools: .venv/.created pyproject.toml
+	@echo "Installing Sphinx, its theme and its reader of Markdown"
+	@$(INSTALL) --group docs
 	@touch $@
 
 .venv/.bench-tools: .venv/.created pyproject.toml

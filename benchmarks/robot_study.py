@@ -12,7 +12,7 @@ from pathlib import Path
 
 from arms import mismatches, naming_tables, seven_tables, speed_tables, tx40_tables
 
-_LOG = Path(__file__).resolve().parents[2] / "shared" / "data" / "tx40"
+_LOG = Path(__file__).resolve().parents[1] / "tests" / "data" / "tx40"
 
 
 def sections(

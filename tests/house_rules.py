@@ -118,14 +118,15 @@ FOLDERS: dict[str, Folder] = {
         },
         packages={"numpy", "pinocchio"},
     ),
+    "servo": Folder(may_use={*_DATA, "estimate"}, packages={"numpy"}),
     "plot": Folder(
-        may_use={*_DATA, "simulation", "estimate", "study"},
+        may_use={*_DATA, "simulation", "estimate", "study", "servo"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
         may_use={
-            *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
-            *("report/drawing", "recording", "commissioning"),
+            *("base", "joint", "estimate", "joints", "robot", "servo", "identification/warnings"),
+            *("report/drawing", "recording", "commissioning", "comparison", "study", "design"),
         },
         packages={"numpy"},
     ),
@@ -166,14 +167,23 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"} - {"problem"},
         packages={"numpy"},
     ),
-    "cli": Folder(
+    # The page in a browser; what it computes is asked for in a process of its own.
+    "app": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
+            *("recording/readers", "comparison", "report"),
+        },
+        packages={"numpy", "nicegui"},
+    ),
+    "cli": Folder(
+        may_use={
+            *_SOUGHT,
             *(
                 "recording/readers",
                 "comparison",
                 "joints",
                 "robot",
+                "servo",
                 "simulation",
                 "study",
                 "design",
@@ -182,7 +192,7 @@ FOLDERS: dict[str, Folder] = {
                 "exports",
             ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("hardware/emulated", "hardware/proof", "commissioning", ""),
+            *("hardware/emulated", "hardware/proof", "commissioning", "app", ""),
         },
         packages={"numpy", "matplotlib"},
     ),
@@ -190,9 +200,17 @@ FOLDERS: dict[str, Folder] = {
     "": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
+            *(
+                "recording/readers",
+                "recording/wide",
+                "comparison",
+                "joints",
+                "online",
+                "robot",
+                "servo",
+            ),
             *("simulation", "study", "design"),
-            *("plot", "exports", "hardware", "commissioning", "cli"),
+            *("plot", "report", "exports", "hardware", "commissioning", "cli"),
         },
     ),
 }

@@ -1,5 +1,6 @@
 #include "bind/bind.hpp"
-#include "identify/penalty/penalty_function.hpp"
+#include "identify/penalty/penalty.hpp"
+#include "identify/solve/projected_search.hpp"
 #include "identify/solve/separable.hpp"
 #include "search/polish.hpp"
 
@@ -24,6 +25,10 @@ void bind_search(py::module_& m) {
       .def_readonly("best", &identify::SeparableResult::best)
       .def_readonly("penalty", &identify::SeparableResult::penalty)
       .def_readonly("evaluations", &identify::SeparableResult::evaluations);
+  py::class_<identify::Projected>(m, "Projected", "The projected search's optimum, if any.")
+      .def_readonly("found", &identify::Projected::found)
+      .def_readonly("reason", &identify::Projected::reason,
+                    "Why nothing was found; empty otherwise.");
   py::class_<search::PolishResult>(m, "PolishResult", "A local optimum.")
       .def_readonly("best", &search::PolishResult::best)
       .def_readonly("penalty", &search::PolishResult::penalty)
@@ -41,6 +46,17 @@ void bind_search(py::module_& m) {
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(),
       py::arg("threads") = 0);
+  m.def(
+      "minimise_projected",
+      [](const identify::Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+         int threads) {
+        const Domain domain{std::move(lower), std::move(upper)};
+        const py::gil_scoped_release nogil;
+        base::Pool pool(threads, SignalPoll{});
+        return identify::minimise_projected(penalty, domain, pool);
+      },
+      py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("threads") = 0,
+      "The separable optimum by a dozen direct sums; nothing where that is not safe.");
   m.def(
       "refine_separable",
       [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,

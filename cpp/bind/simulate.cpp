@@ -151,6 +151,7 @@ void bind_simulate(py::module_& m) {
   bind_controllers(m);
   bind_scenario(m);
   bind_stepped(m);
+  bind_servo(m);
   m.def(
       "simulate_runs",
       [](const Scenario& scenario, const Trajectory& trajectory, const std::vector<Setup>& setups,

@@ -17,6 +17,7 @@ Field<T, M> inherited(const char* name, M Base::* member, const char* text) {
 
 void bind_sensors(py::module_& m);
 void bind_controllers(py::module_& m);
+void bind_servo(py::module_& m);
 
 }  // namespace jointid::bind
 

@@ -99,18 +99,15 @@ void advance_bristles(const JointOf<Number>& joint, MotionOf<Number>& motion, co
 
 }  // namespace detail
 
-/// `torque`: of the drive, held over the step.
+/// `push`: what accelerates but friction, held over the step; `dry_load`: dry friction of the load.
 template <class Number>
-void advance(const JointOf<Number>& joint, MotionOf<Number>& motion, const Number& torque,
-             double step) {
+void advance_pushed(const JointOf<Number>& joint, MotionOf<Number>& motion, const Number& push,
+                    const Number& dry_load, double step) {
   const Number zero = 0.0;
   const Number h = step;
   const Number half = 0.5 * step;
   const Number mass = joint.inertia + joint.link_inertia;
   const Number velocity = motion.velocity;
-  const Number there = motion.position + half * velocity;
-  const Number push = torque - gravity(joint, there) - drive_torque(joint, there);
-  const Number dry_load = joint.load_friction * base::absolute(torque);
   if (joint.bristles) return detail::advance_bristles(joint, motion, push, dry_load, step);
 
   const auto resting = velocity == zero;
@@ -157,6 +154,15 @@ void advance(const JointOf<Number>& joint, MotionOf<Number>& motion, const Numbe
   }
   motion.velocity = velocity_after;
   motion.position = position_after;
+}
+
+/// `torque`: of the drive, held over the step.
+template <class Number>
+void advance(const JointOf<Number>& joint, MotionOf<Number>& motion, const Number& torque,
+             double step) {
+  const Number there = motion.position + Number(0.5 * step) * motion.velocity;
+  const Number push = torque - gravity(joint, there) - drive_torque(joint, there);
+  advance_pushed(joint, motion, push, joint.load_friction * base::absolute(torque), step);
 }
 
 /// What acts now, under the torque that the drive gives.

@@ -48,11 +48,13 @@ __all__: list[str] = [
     "Pid",
     "PolishResult",
     "PositionNoise",
+    "Projected",
     "Recording",
     "Residual",
     "Scenario",
     "Sensors",
     "SeparableResult",
+    "ServoLoop",
     "Setup",
     "Shape",
     "SignalFacts",
@@ -78,6 +80,7 @@ __all__: list[str] = [
     "is_parameter",
     "local_velocity",
     "minimise_genetic",
+    "minimise_projected",
     "minimise_random",
     "minimise_separable",
     "minimise_trials",
@@ -86,11 +89,13 @@ __all__: list[str] = [
     "models",
     "noise_products",
     "non_negative_least_squares",
+    "number_list",
     "number_table",
     "parameter_names",
     "polish",
     "position_noise",
     "refine_separable",
+    "roll_out_servos",
     "roughness",
     "segment_sums",
     "shape",
@@ -488,9 +493,9 @@ class Penalty(PenaltyFunction):
     @property
     def noise_share(self) -> float: ...
     @property
-    def recording_of(self) -> list[int]:
+    def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
         """
-        Which recording each window belongs to.
+        Which recording each window belongs to, shape (window_count,).
         """
     @property
     def standing_samples(self) -> int: ...
@@ -1063,6 +1068,18 @@ class SeparableResult:
     @property
     def penalty(self) -> float: ...
 
+class Projected:
+    """
+    The projected search's optimum, if any.
+    """
+    @property
+    def found(self) -> SeparableResult | None: ...
+    @property
+    def reason(self) -> str:
+        """
+        Why nothing was found; empty otherwise.
+        """
+
 class PolishResult:
     """
     A local optimum.
@@ -1229,6 +1246,11 @@ class FittedShift:
     def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
     def unexplained(self) -> float: ...
+    @property
+    def unshifted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Coefficients of the columns without a shift; empty where one was searched.
+        """
     @property
     def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
 
@@ -2834,6 +2856,124 @@ class SteppedJoint:
         [rad/s]
         """
 
+class ServoLoop:
+    """
+    A servo with its position loop, as the core simulates it.
+
+    Parameters
+    ----------
+    joint : default SimulatedJoint(inertia=1.0, link_inertia=0.0, load=0.0, torque_offset=0.0, torque_limit=1e+300, decay='gaussian', coulomb_positive=0.0, coulomb_negative=0.0, static_positive=0.0, static_negative=0.0, viscous_positive=0.0, viscous_negative=0.0, stribeck=0.0, stribeck_velocity=1.0, stribeck_exponent=1.0, load_friction=0.0, bristles=False, bristle_stiffness=0.0, bristle_damping=0.0, weights=[], harmonics=[])
+        What is moved, without friction of the load.
+    torque_per_voltage : default 1.0
+        k_t / R [N·m/V].
+    back_emf : default 0.0
+        k_t² / R [N·m·s/rad], while driven.
+    load_friction : default 0.0
+        Dry friction per torque through the gear [1].
+    closed : default True
+        Whether the command is a wanted position, or the duty itself.
+    gain : default 1.0
+        Duty per error [1/rad].
+    saturation : default 1.0
+        Of the duty.
+    delay : default 0.0
+        From the error to the duty [s].
+    position : default 0.0
+        At the start [rad].
+    velocity : default 0.0
+        At the start [rad/s].
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        joint: SimulatedJoint = ...,
+        torque_per_voltage: float = 1.0,
+        back_emf: float = 0.0,
+        load_friction: float = 0.0,
+        closed: bool = True,
+        gain: float = 1.0,
+        saturation: float = 1.0,
+        delay: float = 0.0,
+        position: float = 0.0,
+        velocity: float = 0.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        joint: SimulatedJoint = ...,
+        torque_per_voltage: float = ...,
+        back_emf: float = ...,
+        load_friction: float = ...,
+        closed: bool = ...,
+        gain: float = ...,
+        saturation: float = ...,
+        delay: float = ...,
+        position: float = ...,
+        velocity: float = ...,
+    ) -> ServoLoop:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def back_emf(self) -> float:
+        """
+        k_t² / R [N·m·s/rad], while driven.
+        """
+    @property
+    def closed(self) -> bool:
+        """
+        Whether the command is a wanted position, or the duty itself.
+        """
+    @property
+    def delay(self) -> float:
+        """
+        From the error to the duty [s].
+        """
+    @property
+    def gain(self) -> float:
+        """
+        Duty per error [1/rad].
+        """
+    @property
+    def joint(self) -> SimulatedJoint:
+        """
+        What is moved, without friction of the load.
+        """
+    @property
+    def load_friction(self) -> float:
+        """
+        Dry friction per torque through the gear [1].
+        """
+    @property
+    def position(self) -> float:
+        """
+        At the start [rad].
+        """
+    @property
+    def saturation(self) -> float:
+        """
+        Of the duty.
+        """
+    @property
+    def torque_per_voltage(self) -> float:
+        """
+        k_t / R [N·m/V].
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        At the start [rad/s].
+        """
+
 class MotionBounds:
     """
     What the reference of a designed motion is held within.
@@ -3445,6 +3585,17 @@ def minimise_genetic(
     Genetic search. `resume` goes on from a state made with the same options, seed, trial, bounds and penalty; `checkpoint` is called with the state every `checkpoint_interval` generations.
     """
 
+def minimise_projected(
+    penalty: Penalty,
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    *,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> Projected:
+    """
+    The separable optimum by a dozen direct sums; nothing where that is not safe.
+    """
+
 def minimise_random(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3512,6 +3663,13 @@ def non_negative_least_squares(
     The solution without negative entries, and the norm of what is left of the target.
     """
 
+def number_list(
+    values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> str | None:
+    """
+    A list of finite numbers as JSON; None where Python has to write it.
+    """
+
 def number_table(
     text: str,
     below: typing.SupportsInt | typing.SupportsIndex,
@@ -3556,6 +3714,22 @@ def refine_separable(
 ) -> SeparableResult:
     """
     The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
+    """
+
+def roll_out_servos(
+    loops: collections.abc.Sequence[ServoLoop],
+    logs: collections.abc.Sequence[
+        typing.Annotated[
+            collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
+            "FixedSize(4)",
+        ]
+    ],
+    *,
+    step: typing.SupportsFloat | typing.SupportsIndex,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> list[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]]:
+    """
+    Position and velocity at each sample of each log: time, command, supply and driven.
     """
 
 def roughness(signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> float:

@@ -7,7 +7,7 @@ import pytest
 
 import jointid as jid
 from jointid.cli.demo import data_folder
-from jointid.report.html import save_report
+from jointid.report.saving import save_report
 
 PATH = data_folder() / "well_excited.csv.gz"
 JOINT = jid.thesis_joint()

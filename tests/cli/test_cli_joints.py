@@ -42,7 +42,7 @@ def test_all_joints(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pat
     text = page.read_text(encoding="utf-8")
     assert text.count("<svg ") == 4
     assert '<h2 id="joint-2">Joint 2</h2>' in text
-    assert '<a href="#joint-2">2</a>' in text
+    assert '<a href="#joint-2">Joint 2</a>: ' in text
     assert "joint 2&#x27;s speed explains" in text
 
 
@@ -104,7 +104,7 @@ def test_a_joint_file_for_each_joint(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("identify",), "load with --joints 1 (or another one) or load with --joints all"),
+        (("identify",), "load with --joints 1 (or another joint) or load with --joints all"),
         (("compare",), "2 joints (1, 2)"),
         (("info",), "--joints 1"),
         (("identify", "--joints", "7"), "--joints 7: there is no such joint"),
@@ -141,10 +141,10 @@ def test_a_number_that_names_no_joint(capsys: pytest.CaptureFixture[str], tmp_pa
     code, _, error = ran(capsys, "info", path, "--joints", "3")
     assert code == 2
     assert "there are elbow_joint, wrist_3_joint" in error
-    assert "load with --joints elbow_joint (or another one)" in error
+    assert "load with --joints elbow_joint (or another joint)" in error
     assert ran(capsys, "info", path, "--joints", "elbow_joint")[0] == 0
     code, _, error = ran(capsys, "identify", path, "--joints", "3,elbow_joint")
-    assert (code, "load with --joints elbow_joint (or another one)" in error) == (2, True)
+    assert (code, "load with --joints elbow_joint (or another joint)" in error) == (2, True)
 
 
 def test_one_of_several_estimates(
@@ -158,7 +158,7 @@ def test_one_of_several_estimates(
         code, _, error = ran(capsys, *command)
         assert code == 2
         assert "estimates of 2 joints (1, 2)" in error
-        assert "load with --joints 1 (or another one)" in error
+        assert "load with --joints 1 (or another joint)" in error
         assert ran(capsys, *command, "--joints", "2")[0] == 0
         code, _, error = ran(capsys, *command, "--joints", "7")
         assert (code, "--joints 7: there is no such joint" in error) == (2, True)
@@ -200,9 +200,7 @@ def test_a_current_and_a_commanded_torque(
         code, out, error = ran(capsys, "identify", log, "--joints", *joints)
         assert code == 2
         assert advised in out + error
-        assert (
-            "--joint JOINT (with torque_constant and gear_ratio, which convert it)" in out + error
-        )
+        assert "--torque-constant VALUE --gear-ratio RATIO (which convert it)" in out + error
         column = ("--column", "torque=target_moment_{joint}")
         assert ran(capsys, "identify", log, "--joints", *joints, *column)[0] == 0
 

@@ -3,6 +3,7 @@
 import io
 import json
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,8 +84,8 @@ def test_the_score_is_the_noise_where_the_model_is_true() -> None:
     )
 
 
-def test_emps_refuses_the_stribeck_term(shared_data: object) -> None:
-    recording = jid.load(f"{shared_data}/emps/emps_train.csv.gz")
+def test_emps_refuses_the_stribeck_term(emps: Path) -> None:
+    recording = jid.load(emps / "emps_train.csv.gz")
     found = jid.compare_models(recording, models=("coulomb_viscous", "stribeck"))
     assert found.winner == "coulomb_viscous"
     assert not row(found, "stribeck").eligible
@@ -93,8 +94,8 @@ def test_emps_refuses_the_stribeck_term(shared_data: object) -> None:
     assert row(found, "coulomb_viscous").score == pytest.approx(0.0418, rel=0.05)
 
 
-def test_emps_prefers_the_asymmetric_model(shared_data: object) -> None:
-    found = jid.compare_models(jid.load(f"{shared_data}/emps/emps_train.csv.gz"))
+def test_emps_prefers_the_asymmetric_model(emps: Path) -> None:
+    found = jid.compare_models(jid.load(emps / "emps_train.csv.gz"))
     assert found.winner == "coulomb_viscous:asymmetric"
     symmetric, asymmetric = row(found, "coulomb_viscous"), row(found, found.winner)
     assert symmetric.eligible
@@ -291,7 +292,7 @@ def test_same_bits_again(comparison: jid.Comparison, well_excited: jid.Recording
         well_excited,
         jid.thesis_joint(),
         models=("coulomb_viscous", "stribeck"),
-        search=jid.Search(threads=1),
+        search=jid.Search("separable", threads=1),
     )
     assert [entry.fold_scores for entry in again.rows] == [
         entry.fold_scores for entry in comparison.rows

@@ -11,6 +11,7 @@ from simulated_joint import TRUTH, simulate
 import jointid as jid
 from jointid.cli.demo import data_folder
 from jointid.estimate.derived import DerivedValue
+from jointid.estimate.wording import number, rounded
 from jointid.report.html import html_report
 
 
@@ -135,7 +136,9 @@ def test_every_table_shows_them(estimate: jid.Estimate) -> None:
         for name, formula in shown.items():
             assert name in text
             assert formula in text
-        assert f"{found['breakaway'].value:.6g}" in text
+        value, stderr = found["breakaway"].value, found["breakaway"].stderr
+        assert stderr is not None
+        assert f"<td>{rounded(value, stderr)}</td>" in text or number(value) in text
     saved = json.loads(estimate.to_json())["derived"]["breakaway"]
     assert saved["value"] == found["breakaway"].value
     assert saved["stderr"] == found["breakaway"].stderr

@@ -136,8 +136,8 @@ def test_demo_reproduces_the_authors_values_and_an_independent_fit() -> None:
         assert abs(found - reference.values[index]) < 2 * reference.stderr[index], name
 
 
-def test_emps_without_any_option(shared_data: Path) -> None:
-    estimate = jid.identify(jid.load(shared_data / "emps" / "emps_train.csv.gz"))
+def test_emps_without_any_option(emps: Path) -> None:
+    estimate = jid.identify(jid.load(emps / "emps_train.csv.gz"))
     published = {
         "inertia": (95.1089, 0.005),
         "viscous": (203.5034, 0.01),
@@ -149,8 +149,8 @@ def test_emps_without_any_option(shared_data: Path) -> None:
     assert estimate.parameters["inertia"].unit == "kg"
 
 
-def test_stribeck_on_emps_is_reported_to_be_too_rich(shared_data: Path) -> None:
-    recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
+def test_stribeck_on_emps_is_reported_to_be_too_rich(emps: Path) -> None:
+    recording = jid.load(emps / "emps_train.csv.gz")
     estimate = jid.identify(recording, model="stribeck", search="separable")
     assert "model_too_rich" in {warning.code for warning in estimate.warnings}
 

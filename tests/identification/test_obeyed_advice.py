@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from defective_logs import Case, names, simulated
 from defects import DEFECTS
-from obeyed_advice import Call, obeyed
+from obeyed_advice import obeyed
 
 import jointid as jid
+from jointid.app.call import Call
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding
 
@@ -192,8 +193,8 @@ def test_advice_about_an_independent_simulation_harms_nothing(
 
 
 @pytest.mark.parametrize("model", [None, "stribeck", "coulomb_viscous:asymmetric"])
-def test_advice_about_emps_harms_nothing(shared_data: Path, model: str | None) -> None:
-    call = Call(file=shared_data / "emps" / "emps_train.csv.gz", identify={"model": model})
+def test_advice_about_emps_harms_nothing(emps: Path, model: str | None) -> None:
+    call = Call(file=emps / "emps_train.csv.gz", identify={"model": model})
     assert complaints(call, EMPS) == []
 
 

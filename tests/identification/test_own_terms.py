@@ -12,7 +12,7 @@ from jointid.base.errors import InputError
 from jointid.identification.search.search import Search
 from jointid.joint.own_terms import OwnTerms
 from jointid.problem.own_integrals import own_series
-from jointid.report.html import save_report
+from jointid.report.saving import save_report
 
 TIME = np.arange(6000) * 0.002
 Q = 0.8 * np.sin(2.1 * TIME) + 0.3 * np.sin(5.3 * TIME + 1.0)

@@ -9,13 +9,6 @@ import jointid as jid
 from jointid.cli.demo import NOMINAL, data_folder, demonstrate
 
 
-def file(shared_data: Path, name: str) -> Path:
-    path = shared_data / name
-    if not path.exists():
-        pytest.skip(f"{name} is not here")
-    return path
-
-
 def kr300(path: Path, number: int) -> jid.Recording:
     motor, columns = "motor_encoder_{}_" + f"{number}_linkside_rad", f"_{number}_"
     return jid.load(
@@ -38,7 +31,7 @@ KNOWN = {"gravity": "known", "coriolis": "known", "arm": "inertia"}
 
 
 def test_kr300_joint_1_with_its_model_as_known_signals(shared_data: Path) -> None:
-    recording = kr300(file(shared_data, "kr300/kr300_A.csv.gz"), 1)
+    recording = kr300(shared_data / "kr300/kr300_A.csv.gz", 1)
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
     found = jid.identify(recording, joint, terms=KNOWN)
     for name, nominal in NOMINAL.items():
@@ -52,7 +45,7 @@ def test_kr300_joint_1_with_its_model_as_known_signals(shared_data: Path) -> Non
 
 def test_kr300_joint_3_is_not_surer_than_it_is(shared_data: Path) -> None:
     """Its one slow motion tells little: the intervals are wide, and hold the authors' values."""
-    recording = kr300(file(shared_data, "kr300/kr300_A.csv.gz"), 3)
+    recording = kr300(shared_data / "kr300/kr300_A.csv.gz", 3)
     joint = jid.Joint(gear_ratio=252.33, torque_hold="linear")
     found = jid.identify(recording, joint, model="coulomb_viscous", terms=KNOWN)
     for name, nominal in {"viscous": 2024.0, "coulomb": 294.0}.items():
@@ -65,7 +58,7 @@ def test_kr300_joint_3_is_not_surer_than_it_is(shared_data: Path) -> None:
 def test_tx40_joint_5_with_the_motor_of_joint_6(shared_data: Path) -> None:
     """The wrist is coupled: motor 6 turns with both joints, and its torque acts on both."""
     recording = jid.load(
-        file(shared_data, "tx40/tx40.csv.gz"),
+        shared_data / "tx40/tx40.csv.gz",
         columns={"position": "motor_position_5_rad", "motor_torque": "motor_torque_5_Nm"},
         extra={"motor_6": "motor_position_6_rad", "torque_6": "motor_torque_6_Nm"},
         scale={"position": 1 / 45, "motor_6": 1 / 32, "torque_6": -32.0},

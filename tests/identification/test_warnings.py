@@ -246,8 +246,8 @@ def test_a_backward_difference_is_noticed(shared_data: Path) -> None:
     assert "delay_removed" not in codes(separable(changed(recording, velocity=None)))
 
 
-def test_emps_is_not_alarmed_without_need(shared_data: Path) -> None:
-    recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
+def test_emps_is_not_alarmed_without_need(emps: Path) -> None:
+    recording = jid.load(emps / "emps_train.csv.gz")
     plain = jid.identify(recording, search="separable")
     assert codes(plain) <= {"asymmetry"}  # published, too: viscous 167 and 240
     rich = jid.identify(recording, model="stribeck", search="separable")

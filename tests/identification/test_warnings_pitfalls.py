@@ -149,7 +149,7 @@ def test_bursts_of_stamps_are_refused() -> None:
 
 
 def test_an_estimate_is_not_saved_over_a_folder(tmp_path: Path) -> None:
-    from jointid.report.html import save_report
+    from jointid.report.saving import save_report
 
     with pytest.raises(IsADirectoryError, match="folder"):
         save_report(jid.identify(moving(), search="separable"), tmp_path)

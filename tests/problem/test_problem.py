@@ -80,7 +80,7 @@ def test_a_recording_with_many_gaps() -> None:
 def test_a_motor_side_signal_needs_a_joint() -> None:
     error = refused(jid.Recording(**MOTION, current=np.cos(7.0 * TIME)))
     assert error.argument == "torque"
-    joint = "identify with joint=... (with torque_constant and gear_ratio, which convert it)"
+    joint = "set the joint with torque_constant=..., gear_ratio=... (which convert it)"
     assert [str(each) for each in error.remedy] == [joint]
     error = refused(jid.Recording(**MOTION, motor_torque=np.cos(7.0 * TIME)))
     ratio, joint = map(str, error.remedy)

@@ -78,7 +78,7 @@ def test_directions_apart() -> None:
     check(again, truth)
 
 
-def test_published_asymmetric_fit(shared_data: Path) -> None:
+def test_published_asymmetric_fit(emps: Path) -> None:
     published = {
         "inertia": 95.1540,
         "viscous_positive": 166.7061,
@@ -86,24 +86,23 @@ def test_published_asymmetric_fit(shared_data: Path) -> None:
         "viscous_negative": 240.4236,
         "coulomb_negative": 20.6277,
     }
-    recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
+    recording = jid.load(emps / "emps_train.csv.gz")
     joint = jid.Joint(kind="prismatic", torque_offset=False)  # as published
     estimate = jid.identify(recording, joint, model=jid.Model(asymmetric=True))
     for name, value in published.items():
         assert estimate.parameters[name].value == pytest.approx(value, rel=0.02), name
 
 
-def test_published_asymmetric_fit_from_matlab(shared_data: Path) -> None:
-    folder = shared_data / "emps"
+def test_published_asymmetric_fit_from_matlab(emps: Path) -> None:
     recording = jid.load(
-        folder / "DATA_EMPS.mat",
+        emps / "DATA_EMPS.mat",
         columns={"time": "t", "position": "qm", "torque": "vir"},
         scale={"torque": 35.150652},
         kind="prismatic",
     )
     matlab = jid.identify(recording, model=jid.Model(asymmetric=True), search="separable")
     csv = jid.identify(
-        jid.load(folder / "emps_train.csv.gz"), model=jid.Model(asymmetric=True), search="separable"
+        jid.load(emps / "emps_train.csv.gz"), model=jid.Model(asymmetric=True), search="separable"
     )
     for name in ("inertia", "viscous_positive", "coulomb_negative"):
         assert matlab.parameters[name].value == pytest.approx(csv.parameters[name].value, rel=1e-4)

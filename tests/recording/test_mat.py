@@ -224,10 +224,9 @@ EMPS = {"time": "t", "position": "qm", "reference": "qg", "torque": "vir"}
 FORCE = {"torque": 35.150652}  # newtons a volt
 
 
-def test_emps_from_its_mat_file(shared_data: Path) -> None:
-    folder = shared_data / "emps"
-    text = load(folder / "emps_train.csv.gz")
-    made = load(folder / "DATA_EMPS.mat", columns=EMPS, scale=FORCE, kind="prismatic")
+def test_emps_from_its_mat_file(emps: Path) -> None:
+    text = load(emps / "emps_train.csv.gz")
+    made = load(emps / "DATA_EMPS.mat", columns=EMPS, scale=FORCE, kind="prismatic")
     assert made.signals == text.signals
     # The text has its time stamps rounded to 1 µs and its forces to 10 digits.
     np.testing.assert_allclose(made.time, text.time, atol=5e-7)
@@ -238,10 +237,9 @@ def test_emps_from_its_mat_file(shared_data: Path) -> None:
     assert made.metadata["scale"] == FORCE
 
 
-def test_emps_gives_the_same_estimate_from_both_files(shared_data: Path) -> None:
-    folder = shared_data / "emps"
-    text = load(folder / "emps_train.csv.gz")
-    made = load(folder / "DATA_EMPS.mat", columns=EMPS, scale=FORCE, kind="prismatic")
+def test_emps_gives_the_same_estimate_from_both_files(emps: Path) -> None:
+    text = load(emps / "emps_train.csv.gz")
+    made = load(emps / "DATA_EMPS.mat", columns=EMPS, scale=FORCE, kind="prismatic")
     stamped = Recording(
         time=text.time, position=made.position, torque=made.torque, kind="prismatic"
     )

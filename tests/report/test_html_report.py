@@ -1,5 +1,6 @@
 """The page of an estimate: sections, pictures inside, and findings that link to the picture that shows them."""
 
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,8 @@ import pytest
 import jointid as jid
 from jointid.cli.demo import data_folder
 from jointid.identification.warnings.registry import finding_types
-from jointid.report.html import html_report, save_report
+from jointid.report.html import html_report
+from jointid.report.saving import save_report
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +25,32 @@ def test_every_picture_named_by_a_check_is_in_the_page(robot: jid.Estimate) -> N
     assert pictures == {"windows", "friction-map", "convergence"}
     for name in pictures:
         assert f'<h2 id="{name}">' in page
-    assert page.count("<svg ") == len(pictures)
+    assert page.count("<svg ") == len(pictures) + 1  # the residual over velocity
+
+
+def test_a_reason_has_its_advice_and_its_picture(robot: jid.Estimate) -> None:
+    page = html_report(robot, lambda action: f"<{action.kind}>")
+    reasons = page[: page.index("<h2>Parameters")]
+    assert "<b>What to do: </b>&lt;record&gt;; or &lt;inspect&gt;. " in reasons
+    assert '<a href="#windows">picture</a></li>' in reasons
+
+
+def test_values_are_written_as_exactly_as_they_are_known(robot: jid.Estimate) -> None:
+    page = html_report(robot)
+    assert robot["inertia"].value == pytest.approx(2027.5, abs=0.1)
+    assert "<td>inertia</td><td>2030</td><td>160 (7.8 %)</td>" in page
+    copied = tomllib.loads(page.partition("<pre>")[2].partition("</pre>")[0])["parameters"]
+    values = {name: p.value for name, p in robot.parameters.items()}
+    assert {name: each["value"] for name, each in copied.items()} == values
+
+
+def test_the_page_says_what_was_recorded(robot: jid.Estimate) -> None:
+    section = html_report(robot).partition('id="recording"')[2].partition("<h2")[0]
+    run = robot.settings["recordings"][0]
+    assert f"kr300_joint1 ({run['fingerprint']})" in section
+    assert "<td>samples</td><td>2501</td>" in section
+    low, high = robot.windows.velocity.min(), robot.windows.velocity.max()
+    assert f"{low:.3g} to {high:.3g} rad/s" in section
 
 
 def test_a_finding_links_to_its_picture(robot: jid.Estimate) -> None:

@@ -1,66 +1,24 @@
-"""Pages in a real browser, at the widths of a phone, a tablet and a desk, on a light and a dark ground.
+"""Pages in a real browser, at the widths of a phone, a tablet and a desk, on a light and a dark ground."""
 
-Debian's chromium (`apt install chromium`) or another Chromium; without one these tests are skipped.
-"""
-
-import html
-import json
 import re
-import shutil
-import subprocess
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from test_palette import LEAST, contrast
+from browser import REQUIRED, Browser, browser, require
+from report_pages import PAGES, of_a_joint, page
+from test_palette import LEAST, TEXT, contrast
 
-import jointid as jid
-from jointid.cli.demo import data_folder
-from jointid.report.html import html_report
-
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 WIDTHS = (390, 800, 1200)
 SMALLEST = 9.0  # pixels of a text's line on a screen: about 8 px of type
-PROBE = """<script>addEventListener("load", () => {
-const seen = [...document.querySelectorAll("svg text")].map(each => each.getBoundingClientRect());
-const curves = [...document.querySelectorAll("svg .line, svg .points, svg .dashed, svg .band")];
-const root = document.documentElement;
-parent.postMessage({width: innerWidth, room: root.clientWidth, wide: root.scrollWidth,
- outside: seen.filter(box => box.left < 0 || box.right > innerWidth).length,
- smallest: Math.min(...seen.map(box => box.height)), ground: getComputedStyle(document.body).backgroundColor,
- curves: [...new Set(curves.map(each => getComputedStyle(each).stroke))],
- fetched: performance.getEntriesByType("resource").length}, "*") })</script>"""
-FRAME = """<body><script>const all = []; addEventListener("message", told => { all.push(told.data);
-document.title = JSON.stringify(all) })</script>"""
-
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="no chromium is installed")
 
 
 @pytest.fixture(scope="module")
-def page() -> str:
-    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
-    return html_report(jid.identify(jid.load(data_folder() / "kr300_joint1.csv.gz"), joint))
-
-
-def told(folder: Path, page: str, scheme: str) -> list[dict[str, Any]]:
-    """What a page says of itself in frames of each width."""
-    (folder / "page.html").write_text(page.replace("</body>", f"{PROBE}</body>"), encoding="utf-8")
-    frames = "".join(
-        f'<iframe src="page.html" style="width:{width}px;height:900px;border:0"></iframe>'
-        for width in WIDTHS
-    )
-    (folder / "frames.html").write_text(f"{FRAME}{frames}</body>", encoding="utf-8")
-    assert BROWSER is not None
-    command = [
-        *(BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"),
-        *(f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=5000", "--dump-dom"),
-        f"--blink-settings=preferredColorScheme={int(scheme == 'light')}",
-        (folder / "frames.html").as_uri(),
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
-    (title,) = re.findall("<title>(.*?)</title>", done.stdout)
-    found: list[dict[str, Any]] = json.loads(html.unescape(title))
-    return sorted(found, key=lambda each: int(each["width"]))
+def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    require()
+    with browser(tmp_path_factory.mktemp("browser")) as each:
+        yield each
 
 
 def colour(text: str) -> str:
@@ -68,21 +26,73 @@ def colour(text: str) -> str:
     return "#" + "".join(f"{int(part):02x}" for part in re.findall(r"\d+", text)[:3])
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_page_fits_and_its_curves_stand_out(page: str, scheme: str, tmp_path: Path) -> None:
-    found = told(tmp_path, page, scheme)
-    assert [each["width"] for each in found] == [*WIDTHS]
-    for each in found:
-        assert each["wide"] <= each["room"]
-        assert each["outside"] == 0
-        assert each["smallest"] >= SMALLEST
-        assert each["fetched"] == 0
-        ground = colour(each["ground"])
-        assert (ground == "#ffffff") == (scheme == "light")
-        assert len(each["curves"]) >= 3
-        assert all(contrast(colour(curve), ground) >= LEAST for curve in each["curves"])
+def faults(seen: dict[str, Any], width: int, scheme: str) -> list[str]:
+    """What is wrong with a page that was looked at."""
+    ground = colour(seen["ground"])
+    found = []
+    if seen["width"] != width or (ground == "#ffffff") != (scheme == "light"):
+        found.append(f"shown {seen['width']} px wide on {ground}")
+    if seen["wide"] > seen["room"]:
+        found.append(f"{seen['wide']} px wide, {seen['room']} px of room")
+    if seen["outside"]:
+        found.append(f"texts outside at {seen['outside']}")
+    if seen["smallest"] < SMALLEST:
+        found.append(f"a text of {seen['smallest']} px")
+    if seen["active"]:
+        found.append(f"{seen['active']} elements that run or load something")
+    found += [
+        f"{what} {each} on {ground}"
+        for what, least in (("curves", LEAST), ("words", TEXT))
+        for each in seen[what]
+        if contrast(colour(each), ground) < least
+    ]
+    return found
 
 
-def test_what_is_too_wide_would_be_seen(page: str, tmp_path: Path) -> None:
-    broken = page.replace("<h1>", "<h1 style='width:2000px'>")
-    assert all(each["wide"] > each["room"] for each in told(tmp_path, broken, "light"))
+@pytest.mark.parametrize("make", PAGES, ids=lambda each: each.__name__)
+def test_a_page_fits_stands_out_and_asks_for_nothing(
+    shown: Browser, make: Callable[[], str]
+) -> None:
+    found = []
+    for scheme in ("light", "dark"):
+        for width in WIDTHS:
+            requests = shown.open(page(make), width, scheme)
+            seen = shown.seen()
+            assert seen["curves"]
+            assert seen["title"] != "run"  # nothing that a page is given runs
+            assert requests == ["page.html"]
+            found += [f"{width} {scheme}: {each}" for each in faults(seen, width, scheme)]
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    ("defect", "said"),
+    [
+        (("<h1>", "<h1 style='width:2000px'>"), "px of room"),
+        (("svg .fitted { stroke: var(--fitted)", "svg .fitted { stroke: #eeeeee"), "curves"),
+        (("p.verdict {", "p.verdict b { color: #ccc } p.verdict {"), "words"),
+        (("svg text { font-size: 170px", "svg text { font-size: 10px"), "a text of"),
+        (("</body>", "<script>1</script></body>"), "elements that run"),
+    ],
+)
+def test_a_fault_would_be_seen(shown: Browser, defect: tuple[str, str], said: str) -> None:
+    assert defect[0] in page(of_a_joint)
+    shown.open(page(of_a_joint).replace(*defect), 390, "light")
+    assert any(said in each for each in faults(shown.seen(), 390, "light"))
+
+
+def test_a_request_would_be_seen(shown: Browser) -> None:
+    broken = page(of_a_joint).replace("<h1>", "<img src='other.png'><h1>")
+    assert shown.open(broken, 800, "dark") == ["page.html", "other.png"]
+
+
+def test_a_missing_browser_is_a_failure_only_where_it_is_required(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv(REQUIRED, raising=False)
+    with pytest.raises(pytest.skip.Exception, match="apt-get install chromium chromium-driver"):
+        require()
+    monkeypatch.setenv(REQUIRED, "1")
+    with pytest.raises(pytest.fail.Exception, match=f"{REQUIRED} is set, but chromium is not"):
+        require()

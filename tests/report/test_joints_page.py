@@ -7,7 +7,8 @@ import pytest
 from moving_joints import sines, torques
 
 import jointid as jid
-from jointid.report.joints_page import joints_report, save_joints_report
+from jointid.report.joints_page import joints_report
+from jointid.report.saving import save_report
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +41,7 @@ def test_the_couplings_are_told_and_tabled(found: jid.JointEstimates) -> None:
 
 
 def test_it_needs_no_other_file(found: jid.JointEstimates, tmp_path: Path) -> None:
-    path = save_joints_report(found, tmp_path / "arm.html")
+    path = save_report(found, tmp_path / "arm.html")
     text = path.read_text(encoding="utf-8")
     assert text == joints_report(found)
     assert text.endswith("</body></html>")

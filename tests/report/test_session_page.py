@@ -1,5 +1,6 @@
 """The page of a session is about the session: how it followed, limits, timing, stops, what is next."""
 
+import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from pathlib import Path
@@ -8,12 +9,16 @@ import numpy as np
 import pytest
 from drawn_pictures import Picture
 
+from jointid.cli import main
+from jointid.cli.session import STOPPED
 from jointid.commissioning import Commissioning, commission
 from jointid.hardware.bench.bench import Bench
 from jointid.report.limit_margins import margin_rows
-from jointid.report.session_page import next_step, save_session_report, session_report
+from jointid.report.saving import save_report
+from jointid.report.session_page import next_step, session_report
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
+BENCH = EXAMPLE.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +100,7 @@ def test_the_next_step_follows_from_the_outcome(ring: Commissioning) -> None:
     assert f"Next: {found.advice[0]}" in session_report(ring)
     plain = replace(ring.estimates[-1], findings=())
     (said,) = next_step(replace(ring, estimates=(plain,)))
-    assert said == "Next: save these values to the joint file; no finding speaks against it."
+    assert said == "Next: save these values to the joint file; no finding warns of them."
     worse = replace(ring, runs=ring.runs[::-1])
     assert "do not use these values" in next_step(worse)[0]
     only = replace(ring, runs=ring.runs[:1], estimates=())
@@ -105,5 +110,26 @@ def test_the_next_step_follows_from_the_outcome(ring: Commissioning) -> None:
 
 
 def test_it_is_written_whole(ring: Commissioning, tmp_path: Path) -> None:
-    path = save_session_report(ring, tmp_path / "session.html")
+    path = save_report(ring, tmp_path / "session.html")
     assert path.read_text(encoding="utf-8") == session_report(ring)
+
+
+def test_a_stopped_session_has_a_page_that_says_why(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, limited = re.subn(r"(?m)^tracking_error = .*$", "tracking_error = 0.002", BENCH)
+    assert limited == 1
+    bench = tmp_path / "joint.toml"
+    bench.write_text(text, encoding="utf-8")
+    folder = tmp_path / "runs"
+    assert main(["run", str(bench), "--emulate", "--quiet", "--output", str(folder)]) == STOPPED
+    written = folder / "report.html"
+    assert f"report: {written}" in capsys.readouterr().err
+    page = written.read_text(encoding="utf-8")
+    top = page[: page.index("<h2")]
+    assert '<p class="verdict not-usable"><b>initial: stopped by tracking_error after' in top
+    assert "Next: find out why the limit was reached" in top
+    assert "The drive confirmed that the motor is off." in page
+    limits = page.partition('id="limits"')[2].partition("</table>")[0]
+    assert "<th>tracking error</th><td>0.002006 rad</td><td>0.002 rad</td><td>100 %</td>" in limits
+    assert 'id="timing"' in page

@@ -104,11 +104,20 @@ def test_a_removed_module_is_installed_in_place_again(tree: Path) -> None:
 
 def test_ci_builds_once_what_it_tests_and_ships(tree: Path) -> None:
     change(tree, "cpp/base/pool.cpp")
-    ran = commands(tree, "lint", "check-sdist", "pytest", CI="true")
+    ran = commands(tree, "lint", "check-sdist", "check-plain", "pytest", CI="true")
     (built,) = [line for line in ran if " -m build " in line]
     assert "JOINTID_WARNINGS_AS_ERRORS=ON" in built
     assert "--sdist" not in built  # both, the wheel from the sdist
+    assert "JOINTID_BUILD_CHECKS=ON" in built  # the plain checks link what ships
+    assert sum("core_checks.sh plain" in line for line in ran) == 1
     tested, proven = [line for line in ran if "pip install" in line]
     assert tested.endswith(" dist/jointid-*.whl")
     assert proven.endswith(" dist/jointid-*.whl")
     assert "sdist-venv" in proven
+
+
+def test_a_build_by_hand_builds_no_checks(tree: Path) -> None:
+    change(tree, "cpp/base/pool.cpp")
+    (built,) = [line for line in commands(tree, "check-sdist") if " -m build " in line]
+    assert "JOINTID_BUILD_CHECKS" not in built
+    assert not [line for line in commands(tree, "check-plain") if " -m build " in line]

@@ -193,7 +193,6 @@ def test_asymmetric_and_general_models_reach_their_friction() -> None:
     np.testing.assert_allclose(friction[moving], map_[moving], rtol=1e-12)
 
 
-SIMULATED = Path(__file__).resolve().parents[3] / "shared" / "data" / "simulated"
 NARROW = jid.Trajectory.thesis(math.radians(20.0), cycle=3.0, duration=6.0)
 
 
@@ -214,6 +213,7 @@ NARROW = jid.Trajectory.thesis(math.radians(20.0), cycle=3.0, duration=6.0)
 )
 def test_an_independent_simulator_says_the_same(
     joint: jid.Joint,
+    shared_data: Path,
     name: str,
     narrow: bool,
     sensors: dict[str, Any],
@@ -221,11 +221,7 @@ def test_an_independent_simulator_says_the_same(
     options: dict[str, Any],
 ) -> None:
     """Its recording and twenty of ours, made by the same recipe: the same parameters within their errors."""
-    shipped = data_folder() / f"{name}.csv.gz"
-    path = shipped if shipped.exists() else SIMULATED / shipped.name
-    if not path.exists():
-        pytest.skip(f"{name} is neither shipped nor in {SIMULATED}")
-    theirs = jid.load(path)
+    theirs = jid.load(shared_data / "simulated" / f"{name}.csv.gz")
     # A velocity by backward difference lags: derived anew, centrally.
     theirs = jid.Recording(
         time=theirs.time,

@@ -20,12 +20,12 @@ struct Reduced {
       free;  ///< coefficients, without the gain when that is eliminated with the rest
 };
 
-Reduced reduce(const PenaltyFunction& penalty, const Eigen::MatrixXd& columns,
-               const search::Domain& domain, bool keep_gain) {
+Reduced reduce(const Balance& balance, const search::Domain& domain, bool keep_gain) {
+  const Eigen::MatrixXd& columns = balance.columns;
   Reduced result;
-  result.target = penalty.target();
+  result.target = balance.target;
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    if (!keep_gain && j == penalty.gain_index()) continue;
+    if (!keep_gain && j == balance.gain) continue;
     if (domain.lower[j] == domain.upper[j]) {
       result.target.noalias() -= domain.lower[j] * columns.col(j);
     } else {
@@ -58,10 +58,9 @@ Eigen::VectorXd solve_box(const Reduced& r, const search::Domain& domain,
 
 /// Free gain, residual in the sensor's terms: min |target u - columns g - sensor|, u = 1/gain, g =
 /// c u.
-Eigen::VectorXd solve_ratio(const PenaltyFunction& penalty, const Reduced& r,
-                            const Eigen::VectorXd& sensor, const search::Domain& domain,
+Eigen::VectorXd solve_ratio(const Balance& balance, const Reduced& r, const search::Domain& domain,
                             Eigen::VectorXd coefficients) {
-  const Eigen::Index gain = penalty.gain_index();
+  const Eigen::Index gain = balance.gain;
   const auto n = static_cast<Eigen::Index>(r.free.size());
   const double low = domain.lower[gain];
   const double high = domain.upper[gain];
@@ -87,7 +86,7 @@ Eigen::VectorXd solve_ratio(const PenaltyFunction& penalty, const Reduced& r,
   h[2 * n] = 1.0 / high;
   g(2 * n + 1, n) = -1.0;
   h[2 * n + 1] = -1.0 / low;
-  const auto solution = search::constrained_least_squares(a, sensor, g, h);
+  const auto solution = search::constrained_least_squares(a, balance.columns.col(gain), g, h);
   const double u = solution.x[n];
   coefficients[gain] = 1.0 / u;
   for (Eigen::Index i = 0; i < n; ++i)
@@ -97,30 +96,28 @@ Eigen::VectorXd solve_ratio(const PenaltyFunction& penalty, const Reduced& r,
 
 }  // namespace
 
+Eigen::VectorXd best_coefficients(const Balance& balance, const search::Domain& domain) {
+  const Eigen::Index p = balance.columns.cols();
+  const Eigen::VectorXd start = domain.lower.head(p);
+  const Eigen::Index gain = balance.gain;
+  const bool ratio =
+      balance.residual == Residual::sensor && domain.lower[gain] < domain.upper[gain];
+  const Eigen::VectorXd best =
+      ratio ? solve_ratio(balance, reduce(balance, domain, false), domain, start)
+            : solve_box(reduce(balance, domain, true), domain, start);
+  // Rounding may leave a bound by an ulp.
+  return best.cwiseMax(domain.lower.head(p)).cwiseMin(domain.upper.head(p));
+}
+
 Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
                                   const search::Domain& domain, const base::Cancel* cancel) {
   Eigen::MatrixXd columns;
   penalty.columns(shapes, columns, cancel);
-  const Eigen::Index p = penalty.coefficients();
-  const Eigen::Index gain = penalty.gain_index();
-  Eigen::VectorXd start = domain.lower.head(p);
-  const bool ratio =
-      penalty.residual() == Residual::sensor && domain.lower[gain] < domain.upper[gain];
-  const auto solved = [&]() -> Eigen::VectorXd {
-    Eigen::VectorXd best;
-    if (ratio) {
-      best = solve_ratio(penalty, reduce(penalty, columns, domain, false), columns.col(gain),
-                         domain, start);
-    } else {
-      best = solve_box(reduce(penalty, columns, domain, true), domain, start);
-    }
-    // Rounding may leave a bound by an ulp.
-    return best.cwiseMax(domain.lower.head(p)).cwiseMin(domain.upper.head(p));
-  };
-  Eigen::VectorXd best = solved();
+  const Balance balance{columns, penalty.target(), penalty.residual(), penalty.gain_index()};
+  Eigen::VectorXd best = best_coefficients(balance, domain);
   for (int pass = 0; pass < kPasses && !penalty.is_linear(); ++pass) {
     penalty.linear_columns(shapes, best, columns, cancel);
-    best = solved();
+    best = best_coefficients(balance, domain);
   }
   return best;
 }

@@ -8,6 +8,17 @@
 
 namespace jointid::identify {
 
+/// A linear balance for given shapes, in any orthonormal basis: columns of all coefficients.
+struct Balance {
+  const Eigen::MatrixXd& columns;
+  const Eigen::VectorXd& target;
+  Residual residual;
+  Eigen::Index gain;  ///< position of sensor_gain, or -1
+};
+
+/// The best coefficients of a balance, within the domain; see below.
+Eigen::VectorXd best_coefficients(const Balance& balance, const search::Domain& domain);
+
 /// The best coefficients for given shapes, within the domain.
 ///
 /// residual torque: bounded least squares. residual sensor: linear in u = 1/gain and g = c/gain,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "identify/balance/terms.hpp"
+#include "identify/solve/scale.hpp"
 #include "search/brent.hpp"
 #include "search/polish.hpp"
 
@@ -72,30 +73,6 @@ class Eliminated {
   const search::Domain& domain_;
   base::Pool& pool_;
   std::vector<Eigen::Index> free_;
-};
-
-/// Steps over a shape's domain that matter equally: the Gaussian decay depends on s v^2, so
-/// its shape takes a square-root scale; speeds and exponents take a linear scale.
-class Scale {
- public:
-  Scale(double lower, double upper, bool root)
-      : lower_(lower), upper_(upper), root_(root && lower >= 0.0) {}
-  [[nodiscard]] double share(double shape) const {
-    const auto even = [&](double value) { return root_ ? std::sqrt(value) : value; };
-    return (even(shape) - even(lower_)) / (even(upper_) - even(lower_));
-  }
-  [[nodiscard]] double at(double share) const {
-    if (share <= 0.0) return lower_;  // the bounds to the last bit
-    if (share >= 1.0) return upper_;
-    if (!root_) return lower_ + share * (upper_ - lower_);
-    const double value = std::sqrt(lower_) + share * (std::sqrt(upper_) - std::sqrt(lower_));
-    return std::clamp(value * value, lower_, upper_);
-  }
-
- private:
-  double lower_;
-  double upper_;
-  bool root_;
 };
 
 /// Penalties at even steps over a scale.
@@ -213,14 +190,14 @@ void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
 
 }  // namespace
 
-namespace {
-
-void require_size(const PenaltyFunction& penalty, const search::Domain& domain) {
+void require_domain(const PenaltyFunction& penalty, const search::Domain& domain) {
   domain.validate();
   if (domain.size() == penalty.parameters()) return;
   throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
                               " parameters, got " + std::to_string(domain.size()));
 }
+
+namespace {
 
 std::vector<Scale> scales_of(const PenaltyFunction& penalty, const search::Domain& domain,
                              const Eliminated& reduced) {
@@ -238,7 +215,7 @@ std::vector<Scale> scales_of(const PenaltyFunction& penalty, const search::Domai
 
 SeparableResult minimise_separable(const PenaltyFunction& penalty, const search::Domain& domain,
                                    base::Pool& pool) {
-  require_size(penalty, domain);
+  require_domain(penalty, domain);
   const Eliminated reduced(penalty, domain, pool);
   const auto scales = scales_of(penalty, domain, reduced);
   SeparableResult result;
@@ -256,7 +233,7 @@ SeparableResult minimise_separable(const PenaltyFunction& penalty, const search:
 
 SeparableResult refine_separable(const PenaltyFunction& penalty, const search::Domain& domain,
                                  const Eigen::VectorXd& start, base::Pool& pool, bool everywhere) {
-  require_size(penalty, domain);
+  require_domain(penalty, domain);
   const Eliminated reduced(penalty, domain, pool);
   const auto scales = scales_of(penalty, domain, reduced);
   SeparableResult result;

@@ -17,6 +17,9 @@ struct SeparableResult {
   int evaluations = 0;   ///< shapes tried
 };
 
+/// Throws std::invalid_argument unless the domain has the penalty's parameters.
+void require_domain(const PenaltyFunction& penalty, const search::Domain& domain);
+
 /// The separable optimum. No free shape: a single solve. One: a scan, then parabolas about its
 /// best. Several: a grid, then polishes of all parameters from its best points.
 SeparableResult minimise_separable(const PenaltyFunction& penalty, const search::Domain& domain,

@@ -12,7 +12,22 @@ from html import escape
 _TAGS = frozenset(
     (
         *("html", "head", "meta", "title", "style", "body", "section", "footer", "div", "span"),
-        *("h1", "h2", "h3", "p", "br", "b", "em", "strong", "small", "sub", "sup", "code", "a"),
+        *(
+            "h1",
+            "h2",
+            "h3",
+            "p",
+            "br",
+            "b",
+            "em",
+            "strong",
+            "small",
+            "sub",
+            "sup",
+            "code",
+            "pre",
+            "a",
+        ),
         *("figure", "figcaption", "img", "table", "caption", "thead", "tbody", "tr", "th", "td"),
         *("ul", "ol", "li", "svg", "path", "text", "desc"),
     )

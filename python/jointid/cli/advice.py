@@ -15,6 +15,7 @@ MODEL_FIELDS = frozenset(
     {"name", "friction", "gravity", "asymmetric", "ripple", "harmonics", "load_friction"}
     | {"per_recording", "terms"}
 )
+_FACTS = frozenset({"gear_ratio", "torque_constant", "rotor_inertia", "inertia"})
 _TABLES = {
     **dict.fromkeys((*MODEL_FIELDS, "torque_offset"), "model"),
     **dict.fromkeys(
@@ -32,7 +33,7 @@ _VERBS = {
 _VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
 
 
-def words_of_action(action: Action, command: str, model: str = "") -> str:
+def words_of_action(action: Action, command: str, model: str = "", *, file: bool = False) -> str:
     """What to do, in the words of a command; empty if the command line cannot do it.
 
     Parameters
@@ -42,6 +43,8 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
         The command that gives the advice.
     model : str
         The text of ``--model`` that the command has, to extend. Default: not known.
+    file : bool
+        Whether the command has a joint file, in which a joint's fact then belongs. Default False.
     """
     if action.kind != "call":
         return str(action)
@@ -51,9 +54,12 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
         facts = ", ".join(f"{name} = {_fact(value)}" for name, value in action.arguments.items())
         purpose = f" ({action.text})" if action.text else ""
         return f"write {facts} in the file of --facts{purpose}"
-    if action.function == "Joint":
+    by_option = not file and all(option_of(command, name)[0] for name in action.arguments)
+    if action.function == "Joint" and not (by_option and action.arguments.keys() <= _FACTS):
         options: list[str] = []
         joint_file = list(_joint_fields(action.arguments))
+    elif action.function == "Joint":
+        options, joint_file = _arguments(action.arguments, command, model)
     elif action.function in _VERBS:
         other = {"compare_models": "compare", "load": "identify"}
         speaker = command

@@ -13,7 +13,6 @@ from jointid.base.errors import InputError
 if TYPE_CHECKING:
     from jointid.cli.parser import CommandParser
     from jointid.joint.model import Model
-    from jointid.recording.recording import Recording
 
 _MOST_WINDOWS = 1_000_000_000
 
@@ -193,129 +192,6 @@ def with_terms(model: str | None, arguments: argparse.Namespace) -> Model:
     return stated.replace(terms={**(stated.terms or {}), **by_name("terms", arguments.term)})
 
 
-def load_all(
-    paths: Sequence[Path],
-    arguments: argparse.Namespace,
-    models: Sequence[Model] = (),
-) -> list[Recording]:
-    """The recordings of a command, each read with the same --column, --unit and --where.
-
-    Parameters
-    ----------
-    models : sequence of Model
-        Their own terms name columns that are read as extra signals, unless --extra says which. Default: none.
-    """
-    from jointid.recording.readers.loading import load
-
-    several, ratios = joints_wanted(arguments), gear_ratios(arguments)
-    if several is not None and len(several) != 1:
-        raise InputError(
-            "one joint is expected here; identify takes several",
-            argument="joints",
-            value=arguments.joints,
-        )
-    if ratios is not None and len(ratios) > 1:
-        raise InputError(
-            "one ratio is expected for one joint", argument="gear_ratio", value=arguments.gear_ratio
-        )
-    reading = how_to_read(arguments, models)
-    try:
-        return [
-            load(
-                path,
-                joint=several[0] if several else None,
-                gear_ratio=ratios[0] if ratios else None,
-                drop_copies=arguments.drop_copies,
-                drop_invalid=arguments.drop_invalid,
-                **reading,
-            )
-            for path in paths
-        ]
-    except InputError as error:
-        raise as_given(_of_joints(error), arguments) from None
-
-
-def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> dict[str, Any]:
-    """How the recordings of a command are read, as arguments of `load` and `load_robot`."""
-    columns = {
-        signal: int(header) if header.isdigit() else None if header == "none" else header
-        for signal, header in by_name("columns", arguments.column).items()
-    }
-    where = {
-        column: number_or_text(value) for column, value in by_name("where", arguments.where).items()
-    }
-    extra: dict[str, str | int] = {
-        name: int(header) if header.isdigit() else header
-        for name, header in by_name("extra", arguments.extra).items()
-    }
-    for model in models:
-        for signal in model.resolved.terms.signals:
-            extra.setdefault(signal, signal)
-    return {
-        "columns": columns or None,
-        "units": by_name("units", arguments.unit) or None,
-        "scale": _numbers("scale", arguments.scale) or None,
-        "extra": extra or None,
-        "where": where or None,
-        "topic": arguments.topic,
-        "group": arguments.group,
-        "unpacked": arguments.unpacked,
-    }
-
-
-def joints_wanted(arguments: argparse.Namespace) -> list[str] | None:
-    """The joints of --joints; an empty list for all, None if the option is not there."""
-    text = arguments.joints
-    if text is None:
-        return None
-    names = [] if text == "all" else [name.strip() for name in text.split(",")]
-    if "" in names:
-        raise InputError(
-            "names or numbers such as 1,3,5 are expected, or all", argument="joints", value=text
-        )
-    return names
-
-
-def gear_ratios(arguments: argparse.Namespace) -> list[float] | None:
-    """The ratios of --gear-ratio; None if the option is not there."""
-    text = arguments.gear_ratio
-    if text is None:
-        return None
-    ratios = [number_or_text(part.strip()) for part in text.split(",")]
-    if any(isinstance(ratio, str) for ratio in ratios):
-        raise InputError(
-            "numbers such as 32,45,-48 are expected", argument="gear_ratio", value=text
-        )
-    return [float(ratio) for ratio in ratios]
-
-
-def as_given(error: InputError, arguments: argparse.Namespace) -> InputError:
-    """An error about an extra signal that only an own term names: on the command line it is the term's."""
-    root, _, name = error.argument.partition(".")
-    if root != "extra" or name not in by_name(
-        "terms", arguments.term if "term" in arguments else []
-    ):
-        return error
-    if name in by_name("extra", arguments.extra):
-        return error
-    return InputError(
-        error.reason, argument="terms", value=name, place=error.place, remedy=error.remedy
-    )
-
-
-def _of_joints(error: InputError) -> InputError:
-    """An error about `joint`, which on the command line is --joints; --joint is a file."""
-    if error.argument != "joint":
-        return error
-    return InputError(
-        error.reason,
-        argument="joints",
-        value=error.value,
-        place=error.place,
-        remedy=error.remedy,
-    )
-
-
 def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
     """Values that --set fixes, by parameter name (SI).
 
@@ -324,7 +200,7 @@ def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
     InputError
         Not a number, or a name is given twice.
     """
-    return _numbers("parameters", arguments.set)
+    return numbers_by_name("parameters", arguments.set)
 
 
 def refinement_arguments(command: argparse.ArgumentParser) -> None:
@@ -353,11 +229,18 @@ def refinements(arguments: argparse.Namespace) -> dict[str, Any]:
         Not a number, or a signal is given twice.
     """
     given = arguments.shift
-    shift = None if given is None else _numbers("shift", given)
+    shift = None if given is None else numbers_by_name("shift", given)
     return {"shift": shift, "min_speed": arguments.min_speed}
 
 
-def _numbers(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
+def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
+    """Numbers by name.
+
+    Raises
+    ------
+    InputError
+        Not a number, or a name is given twice.
+    """
     numbers: dict[str, float] = {}
     for name, value in by_name(argument, pairs).items():
         number = number_or_text(value)

@@ -10,6 +10,11 @@ _TABLE = {
         "jointid.cli.grammar:add_demo",
         "jointid.cli.commands:demo",
     ),
+    "new": (
+        "write a joint file to begin with: from options, a recording, or answers at the terminal",
+        "jointid.cli.new_joint:add_new",
+        "jointid.cli.new_joint:new",
+    ),
     "identify": (
         "identify a joint from one recording or several",
         "jointid.cli.grammar:add_identify",
@@ -64,6 +69,11 @@ _TABLE = {
         "write an identified joint for a simulator, a controller, a PLC or Simulink",
         "jointid.cli.exports:add_export",
         "jointid.cli.exports:export",
+    ),
+    "app": (
+        "open a page: drop a log, fix its units, identify, compare, export",
+        "jointid.cli.app:add_app",
+        "jointid.cli.app:serve_page",
     ),
     "info": (
         "show what a recording holds",

@@ -5,22 +5,23 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
+from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
+from jointid.cli.joint_options import joint_file, joint_of, torque_needed
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
+from jointid.cli.reading import joints_wanted, load_all
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
+    from jointid.comparison.result import Comparison
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
-    from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
     from jointid.robot.result import RobotEstimate
 
@@ -29,7 +30,7 @@ def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
     from jointid.cli.demo import demonstrate
     from jointid.cli.progress import Progress
-    from jointid.report.html import save_report
+    from jointid.report.saving import save_report
 
     check_output_folder("output", arguments.output)
     with Progress(enabled=not arguments.quiet) as progress:
@@ -77,10 +78,17 @@ def identify(arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None
     }
     options = GaOptions(**budget)
-    joint = _joint(arguments)
+    file = joint_file(arguments)
+    if file is not None and file.voltage is not None:
+        from jointid.cli.servo import identify_runs
+
+        return identify_runs(arguments, file)
+    _for_a_torque(arguments)
     model = with_terms(arguments.model, arguments)
-    merged = model if joint is None else model.over(joint.model)
-    recordings = load_all(arguments.recordings, arguments, [merged])
+    merged = model if file is None else model.over(file.model)
+    usable = torque_needed(arguments, file)
+    recordings = load_all(arguments.recordings, arguments, [merged], usable=usable)
+    joint = joint_of(arguments, file, recordings)
     with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
         estimate = identification.identify(
             recordings,
@@ -133,9 +141,17 @@ def _with_checks(
 
 
 def _for_one_joint(arguments: argparse.Namespace) -> None:
-    for name in ("facts", "inertia"):
-        if getattr(arguments, name) is not None:
-            raise InputError("this is for a robot; name its URDF with --robot", argument=name)
+    if arguments.facts is not None:
+        raise InputError("this is for a robot; name its URDF with --robot", argument="facts")
+
+
+def _for_a_torque(arguments: argparse.Namespace) -> None:
+    for name in ("by", "rollout"):
+        if getattr(arguments, name):
+            raise InputError(
+                'this is for a servo, whose joint file says input = "voltage" in [drive]',
+                argument=name,
+            )
 
 
 def compare(arguments: argparse.Namespace) -> int:
@@ -152,13 +168,15 @@ def compare(arguments: argparse.Namespace) -> int:
     _for_one_joint(arguments)
     changes = fixed_values(arguments)
     check_outputs(arguments)
-    joint = _joint(arguments)
+    file = joint_file(arguments)
     models = arguments.models
     if arguments.term:
         models = [with_terms(text, arguments) for text in models or ("coulomb_viscous", "stribeck")]
     merged = [Model.of(each) for each in models or (None,)]
-    merged = [each if joint is None else each.over(joint.model) for each in merged]
-    recordings = load_all(arguments.recordings, arguments, merged)
+    merged = [each if file is None else each.over(file.model) for each in merged]
+    usable = torque_needed(arguments, file)
+    recordings = load_all(arguments.recordings, arguments, merged, usable=usable)
+    joint = joint_of(arguments, file, recordings)
     with ComparisonProgress(enabled=not arguments.quiet) as progress:
         comparison = compare_models(
             recordings,
@@ -173,7 +191,7 @@ def compare(arguments: argparse.Namespace) -> int:
             **{name: given for name, given in refinements(arguments).items() if given is not None},
             callback=progress,
         )
-    refused = _write(comparison.estimate, arguments)
+    refused = _write(comparison.estimate, arguments, comparison)
     print(comparison.to_json() if arguments.json else comparison.report())
     _say_written(refused, arguments)
     return _exit_code(refused, arguments)
@@ -185,7 +203,7 @@ def report(arguments: argparse.Namespace) -> None:
 
     from jointid.cli.robot import saved_robot
     from jointid.joints.reading import load_estimate
-    from jointid.report.html import save_report
+    from jointid.report.saving import save_report
 
     check_page("output", arguments.output)
     robot = saved_robot(arguments.estimate)
@@ -194,14 +212,12 @@ def report(arguments: argparse.Namespace) -> None:
         estimate = load_estimate(arguments.estimate, arguments.joints)
         page = save_report(estimate, arguments.output, action=ADVICE.of_action)
     else:
-        from jointid.report.robot_page import save_robot_report
-
         if arguments.joints is not None:
             raise InputError(
                 "a robot's page has all joints", argument="joints", value=arguments.joints
             )
         estimate = robot
-        page = save_robot_report(robot, arguments.output, action=ADVICE.of_action)
+        page = save_report(robot, arguments.output, action=ADVICE.of_action)
     if arguments.json:
         summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
         print(json.dumps(summary, indent=1, ensure_ascii=False))
@@ -254,22 +270,17 @@ def _unrecognised(arguments: argparse.Namespace) -> str:
     return ", ".join(names[:12]) + more
 
 
-def _joint(arguments: argparse.Namespace) -> Joint | None:
-    from jointid.joint.joint import Joint
-
-    path: Path | None = arguments.joint
-    return Joint.load(path) if path is not None else None
-
-
-def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
-    """Write what was asked for; returns the code of the finding that refuses a joint file, if any.
+def _write(
+    estimate: Estimate, arguments: argparse.Namespace, comparison: Comparison | None = None
+) -> str:
+    """Write what was asked for, of a comparison its own page; returns the code of a finding that refuses a joint file.
 
     The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
     """
     if arguments.report is not None:
-        from jointid.report.html import save_report
+        from jointid.report.saving import save_report
 
-        save_report(estimate, arguments.report, action=ADVICE.of_action)
+        save_report(comparison or estimate, arguments.report, action=ADVICE.of_action)
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
     if arguments.save is None:
         return ""

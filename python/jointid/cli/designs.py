@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import decimal, pair, whole, whole_seed
-from jointid.cli.outputs import check_folder
+from jointid.cli.outputs import check_folder, check_page
 
 if TYPE_CHECKING:
     from jointid.design.design import Design
@@ -66,6 +66,7 @@ def add_design(design: argparse.ArgumentParser) -> None:
     _sought(design)
     design.add_argument("--output", type=Path, help="file for the motion (.toml)")
     design.add_argument("--plot", type=Path, help="draw the motion: .png, .pdf, .svg")
+    design.add_argument("--report", type=Path, help="write the HTML report to this file")
     design.add_argument("--json", action="store_true", help="print the design as JSON")
     design.add_argument("--quiet", action="store_true", help="no progress bar")
 
@@ -209,11 +210,16 @@ def _say(found: Design, arguments: argparse.Namespace) -> int:
         found.save(arguments.output)
     if arguments.plot is not None:
         _draw(found, arguments.plot)
+    if arguments.report is not None:
+        from jointid.report.saving import save_report
+
+        save_report(found, arguments.report)
     if arguments.json:
         print(json.dumps(found.to_dict(), indent=1, ensure_ascii=False, allow_nan=False))
     else:
         print(found.summary())
-        lines = [f"picture: {arguments.plot}"] if arguments.plot is not None else []
+        written = (("picture", arguments.plot), ("report", arguments.report))
+        lines = [f"{what}: {path}" for what, path in written if path is not None]
         if usable and arguments.output is not None:
             lines.append(f"motion: {arguments.output}")
         if lines:
@@ -234,6 +240,7 @@ def _check_outputs(arguments: argparse.Namespace) -> None:
         if path is not None and path.suffix.lower() not in endings:
             raise InputError(text, argument=name, value=path)
         check_folder(name, path)
+    check_page("report", arguments.report)
 
 
 def _draw(found: Design, path: Path) -> None:

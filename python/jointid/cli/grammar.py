@@ -16,6 +16,7 @@ from jointid.cli.arguments import (
     whole_seed,
     windows,
 )
+from jointid.cli.joint_options import joint_arguments
 from jointid.cli.parser import CommandParser
 from jointid.identification.search.search import METHODS
 
@@ -34,11 +35,13 @@ def add_identify(identify: CommandParser) -> None:
     """Add the command's grammar."""
     identify.epilog = (
         "examples:\n  jointid identify run.csv\n"
+        "  jointid identify run.csv --gear-ratio 101 --rotor-inertia 2.5e-4 --torque-constant 0.11\n"
         "  jointid identify run.csv --joint joint.toml --set viscous=12 --report report.html --save joint.toml\n"
         "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
         "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)\n"
         "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html\n"
-        "  jointid identify arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)"
+        "  jointid identify arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)\n"
+        "  jointid identify runs/*.csv --joint servo.toml --rollout   (a servo that logs its duty, no torque)"
     )
     several_recordings(identify)
     _identification_arguments(identify, method="ga")
@@ -54,8 +57,9 @@ def add_identify(identify: CommandParser) -> None:
     _robot_arguments(identify)
     identify.add_argument(
         "--inertia",
-        metavar="MODE",
-        help="with --robot: urdf (default), scaled, or free: whether the links' inertias are identified",
+        metavar="VALUE|MODE",
+        help="of the drive alone, at the output [kg·m²]; with --robot: urdf (default), scaled, or free: whether the "
+        "links' inertias are identified",
     )
     identify.add_argument(
         "--selftest",
@@ -66,6 +70,16 @@ def add_identify(identify: CommandParser) -> None:
         "--causes",
         action="store_true",
         help="say why the model does not fit: causes by name, what they explain and what they move",
+    )
+    identify.add_argument(
+        "--by",
+        metavar="COLUMN",
+        help="of a servo: a file holds several runs, and this column numbers them; see docs/servos.md",
+    )
+    identify.add_argument(
+        "--rollout",
+        action="store_true",
+        help="of a servo: simulate the closed loop of each run and say how far it ends from the log",
     )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
@@ -114,8 +128,9 @@ def add_compare(compare: CommandParser) -> None:
     compare.add_argument(
         "--inertia",
         action="append",
-        metavar="MODE",
-        help="with --robot: of urdf, scaled and free one to compare; may be repeated; default: all",
+        metavar="VALUE|MODE",
+        help="of the drive alone, at the output [kg·m²]; with --robot: of urdf, scaled and free one to compare; may be "
+        "repeated; default: all",
     )
     compare.add_argument(
         "--model",
@@ -162,7 +177,7 @@ def add_info(info: CommandParser) -> None:
 
 def _identification_arguments(command: CommandParser, *, method: str) -> None:
     others = " or ".join(name for name in METHODS if name != method)
-    command.add_argument("--joint", type=Path, help="joint file (.toml)")
+    joint_arguments(command)
     command.add_argument("--method", default=method, help=f"{method} (default), {others}")
     command.add_argument("--residual", help="instruments, sensor or torque")
     command.add_argument(

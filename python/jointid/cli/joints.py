@@ -6,17 +6,12 @@ import argparse
 from collections.abc import Sequence
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import (
-    as_given,
-    fixed_values,
-    gear_ratios,
-    how_to_read,
-    refinements,
-    with_terms,
-)
+from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
+from jointid.cli.joint_options import facts_of, joint_file, with_facts
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.progress import JointsProgress
+from jointid.cli.reading import as_given, gear_ratios, how_to_read
 from jointid.cli.wording import ADVICE, Wording
 
 _MARK = "{joint}"
@@ -38,7 +33,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
     from jointid.joint.joint import Joint
     from jointid.joints.identifying import identify_joints
     from jointid.recording.readers.loading_robot import load_robot
-    from jointid.report.joints_page import save_joints_report
+    from jointid.report.saving import save_report
 
     _check(arguments)
     changes = fixed_values(arguments)
@@ -51,9 +46,9 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
     joint: Joint | dict[str, Joint] | None = None
     model = with_terms(arguments.model, arguments)
     merged = model
-    if arguments.joint is not None and not of_each:
-        joint = Joint.load(arguments.joint)
-        merged = model.over(joint.model)
+    file = None if of_each else joint_file(arguments)
+    if file is not None:
+        merged = model.over(file.model)
     ratios = gear_ratios(arguments)
     try:
         robot = load_robot(
@@ -64,9 +59,15 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         )
     except InputError as error:
         raise as_given(error, arguments) from None
+    facts = facts_of(arguments, file)
     if of_each:
         wanted = joints or robot.names
-        joint = {name: Joint.load(str(arguments.joint).replace(_MARK, name)) for name in wanted}
+        files = {name: Joint.load(str(arguments.joint).replace(_MARK, name)) for name in wanted}
+        joint = {name: each.replace(**facts) for name, each in files.items()}
+    elif facts.keys() <= {"gear_ratio"}:  # the recording has it
+        joint = file
+    else:
+        joint = with_facts(file, facts, "", robot.kind, sensor=robot.sensor is not None)
     with JointsProgress(enabled=not arguments.quiet) as progress:
         found = identify_joints(
             robot,
@@ -86,7 +87,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
             **refinements(arguments),
         )
     if arguments.report is not None:
-        save_joints_report(found, arguments.report, action=ADVICE.of_action)
+        save_report(found, arguments.report, action=ADVICE.of_action)
     if arguments.save is not None:
         found.save(arguments.save)
     wording = Wording.of(arguments)

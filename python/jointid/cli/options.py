@@ -18,9 +18,18 @@ _READING = {
     "drop_invalid": "--drop-invalid",
     "extra": "--extra",
 }
+_FACTS = {
+    "torque_constant": "--torque-constant",
+    "rotor_inertia": "--rotor-inertia",
+    "inertia": "--inertia",
+    "mass": "--mass",
+    "centre_of_mass": "--centre-of-mass",
+    "link_angle": "--link-angle",
+}
 _IDENTIFICATION = {
     **_READING,
     "joint": "--joint",
+    **_FACTS,
     "model": "--model",
     "terms": "--term",
     "method": "--method",
@@ -46,6 +55,16 @@ _ESTIMATE = {"report": "--report", "save": "--save"}
 
 OPTIONS: Mapping[str, Mapping[str, str]] = {
     "demo": {"output": "--output"},
+    "new": {
+        **_READING,
+        **_FACTS,
+        "name": "--name",
+        "kind": "--kind",
+        "position": "--position",
+        "velocity": "--velocity",
+        "torque": "--torque",
+        "current": "--current",
+    },
     "identify": {
         **_IDENTIFICATION,
         **_ESTIMATE,
@@ -53,13 +72,14 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "ga.generations": "--generations",
         "selftest": "--selftest",
         "causes": "--causes",
+        "by": "--by",
+        "rollout": "--rollout",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
         "n": "--bootstrap",
         "robot": "--robot",
         "path": "--robot",
         "facts": "--facts",
-        "inertia": "--inertia",
     },
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
@@ -67,7 +87,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         **{
             name: option
             for name, option in _IDENTIFICATION.items()
-            if name not in ("torque_hold", "terms")
+            if name not in ("torque_hold", "terms", *_FACTS)
         },
         **_SCENARIO,
         "simulate": "--simulate",
@@ -83,6 +103,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "resume": "--resume",
         "table": "--table",
         "plot": "--plot",
+        "report": "--report",
     },
     "design": {
         **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
@@ -102,6 +123,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "threads": "--threads",
         "output": "--output",
         "plot": "--plot",
+        "report": "--report",
     },
     "run": {
         "cycles": "--cycles",
@@ -185,7 +207,8 @@ FLAGS = frozenset(
             "--emulate",
             "--dry-run",
         ),
-        *("--selftest", "--causes", "--unknown-friction", "--json", "--watchdog", "--approximate"),
+        *("--selftest", "--causes", "--rollout", "--unknown-friction", "--json", "--watchdog"),
+        "--approximate",
     }
 )
 """Options that may stand without a value."""

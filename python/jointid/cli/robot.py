@@ -9,15 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import (
-    as_given,
-    gear_ratios,
-    how_to_read,
-    joints_wanted,
-    refinements,
-    with_terms,
-)
+from jointid.cli.arguments import refinements, with_terms
 from jointid.cli.outputs import check_folder, check_page
+from jointid.cli.reading import as_given, gear_ratios, how_to_read, joints_wanted
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -32,7 +26,7 @@ _OF_ONE_JOINT = (
 
 def identify_whole_robot(arguments: argparse.Namespace) -> int:
     """Identify all joints of a robot from one recording or several."""
-    from jointid.report.robot_page import save_robot_report
+    from jointid.report.saving import save_report
     from jointid.robot.identifying import identify_robot
 
     _check(arguments)
@@ -49,7 +43,7 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
     draws = arguments.bootstrap
     drawn = found.bootstrap(draws, arguments.seed) if draws is not None else None
     if arguments.report is not None:
-        save_robot_report(found, arguments.report, action=ADVICE.of_action)
+        save_report(found, arguments.report, action=ADVICE.of_action)
     if arguments.save is not None:
         found.save(arguments.save)
     if arguments.json:
@@ -68,7 +62,7 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
 def compare_whole_robot(arguments: argparse.Namespace) -> int:
     """Compare inertias and friction models of a robot by held-out torque."""
     from jointid.joint.model import Model
-    from jointid.report.robot_page import save_robot_report
+    from jointid.report.saving import save_report
     from jointid.robot.comparing import compare_robot_models
 
     _check(arguments)
@@ -83,9 +77,7 @@ def compare_whole_robot(arguments: argparse.Namespace) -> int:
         **{name: given for name, given in asked.items() if given is not None},
     )
     if arguments.report is not None:
-        save_robot_report(
-            found.estimate, arguments.report, action=ADVICE.of_action, comparison=found
-        )
+        save_report(found, arguments.report, action=ADVICE.of_action)
     if arguments.save is not None:
         found.estimate.save(arguments.save)
     print(found.to_json() if arguments.json else found.report())

@@ -13,7 +13,6 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import (
     by_name,
     fixed_values,
-    load_all,
     number_or_text,
     pair,
     refinement_arguments,
@@ -25,8 +24,9 @@ from jointid.cli.arguments import (
     windows,
     with_terms,
 )
-from jointid.cli.outputs import check_folder
+from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.parser import CommandParser
+from jointid.cli.reading import load_all
 from jointid.cli.scenario import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
@@ -106,6 +106,7 @@ def add_sweep(sweep: CommandParser) -> None:
     sweep.add_argument(
         "--plot", type=Path, help="draw the penalty over the first settings: .png, .pdf, .svg"
     )
+    sweep.add_argument("--report", type=Path, help="write the HTML report to this file")
     sweep.add_argument("--json", action="store_true", help="print the summary as JSON")
     sweep.add_argument("--quiet", action="store_true", help="no progress bar")
 
@@ -119,6 +120,7 @@ def sweep(arguments: argparse.Namespace) -> None:
 
     for option in ("output", "table", "plot"):
         check_folder(option, getattr(arguments, option))
+    check_page("report", arguments.report)
     if arguments.table is not None and arguments.table.suffix not in (".csv", ".parquet"):
         raise InputError(
             "a table is written as .csv or .parquet", argument="table", value=arguments.table
@@ -197,19 +199,25 @@ def _continuation(arguments: argparse.Namespace) -> Iterator[None]:
 
 
 def _write(study: Study, arguments: argparse.Namespace) -> None:
-    from jointid.plot.study import sweep as draw
-
     if arguments.table is not None:
         study.save(arguments.table)
     if arguments.plot is not None:
         from matplotlib.figure import Figure
 
+        from jointid.plot.study import sweep as draw
+
         figure = Figure(figsize=(6.4, 4.0), constrained_layout=True)
         y = study.swept[1] if len(study.swept) > 1 else None
         draw(study, y=y, ax=figure.subplots())
         figure.savefig(arguments.plot, dpi=160)
+    if arguments.report is not None:
+        from jointid.report.saving import save_report
+
+        save_report(study, arguments.report)
     summary = study.summary()
     print(json.dumps(summary.asdict(), indent=1, ensure_ascii=False) if arguments.json else summary)
+    if arguments.report is not None and not arguments.json:
+        print(f"\nreport: {arguments.report}")
 
 
 def _workers(count: int | None) -> Executor | nullcontext[None]:

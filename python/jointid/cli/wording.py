@@ -74,7 +74,8 @@ class Wording:
                 "JOINT" if self.joint_file == "the joint file" else behind_option(self.joint_file)
             )
             return words_of_next_motion(action, joint, behind_option(self.saved))
-        words = words_of_action(action, self.command, self.model)
+        named = self.joint_file != "the joint file"
+        words = words_of_action(action, self.command, self.model, file=named)
         return words.replace("the joint file", self.joint_file)
 
     def of_report(self, estimate: Estimate) -> str:

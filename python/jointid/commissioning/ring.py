@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
@@ -117,11 +118,17 @@ class Commissioning:
             else {name: found.value for name, found in self.without_ripple.parameters.items()},
         }
 
-    def report(self) -> str:
-        """Return tables of tracking errors and parameters."""
+    def report(self, action: Callable[[Action], str] = str) -> str:
+        """Return tables of tracking errors and parameters.
+
+        Parameters
+        ----------
+        action : callable
+            Words the advice of a finding. Default: as at a Python prompt.
+        """
         from jointid.commissioning.report import text_report
 
-        return text_report(self)
+        return text_report(self, action)
 
 
 def commission(
@@ -172,7 +179,8 @@ def commission(
         As in `Session.run`; what was recorded until then is in the folder.
     Exception
         Whatever a session or a callable raises: with an attribute `recordings`, a dict of what was recorded
-        until then by the name of the run, e.g. "initial"; the last one may be incomplete.
+        until then by the name of the run, e.g. "initial"; the last one may be incomplete; and an attribute `outcome`,
+        the `Commissioning` until then, for its report; None if nothing was recorded.
     """
     if cycles < 0:
         raise InputError("at least 0 is expected", argument="cycles", value=cycles)
@@ -190,6 +198,8 @@ def commission(
     estimates: list[Estimate] = []
     true_run: BenchRun | None = None
     recordings: dict[str, Recording] = {}
+    laws: dict[str, Controller] = {}
+    truth = bench.emulation.truth if emulate and bench.emulation is not None else {}
     with (
         _no_empty_folder(folder if fresh else None),
         open_drive(bench, emulate=emulate, seed=seed) as drive,
@@ -197,6 +207,7 @@ def commission(
 
         def run(name: str, law: Controller, found: Joint | None = None) -> BenchRun:
             report(f"run: {name}")
+            laws[name] = law
             place = None if folder is None else folder / f"{name.replace(' ', '_')}.csv"
             limits = bench.limits
             if found is not None and limits.torque_envelope is None:
@@ -240,13 +251,21 @@ def commission(
                 true_run = run("true parameters", believing(controller, true_joint(bench)))
         except (Exception, KeyboardInterrupt) as error:
             _keep(error, recordings)
+            ended = [
+                _assessed(name, recording, laws[name])
+                for name, recording in recordings.items()
+                if name not in {each.name for each in runs} and recording.reference is not None
+            ]
+            until_then = Commissioning(
+                runs=(*runs, *ended), estimates=tuple(estimates), truth=truth
+            )
+            vars(error)["outcome"] = until_then if until_then.runs else None
             raise
     plain = None
     usable = bool(estimates) and _blocking(estimates[-1]) is None
     if usable and bench.joint.model.resolved.ripple:
         before = [each.recording for each in runs[: len(estimates)]]
         plain = identify(before, bench.joint, model=Model(ripple=()), search=search)
-    truth = bench.emulation.truth if emulate and bench.emulation is not None else {}
     return Commissioning(
         runs=tuple(runs),
         estimates=tuple(estimates),

@@ -19,7 +19,7 @@ SCHEMA = 1
 _PLAIN = (
     *("model", "parameters", "score", "stderr", "fold_scores", "penalty", "eligible", "reason"),
 )
-_HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", "remark")
+HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", "remark")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,6 +74,12 @@ class Comparison:
     settings : mapping
         Folds, what each held out ("held_out"), windows, method, residual, and the models that were not
         compared with the reason for each ("left_out").
+
+    Examples
+    --------
+    >>> comparison = jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
+    >>> comparison.winner
+    'stribeck'
     """
 
     rows: tuple[ComparedModel, ...]
@@ -88,8 +94,8 @@ class Comparison:
 
     def report(self) -> str:
         """Return the comparison as text: a line for each model, then the winner and the reason."""
-        table = [_HEAD, *self._cells()]
-        widths = [max(len(row[column]) for row in table) for column in range(len(_HEAD))]
+        table = [HEAD, *self.cells()]
+        widths = [max(len(row[column]) for row in table) for column in range(len(HEAD))]
         lines = [f"jointid comparison — {self._title()}", ""]
         for index, row in enumerate(table):
             cells = [
@@ -99,7 +105,7 @@ class Comparison:
             lines.append("  ".join(cells).rstrip())
             if index == 0:
                 lines.append("  ".join("-" * width for width in widths))
-        lines += ["", self._setting()]
+        lines += ["", self.setting()]
         lines += [
             f"not compared: {model}: {reason}"
             for model, reason in self.settings["left_out"].items()
@@ -107,16 +113,16 @@ class Comparison:
         return printable("\n".join([*lines, f"winner: {self.winner}", self.reason]))
 
     def _repr_html_(self) -> str:
-        head = "".join(f"<th>{escape(cell)}</th>" for cell in _HEAD)
+        head = "".join(f"<th>{escape(cell)}</th>" for cell in HEAD)
         body = ""
-        for row, cells in zip(self.rows, self._cells(), strict=True):
+        for row, cells in zip(self.rows, self.cells(), strict=True):
             tag = "th" if row.model == self.winner else "td"
             body += f"<tr><{tag}>{escape(cells[0])}</{tag}>"
             body += "".join(f"<td>{escape(cell)}</td>" for cell in cells[1:]) + "</tr>"
         table = (
             f"<table class='jointid'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         )
-        text = f"<p>{escape(self._setting())}</p><p>{escape(self.reason)}</p>"
+        text = f"<p>{escape(self.setting())}</p><p>{escape(self.reason)}</p>"
         return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{text}</div>"
 
     def to_json(self) -> str:
@@ -135,7 +141,8 @@ class Comparison:
     def _title(self) -> str:
         return self.estimate.joint.name or "joint"
 
-    def _setting(self) -> str:
+    def setting(self) -> str:
+        """Return what was held out, and what is compared, in a sentence."""
         settings = self.settings
         unit = "block of the recording" if settings["held_out"] == "block" else "recording"
         if settings["held_out"] == "recordings":
@@ -145,7 +152,8 @@ class Comparison:
             "relative to the measured signal"
         )
 
-    def _cells(self) -> list[tuple[str, ...]]:
+    def cells(self) -> list[tuple[str, ...]]:
+        """Return the table of the models, a row each, in the order of `HEAD`."""
         return [
             (
                 row.model,

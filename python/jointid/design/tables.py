@@ -35,10 +35,10 @@ def rows(design: Design) -> list[list[str]]:
         row = [each.name, f"{each.value:.6g}"]
         if "error before" in titles:
             row.append("–" if each.before is None else _short(each.before))
-        row += [_short(each.stderr), _share(each.relative), _share(each.worst)]
+        row += [_short(each.stderr), share_text(each.relative), share_text(each.worst)]
         if design.reference:
             known = design.reference.get(each.name)
-            row.append("–" if known is None else _share(known))
+            row.append("–" if known is None else share_text(known))
         found.append([*row, each.unit])
     return found
 
@@ -100,24 +100,28 @@ def _status(design: Design) -> list[str]:
 
 def _remarks(design: Design) -> list[str]:
     worst = design.parameters[design.weakest].worst if design.weakest in design.parameters else None
-    weakest = "" if worst is None else f"weakest: {design.weakest}, {_share(worst)} at worst"
+    weakest = "" if worst is None else f"weakest: {design.weakest}, {share_text(worst)} at worst"
     limited = f"; {design.limited_by}" if design.limited_by else ""
-    joints = f"{design.joints} joint{'' if design.joints == 1 else 's'}"
-    judged = (
-        f"judged with {joints} drawn from what is believed, {design.evaluations} motions tried, "
-        f"criterion {design.criterion}, seed {design.seed}"
-    )
     return [
         *([f"{weakest}{limited}"] if weakest else []),
-        *_improved(design),
+        *improved(design),
         *(f"reaches {line}" for line in limits_held(design)),
         assumed(design),
-        judged,
+        judged_with(design),
     ]
 
 
-def _improved(design: Design) -> list[str]:
-    """What was weakest before, and by how much this motion makes it better."""
+def judged_with(design: Design) -> str:
+    """Return how many joints and motions were tried, and what counted."""
+    joints = f"{design.joints} joint{'' if design.joints == 1 else 's'}"
+    return (
+        f"judged with {joints} drawn from what is believed, {design.evaluations} motions tried, "
+        f"criterion {design.criterion}, seed {design.seed}"
+    )
+
+
+def improved(design: Design) -> list[str]:
+    """Return what was weakest before, and by how much this motion makes it better."""
     shares = {
         name: each.before * each.relative / each.stderr
         for name, each in design.parameters.items()
@@ -129,10 +133,11 @@ def _improved(design: Design) -> list[str]:
     if math.isinf(shares[name]):
         return [f"weakest before: {name}, not determined"]
     smaller = shares[name] / design.parameters[name].relative
-    return [f"weakest before: {name}, {_share(shares[name])}; {smaller:.2g} times smaller now"]
+    return [f"weakest before: {name}, {share_text(shares[name])}; {smaller:.2g} times smaller now"]
 
 
-def _share(share: float) -> str:
+def share_text(share: float) -> str:
+    """Return a relative error as text."""
     if not math.isfinite(share):
         return "not determined"
     percent = 100.0 * share

@@ -2,19 +2,40 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, table
+from jointid.estimate.derived import DerivedValue
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
-from jointid.estimate.tables import HEAD, quality, rows, shown_name
-from jointid.estimate.wording import two_digits
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.tables import HEAD, quality, recorded, rows, shown_name
+from jointid.estimate.wording import rounded, two_digits
 
 
 def html_table(estimate: Estimate) -> Html:
-    """The parameter table."""
-    return table([list(row) for row in rows(estimate)], head=list(HEAD))
+    """The parameter table; the digits of a value are those of its standard error."""
+    found: list[ParameterEstimate | DerivedValue] = [
+        *estimate.parameters.values(),
+        *estimate.derived.values(),
+    ]
+    body: list[list[Html | str]] = [
+        [row[0], _rounded(p.value, p.stderr) or row[1], *row[2:]]
+        for p, row in zip(found, rows(estimate), strict=True)
+    ]
+    return table(body, head=list(HEAD))
+
+
+def _rounded(value: float, stderr: float | None) -> str:
+    """A value with the digits of its error; nothing without an error."""
+    return rounded(value, stderr) if stderr is not None and 0.0 < stderr < math.inf else ""
+
+
+def html_windows(estimate: Estimate) -> Html:
+    """What the estimate was made from."""
+    return table([list(pair) for pair in recorded(estimate)], class_="facts")
 
 
 def html_quality(estimate: Estimate) -> Html:

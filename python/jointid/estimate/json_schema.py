@@ -120,6 +120,8 @@ _FIELDS: dict[str, Kind] = {
     "seconds": _NOT_NEGATIVE,
 }
 _OLD_FIELDS: dict[str, Kind] = {**_FIELDS, "parameters": TableOf(Record(_OLD_PARAMETER))}
+VERDICT = Record({"level": Text(), "reasons": ListOf(_SENTENCES), "uses": TableOf(Plain())})
+"""Not used again: it is judged again."""
 ESTIMATE: dict[int, Kind] = {
     1: Record({**_OLD_FIELDS, "warnings": ListOf(_WARNING)}),
     # What is derived is computed again.
@@ -128,10 +130,7 @@ ESTIMATE: dict[int, Kind] = {
         {**_FIELDS, "findings": ListOf(FINDING)},
         {
             "derived": Plain(),
-            # Judged again.
-            "verdict": Record(
-                {"level": Text(), "reasons": ListOf(_SENTENCES), "uses": TableOf(Plain())}
-            ),
+            "verdict": VERDICT,
             "information": OrNull(ListOf(ListOf(_VALUE))),
             "selection": OrNull(SELECTION),
             "selftest": Plain(),

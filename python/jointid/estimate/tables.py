@@ -10,7 +10,10 @@ from jointid.estimate.derived import DerivedValue
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.window_views import fitted_signal
 from jointid.estimate.wording import number, percent, two_digits
+from jointid.joint.units import velocity_label
+from jointid.recording.order_statistics import distinct
 
 HEAD = ("parameter", "value", "± std. error", "± systematic", "95 % interval", "unit", "remark")
 Row = tuple[str, str, str, str, str, str, str]
@@ -88,6 +91,29 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
         ("correlation", strongest_correlation(estimate)),
         ("search", f"{estimate.message}; {estimate.status} in {estimate.seconds:.2f} s"),
     ]
+
+
+def recorded(estimate: Estimate) -> list[tuple[str, str]]:
+    """What the estimate was made from, as label and text: recordings, and what the windows cover."""
+    windows, r = estimate.windows, estimate.residuals
+    kind = estimate.settings["kind"]
+    runs = estimate.settings["recordings"]
+    named = "; ".join(f"{run['name'] or 'recording'} ({run['fingerprint']})" for run in runs)
+    signal, unit = fitted_signal(estimate)
+    lines = [("recordings" if len(runs) > 1 else "recording", named), ("samples", str(r.samples))]
+    if windows.start.size:
+        spans = [
+            float(np.ptp([windows.start[mine].min(), windows.stop[mine].max()]))
+            for mine in (windows.recording == run for run in distinct(windows.recording))
+        ]
+        mean = windows.measured / windows.duration
+        speed = velocity_label(kind).partition("[")[2].rstrip("]")
+        lines += [
+            ("time", f"{sum(spans):.4g} s from the first to the last window"),
+            ("velocity", f"{windows.velocity.min():.3g} to {windows.velocity.max():.3g} {speed}"),
+            (signal, f"{mean.min():.4g} to {mean.max():.4g} {unit}, means over windows"),
+        ]
+    return [*lines, ("standing still", f"{percent(r.standing)} of the samples")]
 
 
 def _refinements(estimate: Estimate) -> list[tuple[str, str]]:

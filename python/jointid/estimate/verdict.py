@@ -18,10 +18,25 @@ if TYPE_CHECKING:
 
 Level = Literal["usable", "usable with care", "not usable"]
 LEVELS: tuple[Level, ...] = ("usable", "usable with care", "not usable")
-_EXPLAINED = 0.9  # of the variance of windows, at least
+EXPLAINED = 0.9  # of the variance of windows, at least
 _MATTERS = 0.05  # of a value: a smaller tolerance does not matter
-# What a bias that stays the same does not spoil: a change between two recordings of the same motion.
-_CHANCE = frozenset(("undetermined", "few_windows", "stopped", "at_bound", "model_too_rich"))
+# What spoils a change between two recordings of the same motion, other than a bias that stays the same: chance, and
+# what is not the same the next time.
+_CHANCE = frozenset(
+    ("standing", "undetermined", "few_windows", "stopped", "at_bound", "model_too_rich")
+)
+_CHANGING = frozenset(
+    (
+        "drift",
+        "disturbance",
+        "other_signal",
+        "spikes",
+        "jumps",
+        "sensor_clipped",
+        "torque_saturated",
+    )
+)
+_SEEN = 0.036  # standard error, of a value: with it a change of a tenth is seen, at 95 %
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,8 +73,8 @@ class Verdict:
         Why not without care, in a sentence each, the most severe first.
     uses : mapping of str to Use
         By purpose: "compensation" (of friction in a controller: its friction and sensor parameters), "simulation"
-        (all parameters), "monitoring" (changes between recordings of the same motion, which a bias that stays the
-        same does not spoil).
+        (all parameters), "monitoring" (changes of a tenth between recordings of the same motion, which a bias that
+        stays the same does not spoil).
     """
 
     level: Level
@@ -95,8 +110,20 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Objection:
-    """One thing that speaks against a use."""
+class Objection:
+    """One reason against a use.
+
+    Attributes
+    ----------
+    code : str
+        Of the finding.
+    reason : str
+        In a sentence.
+    blocking : bool
+        Whether the values cannot be used.
+    parameters : tuple of str
+        Those concerned; empty where all are.
+    """
 
     code: str
     reason: str
@@ -110,10 +137,10 @@ def judged(
     """Judge an estimate by its findings.
 
     Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
-    variance explained (of held-out torque where the model was chosen by it, unless the windows are explained worse
-    than by their mean and more than 10 % of their squares are left); for simulation also an undetermined inertia whose
-    95 % interval reaches zero. Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is
-    larger than everything else together. Usable: else.
+    variance explained by the model and a cause that a finding names (of held-out torque where the model was chosen by
+    it, unless the windows are explained worse than by their mean and more than 10 % of their squares are left); for
+    simulation also an undetermined inertia whose 95 % interval reaches zero. Usable with care: a warning, or a
+    tolerance of the given facts of more than 5 % that is larger than everything else together. Usable: else.
 
     Parameters
     ----------
@@ -134,8 +161,8 @@ def judged(
 
     Examples
     --------
-    >>> str(jid.identify(recording, joint).verdict)  # doctest: +SKIP
-    'usable with care (coulomb)'
+    >>> str(jid.identify(recording, joint, model="stribeck").verdict)
+    'usable'
     """
     asked = (parameters,) if isinstance(parameters, str) else tuple(parameters)
     for name in asked:  # nothing is ever said against a name that is not there
@@ -150,75 +177,43 @@ def judged(
     hidden = [*_hidden_inertia(estimate, asked)]
     friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
     uses = {
-        "compensation": _use(objections, asked, friction.__contains__),
-        "simulation": _use([*objections, *hidden], asked, lambda _: True),
-        "monitoring": _use(
-            [each for each in objections if each.blocking or each.code in _CHANCE],
-            asked,
-            lambda _: True,
-        ),
+        "compensation": use_by(objections, asked, friction.__contains__),
+        "simulation": use_by([*objections, *hidden], asked, lambda _: True),
+        "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
+    return concluded(uses, [*objections, *hidden])
+
+
+def to_changes(
+    objections: Iterable[Objection], parameters: Mapping[str, ParameterEstimate]
+) -> Iterable[Objection]:
+    """Yield what spoils a change of a tenth between two recordings of the same motion."""
+    for each in objections:
+        if each.code == "undetermined" and not each.blocking:
+            vague = tuple(name for name in each.parameters if not _is_sharp(parameters[name]))
+            if vague or not each.parameters:
+                yield Objection(
+                    code=each.code, reason=each.reason, blocking=False, parameters=vague
+                )
+        elif each.blocking or each.code in _CHANCE | _CHANGING:
+            yield each
+
+
+def _is_sharp(p: ParameterEstimate) -> bool:
+    return p.stderr is not None and p.stderr <= _SEEN * abs(p.value)
+
+
+def concluded(uses: Mapping[str, Use], objections: Iterable[Objection]) -> Verdict:
+    """Return the verdict of these uses: the worst level, and the reasons, blocking ones first."""
     level = max((use.level for use in uses.values()), key=LEVELS.index)
-    ordered = sorted([*objections, *hidden], key=lambda each: not each.blocking)
+    ordered = sorted(objections, key=lambda each: not each.blocking)
     return Verdict(level=level, reasons=tuple(each.reason for each in ordered), uses=uses)
 
 
-def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[_Objection]:
-    for found in estimate.findings:
-        if found.severity != "info":
-            yield _Objection(
-                code=found.code,
-                reason=found.cause,
-                blocking=found.severity == "blocking",
-                parameters=_free(estimate, found),
-            )
-    explained, of_what = _explained(estimate)
-    if not explained >= _EXPLAINED:
-        yield _Objection(
-            code="explained",
-            reason=f"the model explains {100.0 * explained:.0f} % of the variance of {of_what}",
-            blocking=True,
-            parameters=(),
-        )
-    if self_test is not None and self_test.lost:
-        yield _Objection(
-            code="self_test",
-            reason=f"known values of {', '.join(self_test.lost)} in the recorded motion are not found again",
-            blocking=True,
-            parameters=self_test.lost,
-        )
-    given = tuple(p.name for p in estimate.parameters.values() if _rests_on_given(p))
-    if given:
-        names = ", ".join(given)
-        reason = f"what is stated of the joint is more uncertain than all else that {names} rest on"
-        yield _Objection(code="given", reason=reason, blocking=False, parameters=given)
-
-
-def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[_Objection]:
-    """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
-    doubted = {
-        name
-        for found in estimate.findings
-        if found.code == "undetermined"
-        for name in _free(estimate, found)
-    }
-    for name in asked:
-        p = estimate.parameters.get(name)
-        if p is None or name not in doubted or name.partition("[")[0] != "inertia":
-            continue
-        if p.interval is not None and p.interval[0] <= 0.0:
-            yield _Objection(
-                code="undetermined",
-                reason=f"a simulation needs {name}, and its 95 % interval reaches zero",
-                blocking=True,
-                parameters=(name,),
-            )
-
-
-def _use(
-    objections: Iterable[_Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
+def use_by(
+    objections: Iterable[Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
 ) -> Use:
-    """Judge by what concerns the parameters that a purpose needs; an objection without parameters concerns all."""
+    """Return the level by what concerns the parameters that a purpose needs; without parameters it concerns all."""
     level: Level = "usable"
     names: dict[str, None] = {}
     codes: dict[str, None] = {}
@@ -233,8 +228,77 @@ def _use(
     return Use(level=level, parameters=tuple(names), codes=tuple(codes))
 
 
+def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Objection]:
+    for found in estimate.findings:
+        if found.severity != "info":
+            yield Objection(
+                code=found.code,
+                reason=found.cause,
+                blocking=found.severity == "blocking",
+                parameters=_free(estimate, found),
+            )
+    explained, of_what = _explained(estimate)
+    explained = 1.0 - (1.0 - explained) * (1.0 - _named_share(estimate))
+    if not explained >= EXPLAINED:
+        yield Objection(
+            code="explained",
+            reason=explained_text(explained, of_what),
+            blocking=True,
+            parameters=(),
+        )
+    if self_test is not None and self_test.lost:
+        yield Objection(
+            code="self_test",
+            reason=f"known values of {', '.join(self_test.lost)} in the recorded motion are not found again",
+            blocking=True,
+            parameters=self_test.lost,
+        )
+    given = tuple(p.name for p in estimate.parameters.values() if _rests_on_given(p))
+    if given:
+        names = ", ".join(given)
+        reason = f"what is stated of the joint is more uncertain than all else that {names} rest on"
+        yield Objection(code="given", reason=reason, blocking=False, parameters=given)
+
+
+def explained_text(explained: float, of_what: str) -> str:
+    """Return how much of a variance the model explains."""
+    share = f"{100.0 * explained:.0f} %" if explained > 0.005 else "nothing"
+    return f"the model explains {share} of the variance of {of_what}"
+
+
+def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:
+    """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
+    doubted = {
+        name
+        for found in estimate.findings
+        if found.code == "undetermined"
+        for name in _free(estimate, found)
+    }
+    for name in asked:
+        p = estimate.parameters.get(name)
+        if p is None or name not in doubted or name.partition("[")[0] != "inertia":
+            continue
+        if p.interval is not None and p.interval[0] <= 0.0:
+            yield Objection(
+                code="undetermined",
+                reason=f"a simulation needs {name}, and its 95 % interval reaches zero",
+                blocking=True,
+                parameters=(name,),
+            )
+
+
 def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:
     return tuple(name for name in found.parameters if name in estimate.parameters)
+
+
+def _named_share(estimate: Estimate) -> float:
+    """How much of the misfit a finding has a cause for: the finding says what that moves, so it needs care alone."""
+    shares = [
+        found.evidence["share"].value
+        for found in estimate.findings
+        if found.severity == "warning" and found.parameters and "share" in found.evidence
+    ]
+    return min(1.0, max(0.0, *shares)) if shares else 0.0
 
 
 def _explained(estimate: Estimate) -> tuple[float, str]:
@@ -244,7 +308,7 @@ def _explained(estimate: Estimate) -> tuple[float, str]:
     them is late. A reading that hardly varies may be explained worse than by its mean, but little of it is left.
     """
     left = estimate.residuals
-    apart = left.r_squared < 0.0 and left.relative**2 > 1.0 - _EXPLAINED
+    apart = left.r_squared < 0.0 and left.relative**2 > 1.0 - EXPLAINED
     if estimate.selection is not None and not apart:
         chosen = estimate.selection[estimate.selection.model]
         if math.isfinite(chosen.score):

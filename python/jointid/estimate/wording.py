@@ -2,6 +2,8 @@
 
 import numpy as np
 
+_FAR_BELOW = 1e-3  # errors: such a value is nothing
+
 
 def percent(share: float) -> str:
     """A share in per cent: two digits, never an exponent."""
@@ -19,3 +21,14 @@ def two_digits(value: float) -> str:
     if not np.isfinite(value) or value < 1e-4:
         return f"{value:.2g}"
     return str(np.format_float_positional(float(f"{value:.1e}"), trim="-"))
+
+
+def rounded(value: float, stderr: float) -> str:
+    """A value with the digits that its standard error, above 0 and finite, has: 2030 with one of 170, 7.74 with .21."""
+    error = two_digits(stderr)
+    if "e" in error:
+        return f"{0.0 if abs(value) < _FAR_BELOW * stderr else value:.3g}"
+    behind = len(error.partition(".")[2])
+    if not behind:  # an error of 1700 leaves hundreds
+        behind = min(0, 2 - len(error))
+    return f"{round(value, behind):.{max(behind, 0)}f}"

@@ -23,17 +23,16 @@ from jointid.joint.checks import (
     set_numbers,
     suggestion,
 )
+from jointid.joint.consistency import check_consistency
 from jointid.joint.link import GravityCoefficients, Limits, Link
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter, merge, parameter_table
 from jointid.joint.tolerances import Tolerances
+from jointid.joint.voltage_drive import VoltageDrive
 from jointid.recording.signals import Kind, TorqueHold
 
 if TYPE_CHECKING:
     from jointid.recording.recording import Recording
-
-# Two values of the same inertia may differ by this share: printed values are rounded.
-_INERTIA_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -76,11 +75,20 @@ class Joint:
     tolerances : Tolerances or mapping
         How well the given facts are known, e.g. ``{"torque_constant": "5 %"}``; `identify` shows what they
         mean for each parameter. Default: none stated.
+    voltage : VoltageDrive, optional
+        A servo without a torque signal: its motor is on a voltage that a duty divides. Default: the drive's input
+        is a torque.
 
     Raises
     ------
     InputError
         A field that cannot be used, or fields that contradict each other.
+
+    Examples
+    --------
+    >>> elbow = jid.Joint(name="elbow", gear_ratio=101.0, rotor_inertia=2.472e-4, sensor=True, model="stribeck")
+    >>> round(elbow.reflected_inertia, 4)
+    2.5217
     """
 
     name: str = ""
@@ -97,6 +105,7 @@ class Joint:
     parameters: Mapping[str, Parameter] = field(default_factory=dict, hash=False)
     limits: Limits = field(default_factory=Limits)
     tolerances: Tolerances = field(default_factory=Tolerances)
+    voltage: VoltageDrive | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -134,81 +143,22 @@ class Joint:
             raise InputError(
                 "Limits are expected", argument="limits", value=self.limits, place=owner
             )
+        if not isinstance(self.voltage, VoltageDrive | None):
+            raise InputError(
+                "a VoltageDrive is expected", argument="voltage", value=self.voltage, place=owner
+            )
         try:
             object.__setattr__(self, "tolerances", Tolerances.of(self.tolerances))
         except InputError as error:
             raise error.at(owner) from None
         table = MappingProxyType(parameter_table(self.parameters))
         object.__setattr__(self, "parameters", table)
-        self._check_inertia(owner)
-        self._check_gravity(owner)
-        self._check_tolerances(owner)
+        check_consistency(self, owner)
 
     @property
     def owner(self) -> str:
         """The joint as messages name it."""
         return f"joint '{self.name}'" if self.name else "joint"
-
-    def _check_inertia(self, owner: str) -> None:
-        if self.rotor_inertia is None:
-            return
-        reflected = self.gear_ratio * self.gear_ratio * self.rotor_inertia
-        product = f"gear_ratio² · rotor_inertia is {reflected:.6g}"
-        if not math.isfinite(reflected) or reflected == 0.0:
-            raise InputError(
-                f"{product} kg·m², which cannot be used",
-                argument="rotor_inertia",
-                value=self.rotor_inertia,
-                place=owner,
-            )
-        tolerance = _INERTIA_TOLERANCE * reflected
-        if self.inertia is not None and abs(self.inertia - reflected) > tolerance:
-            raise InputError(
-                f"but {product}",
-                argument="inertia",
-                value=self.inertia,
-                place=owner,
-                remedy="give only one of the two",
-            )
-
-    def _check_gravity(self, owner: str) -> None:
-        gravity = self.model.resolved.gravity
-        if gravity != "none" and self.kind == "prismatic":
-            raise InputError(
-                "gravity on a prismatic joint is the same at every position",
-                argument="gravity",
-                value=gravity,
-                place=owner,
-                remedy="set gravity to none, and torque_offset to true",
-            )
-        if gravity == "known" and self.link is None:
-            raise InputError(
-                "there is no link",
-                argument="gravity",
-                value=gravity,
-                place=owner,
-                remedy="give the link's mass and centre_of_mass",
-            )
-
-    def _check_tolerances(self, owner: str) -> None:
-        facts = self.facts
-        for name, stated in self.tolerances.given.items():
-            if name in ("mass", "centre_of_mass", "link_inertia") and self.link is None:
-                raise InputError(
-                    "there is no link",
-                    argument=name,
-                    value=stated,
-                    place=f"{owner}: tolerances",
-                    remedy="give the link's mass and centre_of_mass",
-                )
-            if not isinstance(stated, str) and facts[name] is None:
-                raise InputError(
-                    "the fact itself is not given",
-                    argument=name,
-                    value=stated,
-                    place=f"{owner}: tolerances",
-                    remedy='give the fact, or a share such as "5 %"',
-                )
 
     @property
     def facts(self) -> dict[str, float | None]:
@@ -368,7 +318,9 @@ class Joint:
         if recording.current is None:
             raise InputError(
                 "the recording has no signal torque, motor_torque or current",
-                remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
+                remedy="call identify_servo: the joint's input is a voltage"
+                if self.voltage is not None
+                else Action("call", {"columns": {"torque": ...}}, function="load"),
             )
         if self.torque_constant is None:
             raise InputError(

@@ -43,7 +43,7 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
             raise InputError(
                 f"the file holds the estimates of {len(joints)} joints ({', '.join(joints)}), and one is expected",
                 place=str(path),
-                remedy=Action("call", {"joint": first}, "or another one", "load"),
+                remedy=Action("call", {"joint": first}, "or another joint", "load"),
             )
         joint = next(iter(joints))
     try:

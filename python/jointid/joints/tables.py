@@ -11,11 +11,10 @@ from jointid.base.errors import InputError
 from jointid.base.text_table import aligned
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.estimate.wording import two_digits
+from jointid.estimate.wording import rounded, two_digits
 from jointid.joints.result import JointEstimates, JointResult
 
 _NOTHING = 1e-9  # of a free value without an error: what a bound at zero leaves
-_FAR_BELOW = 1e-3  # errors: such a value is nothing
 _NO_COUPLING = "no joint's residual is explained by the others beyond chance"
 
 
@@ -70,12 +69,7 @@ def value_with_error(parameter: ParameterEstimate | None) -> str:
         fixed = "" if parameter.vary else " (fixed)"
         tiny = parameter.vary and abs(parameter.value) <= _NOTHING
         return f"{0.0 if tiny else parameter.value:.4g}{fixed}{bound}"
-    error = two_digits(parameter.stderr)
-    if "e" in error:
-        value = 0.0 if abs(parameter.value) < _FAR_BELOW * parameter.stderr else parameter.value
-        return f"{value:.3g} ± {error}"
-    digits = len(error.partition(".")[2])
-    return f"{parameter.value:.{digits}f} ± {error}"
+    return f"{rounded(parameter.value, parameter.stderr)} ± {two_digits(parameter.stderr)}"
 
 
 def notes(result: JointEstimates) -> list[str]:

@@ -155,18 +155,16 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
         return joint.output_torque(recording)
     if recording.torque is not None:
         return recording.torque
+    facts = {"torque_constant": ..., "gear_ratio": ...}
     for signal, needs in (
-        ("motor_torque", "gear_ratio"),
-        ("current", "torque_constant and gear_ratio"),
+        ("motor_torque", Action("call", {"joint": ...}, "with gear_ratio, which convert it")),
+        ("current", Action("call", facts, "which convert it", "Joint")),
     ):
         if getattr(recording, signal) is not None:
             raise InputError(
                 f"the recording has {signal}, on the motor side, and no torque at the output",
                 argument="torque",
-                remedy=(
-                    *_conversions(recording, signal),
-                    Action("call", {"joint": ...}, text=f"with {needs}, which convert it"),
-                ),
+                remedy=(*_conversions(recording, signal), needs),
             )
     raise InputError(
         "the recording has no signal torque",

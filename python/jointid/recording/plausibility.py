@@ -1,5 +1,6 @@
 """What no joint's recording holds: absurdly large values."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -35,3 +36,45 @@ def too_large(signals: Mapping[str, FloatArray]) -> tuple[str, int] | None:
         if len(values) and max(float(values.max()), -float(values.min())) > LARGEST:
             return signal, int(np.argmax(np.abs(values)))
     return None
+
+
+# Largest usual amount in SI of a joint with a gear, and what a larger one probably is.
+_USUAL_AMOUNTS = {
+    ("position", "revolute"): (4.0 * math.pi, "degrees or counts, or the motor’s side"),
+    ("velocity", "revolute"): (20.0, "degrees a second or rpm, or the motor’s side"),
+    ("torque", "revolute"): (5e3, "mN·m or a raw reading"),
+    ("current", "revolute"): (200.0, "mA"),
+    ("position", "prismatic"): (10.0, "millimetres"),
+    ("velocity", "prismatic"): (10.0, "millimetres a second"),
+    ("torque", "prismatic"): (1e5, "mN or a raw reading"),
+    ("current", "prismatic"): (200.0, "mA"),
+}
+
+
+def range_remark(signal: str, low: float, high: float, kind: str = "revolute") -> str:
+    """Return what is odd about a signal's range; empty where nothing is.
+
+    Parameters
+    ----------
+    signal : str
+    low, high : float
+        Smallest and largest value, in SI.
+    kind : {"revolute", "prismatic"}
+
+    Examples
+    --------
+    >>> range_remark("position", -59.9, 59.9)
+    'up to 9.5 turns: degrees or counts, or the motor’s side?'
+    >>> range_remark("position", -1.0, 1.0)
+    ''
+    """
+    most = max(abs(low), abs(high))
+    if signal != "time" and low == high:
+        return "it never changes"
+    usual, instead = _USUAL_AMOUNTS.get((signal, kind), (math.inf, ""))
+    if most <= usual:
+        return ""
+    turns = signal == "position" and kind == "revolute"
+    amount = most / (2.0 * math.pi) if turns else most
+    shown = f"{amount:.2g}" if amount < 100.0 else f"{amount:,.0f}"
+    return f"up to {shown}{' turns' if turns else ''}: {instead}?"

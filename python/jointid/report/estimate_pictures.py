@@ -22,18 +22,20 @@ _SPEEDS = 150  # of the curve in each direction: at most 5 units of the picture 
 
 def picture_sections(estimate: Estimate) -> list[Html]:
     """The pictures with their headings, which findings link to."""
-    parts = [
+    return [
         element("h2", "Friction map", id="friction-map"),
         friction_picture(estimate),
         element("h2", "Windows", id="windows"),
         windows_picture(estimate),
+        _residual_picture(estimate),
     ]
-    if estimate.convergence is not None:
-        parts += [
-            element("h2", "Convergence", id="convergence"),
-            _convergence_picture(estimate),
-        ]
-    return parts
+
+
+def convergence_section(estimate: Estimate) -> list[Html]:
+    """The picture of the search with its heading; nothing where the search has none."""
+    if estimate.convergence is None:
+        return []
+    return [element("h2", "Convergence", id="convergence"), _convergence_picture(estimate)]
 
 
 def friction_picture(estimate: Estimate) -> Html:
@@ -106,6 +108,28 @@ def windows_picture(estimate: Estimate) -> Html:
     )
 
 
+def _residual_picture(estimate: Estimate) -> Html:
+    """What is left over velocity: a form of friction that the model lacks shows there."""
+    windows = estimate.windows
+    whole = whole_windows(windows)
+    panel = Panel(
+        across=velocity_label(estimate.settings["kind"]),
+        up=f"residual [{fitted_signal(estimate)[1]}]",
+        height=110,
+        marks=(
+            Points(
+                look="second",
+                across=windows.velocity[whole],
+                up=(windows.residual / windows.duration)[whole],
+            ),
+            Level(look="measured", up=0.0),
+        ),
+    )
+    return captioned(
+        "The residual over velocity: where it follows a curve, friction has another form.", panel
+    )
+
+
 def _convergence_picture(estimate: Estimate) -> Html:
     history = estimate.convergence
     assert history is not None
@@ -119,7 +143,9 @@ def _convergence_picture(estimate: Estimate) -> Html:
         ),
     )
     unit = fitted_signal(estimate)[1]
-    panel = Panel(across="generation", up=f"penalty [({unit}·s)²]", logarithmic=True, marks=marks)
+    panel = Panel(
+        across="generation", up=f"penalty [({unit}·s)²]", logarithmic=True, height=130, marks=marks
+    )
     return captioned(
         "The genetic search, generation by generation; dashed: the penalty after the local polish.",
         panel,

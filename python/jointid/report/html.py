@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_path
-from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.html_tables import (
@@ -16,13 +13,12 @@ from jointid.estimate.html_tables import (
     html_quality,
     html_shifts,
     html_table,
+    html_windows,
 )
-from jointid.estimate.tables import shown_name
 from jointid.identification.warnings.registry import finding_types
-from jointid.report.estimate_pictures import picture_sections
+from jointid.report.answering import verdict_lines
+from jointid.report.estimate_pictures import convergence_section, picture_sections
 from jointid.report.style import STYLE
-
-_REASONS = 3  # those that matter most; the findings have all
 
 
 def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
@@ -39,34 +35,10 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
         title,
         STYLE,
         element("h1", title),
-        *verdict_lines(estimate),
+        *verdict_lines(estimate.verdict, estimate.findings, shown_by(estimate), action),
         *sections(estimate, action),
         footer(estimate),
     )
-
-
-def verdict_lines(estimate: Estimate) -> list[Html]:
-    """Whether the values may be used, for what, and what speaks against it."""
-    verdict = estimate.verdict
-    level = verdict.level.replace(" ", "-")
-    words = [
-        element("li", element("b", f"{purpose}: {use.level}"), *_named(use.parameters))
-        for purpose, use in verdict.uses.items()
-    ]
-    lines = [
-        element("p", element("b", f"{verdict.level.capitalize()}."), class_=f"verdict {level}"),
-        element("ul", *words, class_="uses"),
-    ]
-    if verdict.reasons:
-        shown = [element("li", reason) for reason in verdict.reasons[:_REASONS]]
-        more = len(verdict.reasons) - len(shown)
-        shown += [element("li", f"and {more} more, below")] if more else []
-        lines += [element("p", "Because:"), element("ul", *shown)]
-    return lines
-
-
-def _named(parameters: tuple[str, ...]) -> list[Html | str]:
-    return [f": {', '.join(map(shown_name, parameters))}"] if parameters else []
 
 
 def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[Html]:
@@ -74,8 +46,10 @@ def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[
     return [
         element("h2", "Parameters"),
         html_table(estimate),
-        element("h2", "Warnings"),
+        element("h2", "Findings", id="findings"),
         html_findings(estimate, shown_by(estimate), action),
+        element("h2", "Recording", id="recording"),
+        html_windows(estimate),
         *picture_sections(estimate),
         element("h2", "Uncertainty"),
         element(
@@ -91,7 +65,24 @@ def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[
         html_correlation(estimate),
         element("h2", "Fit and search"),
         html_quality(estimate),
+        *convergence_section(estimate),
+        element("h2", "Values to copy", id="values"),
+        element("p", "As a joint file has them, with all digits:"),
+        element("pre", joint_file_lines(estimate)),
     ]
+
+
+def joint_file_lines(estimate: Estimate) -> str:
+    """Return the values as the table [parameters] of a joint file."""
+    lines = (
+        f"{_key(p.name)} = {{ value = {float(p.value)!r} }}" for p in estimate.parameters.values()
+    )
+    return "\n".join(["[parameters]", *lines])
+
+
+def _key(name: str) -> str:
+    """A name as a key of TOML: bare where that is allowed."""
+    return name if name.replace("_", "").isalnum() and name.isascii() else f'"{name}"'
 
 
 def shown_by(estimate: Estimate) -> dict[str, str]:
@@ -100,35 +91,6 @@ def shown_by(estimate: Estimate) -> dict[str, str]:
     searched = estimate.convergence is not None
     shown = {code: each.picture for code, each in types if each.picture}
     return {code: name for code, name in shown.items() if searched or name != "convergence"}
-
-
-def save_report(
-    estimate: Estimate, path: str | Path, action: Callable[[Action], str] = str
-) -> Path:
-    """Write the report, whole or not at all.
-
-    Parameters
-    ----------
-    estimate : Estimate
-    path : path
-        Replaced when it exists.
-    action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    InputError
-        The path is no file name, or its folder does not exist.
-    OSError
-        The file cannot be written; an existing one is untouched.
-    """
-    target = require_path("path", path)
-    write_whole(target, html_report(estimate, action).encode())
-    return target
 
 
 def footer(estimate: Estimate) -> Html:

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_path
-from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page
 from jointid.estimate.html_tables import html_findings, html_quality
 from jointid.estimate.html_tables import html_table as html_parameters
 from jointid.joints.html_tables import html_couplings, html_shares, html_table
 from jointid.joints.result import JointEstimates, JointResult
+from jointid.report.answering import verdict_lines
 from jointid.report.estimate_pictures import friction_picture, windows_picture
-from jointid.report.html import shown_by, verdict_lines
+from jointid.report.html import shown_by
 from jointid.report.style import STYLE, WIDE
 
 if TYPE_CHECKING:
@@ -36,8 +34,8 @@ def joints_report(result: JointEstimates, action: Callable[[Action], str] = str)
     )
     body: list[Html | str] = [
         element("h1", title),
+        _verdicts(result),
         element("p", "Each joint for itself; value ± standard error."),
-        _index(result),
         element("div", html_table(result), class_="wide"),
         element("h2", "Between the joints", id="couplings"),
         element(
@@ -54,15 +52,6 @@ def joints_report(result: JointEstimates, action: Callable[[Action], str] = str)
     return page(title, f"{STYLE}{WIDE}", *body)
 
 
-def save_joints_report(
-    result: JointEstimates, path: str | Path, action: Callable[[Action], str] = str
-) -> Path:
-    """Write the report, whole or not at all; see `save_report`."""
-    target = require_path("path", path)
-    write_whole(target, joints_report(result, action).encode())
-    return target
-
-
 def _section(result: JointResult, action: Callable[[Action], str]) -> list[Html | str]:
     heading = element("h2", f"Joint {result.name}", id=f"joint-{slug(result.name)}")
     estimate = result.estimate
@@ -75,7 +64,7 @@ def _of_estimate(estimate: Estimate, action: Callable[[Action], str]) -> list[Ht
     pictured = {"friction-map", "windows", "convergence"}
     shown = {code: name for code, name in shown_by(estimate).items() if name not in pictured}
     return [
-        *verdict_lines(estimate),
+        *verdict_lines(estimate.verdict, estimate.findings, shown, action),
         element("div", html_parameters(estimate), class_="wide"),
         html_findings(estimate, shown, action),
         friction_picture(estimate),
@@ -84,12 +73,14 @@ def _of_estimate(estimate: Estimate, action: Callable[[Action], str]) -> list[Ht
     ]
 
 
-def _index(result: JointEstimates) -> Html:
-    """Links to the joints' sections."""
-    links: list[Html | str] = ["Joints: "]
-    for name in result.results:
-        links += [element("a", name, href=f"#joint-{slug(name)}"), " "]
-    return element("p", *links, class_="index")
+def _verdicts(result: JointEstimates) -> Html:
+    """The verdict on each joint, with a link to its section."""
+    lines = []
+    for name, each in result.results.items():
+        said = "failed" if each.estimate is None else str(each.estimate.verdict)
+        link = element("a", f"Joint {name}", href=f"#joint-{slug(name)}")
+        lines.append(element("li", link, f": {said}"))
+    return element("ul", *lines, class_="uses")
 
 
 def slug(name: str) -> str:

@@ -3,47 +3,67 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_path
-from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
 from jointid.estimate.window_views import window_centres, with_gaps
+from jointid.report.answering import answer, verdict_lines
 from jointid.report.drawing.marks import Line, Mark, Panel, Points
 from jointid.report.figure import captioned
 from jointid.report.joints_page import slug
+from jointid.report.rows import NamedRow, rows_panel
 from jointid.report.style import STYLE, WIDE
 from jointid.robot.comparison_result import RobotComparison
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.tables import base_rows, head, quality, rows
 
+_DRAWN = 20  # candidates; the table has all
 
-def robot_report(
-    estimate: RobotEstimate,
-    action: Callable[[Action], str] = str,
-    comparison: RobotComparison | None = None,
-) -> str:
-    """The report as one HTML page: the table of the joints, the findings, and two pictures a joint.
+
+def robot_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
+    """The report as one HTML page: verdict, the table of the joints, the findings, and two pictures a joint.
 
     Parameters
     ----------
     estimate : RobotEstimate
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
-    comparison : RobotComparison, optional
-        That the estimate comes from.
     """
     title = f"{estimate.robot.name or 'robot'}: friction of {len(estimate.joints)} joints, identified by jointid"
-    body: list[Html | str] = [
+    body = [element("h1", title), *_of_estimate(estimate, action)]
+    return page(title, f"{STYLE}{WIDE}", *body)
+
+
+def robot_comparison_report(
+    comparison: RobotComparison, action: Callable[[Action], str] = str
+) -> str:
+    """The report as one HTML page: the winner and why, all candidates, and what was identified with the winner.
+
+    Parameters
+    ----------
+    comparison : RobotComparison
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+    """
+    estimate = comparison.estimate
+    title = f"{estimate.robot.name or 'robot'}: {len(comparison.rows)} models compared by jointid"
+    body = [
         element("h1", title),
-        element(
-            "p",
-            "All joints together, by integrals of the torque balance over windows, without accelerations; value ± "
-            "standard error.",
-        ),
+        answer(f"Use {comparison.winner.name}."),
+        element("p", comparison.reason),
+        *_comparison(comparison),
+        element("h2", "Identified with it", id="identified"),
+        *_of_estimate(estimate, action),
+    ]
+    return page(title, f"{STYLE}{WIDE}", *body)
+
+
+def _of_estimate(estimate: RobotEstimate, action: Callable[[Action], str]) -> list[Html | str]:
+    body: list[Html | str] = [
+        *verdict_lines(estimate.verdict, estimate.findings, action=action),
+        element("h2", "Joints", id="joints"),
         element(
             "div",
             table([list(row) for row in rows(estimate)], head=head(estimate), class_="joints"),
@@ -53,8 +73,6 @@ def robot_report(
         element("h2", "Findings", id="findings"),
         _findings(estimate, action),
     ]
-    if comparison is not None:
-        body += _comparison(comparison)
     if estimate.base_parameters:
         body += [
             element("h2", "Base parameters", id="base-parameters"),
@@ -73,33 +91,50 @@ def robot_report(
         ]
     for number, joint in enumerate(estimate.joints.values()):
         body += _section(estimate, joint, number)
-    return page(title, f"{STYLE}{WIDE}", *body)
+    return [*body, _footer(estimate)]
 
 
-def save_robot_report(
-    estimate: RobotEstimate,
-    path: str | Path,
-    action: Callable[[Action], str] = str,
-    comparison: RobotComparison | None = None,
-) -> Path:
-    """Write the report, whole or not at all; see `save_report`."""
-    target = require_path("path", path)
-    write_whole(target, robot_report(estimate, action, comparison).encode())
-    return target
+def _footer(estimate: RobotEstimate) -> Html:
+    settings = estimate.settings
+    runs = "; ".join(str(each or "recording") for each in settings.get("recordings", ()))
+    return element(
+        "footer",
+        "All joints together, by integrals of the torque balance over windows, without accelerations; value ± "
+        f"standard error. jointid {settings.get('version', '')}; {runs}",
+    )
 
 
 def _comparison(found: RobotComparison) -> list[Html | str]:
     """What was compared, and how well each candidate predicts."""
+    rows = [
+        NamedRow(
+            name=row.name,
+            value=100.0 * row.score,
+            error=100.0 * row.stderr,
+            single=[100.0 * score for score in row.fold_scores],
+            chosen=row is found.winner or row == found.winner,
+        )
+        for row in found.rows[:_DRAWN]
+    ]
     first = ["inertia", "model", "parameters", "held-out residual", "± std. error", "remark"]
     tables = (
         table([list(row) for row in found.cells()], head=first),
         table([list(row) for row in found.joint_cells()], head=["", *found.models]),
     )
     return [
-        element("h2", "Compared on held-out torque", id="comparison"),
-        element("p", found.setting()),
+        element("h2", "How well each candidate predicts", id="comparison"),
+        captioned(
+            "Relative residual of torque that the candidate was not fitted to, mean over joints: smaller is better. "
+            "A grey point is one part that was held out, the stroke is the mean with its standard error.",
+            rows_panel(
+                rows,
+                "held-out residual [%]",
+                "candidate",
+                ("one part", "mean", "mean of the chosen one"),
+            ),
+        ),
         *(element("div", each, class_="wide") for each in tables),
-        element("p", found.reason),
+        element("p", found.setting()),
     ]
 
 

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_path
-from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
+from jointid.report.answering import answer, verdict_lines
 from jointid.report.drawing.marks import Level, Line, Mark, Panel
 from jointid.report.figure import captioned
-from jointid.report.html import footer, sections, verdict_lines
+from jointid.report.html import footer, sections, shown_by
 from jointid.report.limit_margins import margin_rows
 from jointid.report.style import STYLE
 
 if TYPE_CHECKING:
     from jointid.commissioning.ring import BenchRun, Commissioning
+    from jointid.estimate.estimate import Estimate
 
+_REFERENCE = "true parameters"  # the run with the emulated joint's own values
 _SMALL = 1.2  # a tracking error that fell by less did not get better
 
 
@@ -31,20 +31,17 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
     """
-    from jointid.commissioning.report import TIMING, parameter_rows, run_rows, summary, timing_rows
+    from jointid.commissioning.report import TIMING, parameter_rows, run_rows, timing_rows
 
     first = result.runs[0].recording
     name = first.name or "joint"
     if result.estimates:
         name = result.estimates[-1].joint.name or name
     title = f"{name}: session of {len(result.runs)} run{'s' * (len(result.runs) > 1)}"
-    emulated = (
-        ["An emulated joint on an emulated drive: no hardware moved."] if result.truth else []
-    )
-    said = [*emulated, *summary(result), *next_step(result, action)]
     body: list[Html | str] = [
         element("h1", title),
-        *(element("p", sentence) for sentence in said),
+        *_answer(result),
+        *(element("p", sentence) for sentence in next_step(result, action)),
         element("h2", "Tracking error", id="tracking"),
         _tracking(result),
         _table(run_rows(result)),
@@ -54,6 +51,7 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
         element(
             "p", "The largest of all runs, as recorded, and the share of the limit that it took."
         ),
+        element("h2", "Stops", id="stops"),
         *_stops(result),
     ]
     timing = timing_rows(result)
@@ -62,24 +60,34 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
     body += _drive(first.metadata)
     if result.estimates:
         changed = "What was assumed and what was identified"
-        body += [element("h2", changed, id="identified"), *verdict_lines(result.estimates[-1])]
+        body += [element("h2", changed, id="identified"), *_verdict(result.estimates[-1], action)]
         body.append(_table(parameter_rows(result)))
         body += sections(result.estimates[-1], action)
         body.append(footer(result.estimates[-1]))
     return page(title, STYLE, *body)
 
 
-def save_session_report(
-    result: Commissioning, path: str | Path, action: Callable[[Action], str] = str
-) -> Path:
-    """Write the report, whole or not at all; see `save_report`."""
-    target = require_path("path", path)
-    write_whole(target, session_report(result, action).encode())
-    return target
+def _answer(result: Commissioning) -> list[Html]:
+    """What came of the session, before all else why it was stopped if it was."""
+    from jointid.commissioning.report import summary
+
+    emulated = "An emulated joint on an emulated drive: no hardware moved."
+    lines = [element("p", emulated)] if result.truth else []
+    stopped = [each for each in result.runs if each.recording.metadata.get("stop")]
+    if stopped:
+        sentences = [f"{run.name}: {run.recording.metadata['stop']}." for run in stopped]
+        return [*(answer(said, "not usable") for said in sentences), *lines]
+    said = summary(result)
+    level = result.estimates[-1].verdict.level if result.estimates else None
+    if level is not None and result.blocked is None:
+        said = [f"{' '.join(said)} The identified values are {level}.".strip()]
+    return [*(answer(sentence, level) for sentence in said), *lines]
 
 
 def next_step(result: Commissioning, action: Callable[[Action], str] = str) -> list[str]:
     """What to do with the outcome, in a sentence."""
+    if any(run.recording.metadata.get("stop") for run in result.runs):
+        return ["Next: find out why the limit was reached before the joint moves again."]
     if not result.estimates:
         return ["Next: identify the joint from the recordings."]
     warned = [found for found in result.estimates[-1].warnings if found.advice]
@@ -89,7 +97,11 @@ def next_step(result: Commissioning, action: Callable[[Action], str] = str) -> l
         return [f"Next: {action(warned[0].advice[0])} (finding {warned[0].code})."]
     if result.blocked is not None:
         return []
-    return ["Next: save these values to the joint file; no finding speaks against it."]
+    return ["Next: save these values to the joint file; no finding warns of them."]
+
+
+def _verdict(estimate: Estimate, action: Callable[[Action], str]) -> list[Html]:
+    return verdict_lines(estimate.verdict, estimate.findings, shown_by(estimate), action)
 
 
 def _tracking(result: Commissioning) -> Html:
@@ -118,7 +130,15 @@ def _errors(
         error = 1e3 * (recording.position - recording.reference)
         label = f"{run.name}, rms {1e3 * run.tracking_error:.3g} {unit}"
         time = recording.time - recording.time[0]
-        marks.append(Line(look=looks[number % len(looks)], label=label, across=time, up=error))
+        marks.append(
+            Line(
+                look=looks[number % len(looks)],
+                label=label,
+                across=time,
+                up=error,
+                dashed=run.name == _REFERENCE,  # it may lie upon what was identified
+            )
+        )
     marks.append(Level(look="measured", up=0.0))
     across, up = "time [s]", f"tracking error [{unit}]"
     return Panel(marks=tuple(marks), across=across, up=up, height=height)
@@ -126,11 +146,11 @@ def _errors(
 
 def _stops(result: Commissioning) -> list[Html | str]:
     """Whether a run ended before its time, and whether the motor is off."""
-    said: list[Html | str] = []
-    for run in result.runs:
-        told = run.recording.metadata
-        if told.get("stop"):
-            said.append(element("p", f"{run.name} was stopped: {told['stop']}."))
+    said: list[Html | str] = [
+        element("p", f"{run.name}: {reason}.")
+        for run in result.runs
+        if (reason := run.recording.metadata.get("stop"))
+    ]
     off = result.runs[-1].recording.metadata.get("motor_off")
     if not said:
         said.append(element("p", "No run was stopped by a limit."))

@@ -45,6 +45,7 @@ def document_of(estimate: RobotEstimate) -> dict[str, Any]:
         "covariance": plain(estimate.covariance),
         "robot": robot_document(estimate.robot),
         "findings": plain(estimate.findings),
+        "verdict": estimate.verdict.document(),
         "settings": plain(estimate.settings),
     }
     for entry, found in zip(document["findings"], estimate.findings, strict=True):

@@ -50,6 +50,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
         if share > _MOSTLY:
             yield Finding(
                 code="standing",
+                parameters=_all_of(estimate.joints[name]),
                 evidence={"left_out": Measured(share)},
                 cause=f"{name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
                 "information about friction and is left out",
@@ -95,10 +96,15 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
         freed = Action("call", {"inertia": FREE}, function="identify_robot")
         yield Finding(
             code="poor_fit",
+            parameters=_all_of(joint),
             evidence={"relative_residual": Measured(residual)},
             cause=f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
             advice=() if estimate.inertia == FREE else (freed,),
         )
+
+
+def _all_of(joint: RobotJoint) -> tuple[str, ...]:
+    return tuple(f"{joint.name}.{name}" for name in joint.parameters)
 
 
 def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Finding]:

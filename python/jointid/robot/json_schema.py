@@ -1,7 +1,7 @@
 """What the JSON of a robot's estimate may hold."""
 
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
-from jointid.estimate.json_schema import FINDING, MATRIX, PARAMETER, RESIDUALS, WINDOWS
+from jointid.estimate.json_schema import FINDING, MATRIX, PARAMETER, RESIDUALS, VERDICT, WINDOWS
 from jointid.robot.inertia import MODES
 from jointid.robot.models import PLAIN, STRIBECK, modelled
 
@@ -73,5 +73,5 @@ ROBOT_ESTIMATE: Kind = Record(
         "findings": ListOf(FINDING),
         "settings": _SETTINGS,
     },
-    {"bootstrap": Plain()},
+    {"bootstrap": Plain(), "verdict": VERDICT},
 )

@@ -20,6 +20,7 @@ from jointid.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.verdict import Verdict
     from jointid.robot.prediction import RobotPrediction
     from jointid.robot.resampling import RobotDraws
 
@@ -122,6 +123,13 @@ class RobotEstimate:
     def warnings(self) -> tuple[Finding, ...]:
         """Findings that may bias values or make them unusable."""
         return tuple(found for found in self.findings if found.severity != "info")
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the values may be used, and for what."""
+        from jointid.robot.verdict import judged_robot
+
+        return judged_robot(self)
 
     def friction(self, velocity: ArrayLike) -> Array:
         """Friction torque of all joints at given speeds, with what coupled motors add.

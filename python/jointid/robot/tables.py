@@ -128,6 +128,7 @@ def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) 
         Words the advice of a finding. Default: as at a Python prompt.
     """
     lines = [f"jointid robot estimate — {estimate.robot.name}; value ± standard error", ""]
+    lines += [*estimate.verdict.lines(), ""]
     lines += [*aligned([head(estimate), *rows(estimate)]), ""]
     width = max(len(label) for label, _ in quality(estimate))
     lines += [f"{label.ljust(width)}  {text}" for label, text in quality(estimate)]

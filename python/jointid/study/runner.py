@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from jointid import _core
@@ -42,7 +43,7 @@ class Runner:
     def __init__(self, work: Work, *, strict: bool = False) -> None:
         self._work = work
         self._strict = strict
-        self._ready: tuple[object, Prepared, Engine] | None = None
+        self._ready: tuple[object, Prepared, Callable[[], Engine]] | None = None
 
     def run(self, places: Sequence[Place]) -> Iterator[list[Row]]:
         """Yield the rows of these trials, group by group as they are done.
@@ -121,7 +122,10 @@ class Runner:
             if self._ready is None or self._ready[0] != key:
                 self._ready = None  # frees the memory of the last one first
                 prepared = prepare(recordings, joint, **options, threads=work.threads)
-                engine = Engine.of(prepared.penalty, prepared.domain, work.threads)
+                # A search by projection needs none.
+                engine: Callable[[], Engine] = functools.cache(
+                    functools.partial(Engine.of, prepared.penalty, prepared.domain, work.threads)
+                )
                 self._ready = key, prepared, engine
             _, prepared, engine = self._ready
             outcomes = _outcomes(searches, prepared, engine)
@@ -207,12 +211,15 @@ class Runner:
         )
 
 
-def _outcomes(searches: list[Search], prepared: Prepared, engine: Engine) -> list[Outcome]:
-    domain = prepared.domain
-    if searches[0].method == "separable":
-        return [separable(search, engine, domain) for search in searches]
+def _outcomes(
+    searches: list[Search], prepared: Prepared, engine: Callable[[], Engine]
+) -> list[Outcome]:
+    penalty, domain = prepared.penalty, prepared.domain
+    if searches[0].method == "separable":  # which has no seed
+        return [separable(searches[0], penalty, domain, engine)] * len(searches)
+    ready = engine()
     results = _core.minimise_trials(
-        engine.form,
+        ready.form,
         domain.lower,
         domain.upper,
         options=[search.genetic for search in searches],
@@ -221,6 +228,6 @@ def _outcomes(searches: list[Search], prepared: Prepared, engine: Engine) -> lis
         threads=searches[0].threads,
     )
     return [
-        concluded(search, engine, domain, result, result.generations)
+        concluded(search, ready, domain, result, result.generations)
         for search, result in zip(searches, results, strict=True)
     ]

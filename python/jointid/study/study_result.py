@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.frames import data_frame
+from jointid.base.html import element
 from jointid.joint.checks import suggestion
 from jointid.study import study_file, tables
 from jointid.study.row import Row
 from jointid.study.saved_header import FORMAT, SCHEMA
-from jointid.study.summary import Summary, summarise
+from jointid.study.summary import Summary, html_summary, summarise
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,6 +48,12 @@ class Study:
         Recordings or scenario, joint, options and version, as a record.
     seconds : float
         Wall time; of a resumed study, that of the last part.
+
+    Examples
+    --------
+    >>> study = jid.sweep(recording, joint, grid={"windows": [100, 400]}, trials=2)
+    >>> len(study.rows), study.swept
+    (4, ('windows',))
     """
 
     swept: tuple[str, ...]
@@ -63,6 +70,17 @@ class Study:
     def complete(self) -> bool:
         """Whether every trial is done."""
         return len(self.rows) >= len(self.cells) * self.trials
+
+    @property
+    def title(self) -> str:
+        """What was swept, and how many trials are done, in a line."""
+        done, cells = len(self.rows), len(self.cells)
+        whole = "" if self.complete else f" of {cells * self.trials}"
+        over = ", ".join(self.swept) or "nothing"
+        return (
+            f"study over {over}: {cells} cell{'s' * (cells != 1)}, "
+            f"{done}{whole} trial{'s' * (done != 1 or bool(whole))}"
+        )
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -151,13 +169,12 @@ class Study:
         return str(self.summary())
 
     def __repr__(self) -> str:
-        done = len(self.rows)
-        whole = "" if self.complete else f" of {len(self.cells) * self.trials}"
-        over = ", ".join(self.swept) or "nothing"
-        return f"<Study over {over}: {len(self.cells)} cells, {done}{whole} trials>"
+        return f"<Study{self.title.removeprefix('study')}>"
 
     def _repr_html_(self) -> str:
-        return self.summary().to_html()
+        return str(
+            element("div", element("b", f"jointid {self.title}"), html_summary(self.summary()))
+        )
 
 
 def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -> Study:

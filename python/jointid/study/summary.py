@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from jointid.base.error_text import printable
 from jointid.base.errors import InputError
 from jointid.base.frames import data_frame
+from jointid.base.html import Html, element, table
 from jointid.study.row import REFUSED, Row
 
 if TYPE_CHECKING:
@@ -92,30 +92,27 @@ class Summary:
         return data_frame([_record(cell) for cell in self.cells])
 
     def __str__(self) -> str:
-        header, body = _texts(self)
+        header, body = summary_texts(self)
         widths = [max(len(line[i]) for line in [header, *body]) for i in range(len(header))]
         lines = [
             "  ".join(text.rjust(width) for text, width in zip(line, widths, strict=True))
             for line in [header, *body]
         ]
-        for cell in self.cells:
-            if cell.refused:
-                labels = ", ".join(f"{name} {label}" for name, label in cell.labels.items())
-                lines.append(f"{labels}: {cell.refused} refused: {cell.reason}")
-        lines += [_left_out(self)]
-        return printable("\n".join(line.rstrip() for line in lines if line))
+        lines += summary_notes(self)
+        return printable("\n".join(line.rstrip() for line in lines))
 
     def to_html(self) -> str:
-        """Return the table that `print` shows, as HTML for a notebook."""
-        header, body = _texts(self)
-        head = "".join(f"<th>{escape(text)}</th>" for text in header)
-        rows = (
-            "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in line) + "</tr>" for line in body
-        )
-        left_out = _left_out(self)
-        note = f"<p>{escape(left_out)}</p>" if left_out else ""
-        table = f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
-        return table + note
+        """Return what `print` shows, as HTML for a notebook."""
+        return str(html_summary(self))
+
+
+def html_summary(summary: Summary) -> Html:
+    """Return the table of the cells, and what is to be said of it."""
+    header, body = summary_texts(summary)
+    notes = (element("p", each) for each in summary_notes(summary))
+    return element(
+        "div", table([list(line) for line in body], head=header, class_="joints"), *notes
+    )
 
 
 def summarise(study: Study, within: float) -> Summary:
@@ -194,7 +191,7 @@ def _record(cell: CellSummary) -> dict[str, Any]:
     return record | {f"tracking_{name}": value for name, value in cell.tracking.items()}
 
 
-def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
+def summary_texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
     """Return header and lines; a parameter as bias ± scatter [%] if its truth is known, else mean ± spread."""
     cells = summary.cells
     swept = list(cells[0].labels) if cells else []
@@ -224,6 +221,21 @@ def _varying(cells: Sequence[CellSummary]) -> list[str]:
     """Return the parameters that the table shows: all, if none varies."""
     names = _names(cells)
     return [name for name in names if not _fixed(cells, name)] or names
+
+
+def summary_notes(summary: Summary) -> list[str]:
+    """Return what was refused in each cell, and which parameters the table does not show."""
+    lines = [
+        f"{cell_name(cell.labels) or 'all'}: {cell.refused} refused: {cell.reason}"
+        for cell in summary.cells
+        if cell.refused
+    ]
+    return [*lines, *([left] if (left := _left_out(summary)) else [])]
+
+
+def cell_name(labels: Mapping[str, Any]) -> str:
+    """Return the swept settings of a cell as text."""
+    return ", ".join(f"{name} {label}" for name, label in labels.items())
 
 
 def _left_out(summary: Summary) -> str:

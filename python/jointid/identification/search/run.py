@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,29 +33,41 @@ def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> 
     KeyboardInterrupt
         Ctrl-C.
     """
-    engine = Engine.of(penalty, domain, search.threads)
+    made = functools.partial(Engine.of, penalty, domain, search.threads)
     if search.method == "separable":
-        return separable(search, engine, domain)
+        return separable(search, penalty, domain, made)
+    engine = made()
     result = (_random if search.method == "random" else _genetic)(search, engine, domain)
     convergence = _convergence(result)
     outcome = concluded(search, engine, domain, result, int(convergence.generation[-1]))
     return replace(outcome, convergence=convergence)
 
 
-def separable(search: Search, engine: Engine, domain: SearchDomain) -> Outcome:
-    """Search by elimination of the linear parameters, and return the verified outcome."""
-    found = _core.minimise_separable(
-        engine.form, domain.lower, domain.upper, threads=search.threads
-    )
+def separable(
+    search: Search, penalty: _core.Penalty, domain: SearchDomain, engine: Callable[[], Engine]
+) -> Outcome:
+    """Search by elimination of the linear parameters, and return the outcome.
 
-    outcome = Outcome(
+    The projected search sums over the samples a dozen times and needs no engine. Where it cannot be sure of the
+    optimum, the engine's penalty is searched, and the outcome is verified.
+    """
+    lower, upper = domain.lower, domain.upper
+    projected = _core.minimise_projected(penalty, lower, upper, threads=search.threads)
+    if projected.found is not None:
+        return _found(projected.found, "by projection")
+    ready = engine()
+    found = _core.minimise_separable(ready.form, lower, upper, threads=search.threads)
+    return ready.verified(_found(found, f"not by projection: {projected.reason}"), domain)
+
+
+def _found(found: _core.SeparableResult, way: str) -> Outcome:
+    return Outcome(
         best=found.best,
         convergence=None,
         status="converged",
-        message=f"separable optimum after {found.evaluations} shapes",
+        message=f"separable optimum after {found.evaluations} shapes, {way}",
         evaluations=found.evaluations,
     )
-    return engine.verified(outcome, domain)
 
 
 def concluded(
@@ -150,17 +163,19 @@ def _finished(
 
 
 def _convergence(result: _core.GaResult) -> Convergence:
+    history = result.history  # made anew whenever it is asked for
+
     def series(name: str) -> Array:
-        return np.array([getattr(g, name) for g in result.history], dtype=np.float64)
+        return np.array([getattr(g, name) for g in history], dtype=np.float64)
 
     return Convergence(
-        generation=np.array([g.number for g in result.history], dtype=np.int64),
+        generation=np.array([g.number for g in history], dtype=np.int64),
         best=series("best"),
         mean=series("mean"),
         diversity=series("diversity"),
         crossover_probability=series("crossover_probability"),
         mutation_probability=series("mutation_probability"),
-        evaluations=np.array([g.evaluations for g in result.history], dtype=np.int64),
+        evaluations=np.array([g.evaluations for g in history], dtype=np.int64),
     )
 
 

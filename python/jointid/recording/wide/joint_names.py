@@ -59,7 +59,7 @@ def joint_named(
     remedy: str | Action | tuple[()] = f"did you mean {near!r}" if near else ()
     if number is not None and not numbered and function and joints:
         value = joints[0] if argument == "joint" else [joints[0]]
-        other = "or another one" if len(joints) > 1 else ""
+        other = "or another joint" if len(joints) > 1 else ""
         remedy = Action("call", {argument: value}, function=function, text=other)
     raise InputError(
         f"there is no such joint; {names}",

@@ -154,7 +154,9 @@ def which_joint(table: Table, joints: Sequence[str]) -> InputError:
         f"the file holds {len(joints)} joints ({shown}), and a recording has one",
         place=table.header_place,
         remedy=(
-            Action("call", {"joint": as_given(joints[0])}, function="load", text="or another one"),
+            Action(
+                "call", {"joint": as_given(joints[0])}, function="load", text="or another joint"
+            ),
             Action("call", {"joints": "all"}, function="load_robot", text="for all of them"),
         ),
     )

@@ -150,6 +150,9 @@ class Panel:
         Of the upright axis. Default False.
     height : int
         Of the axes, in units of the picture, which is 560 wide. Default 220.
+    names : tuple of str
+        Of rows below each other, instead of numbers at the upright axis: marks are drawn at 0 for the first row, -1
+        for the second. Default: none.
     """
 
     marks: tuple[Mark, ...]
@@ -157,6 +160,12 @@ class Panel:
     up: str
     logarithmic: bool = False
     height: int = 220
+    names: tuple[str, ...] = ()
+
+
+def row_height(rows: int) -> int:
+    """Return the height of a panel of named rows, in units of the picture."""
+    return 46 * rows + 14
 
 
 def numbers(values: ArrayLike) -> Array:

@@ -21,6 +21,7 @@ LIGHT = {
     "fifth": "#946600",
     "link": "#0b5cad",
     "alarm": "#b00020",
+    "well": "#f4f4f4",
 }
 DARK = {
     "ground": "#15181c",
@@ -35,6 +36,7 @@ DARK = {
     "fifth": "#e6b23c",
     "link": "#7ab8ff",
     "alarm": "#ff8a80",
+    "well": "#20252b",
 }
 # The names that a mark may have as its look.
 LOOKS = ("measured", "fitted", "second", "third", "fourth", "fifth")

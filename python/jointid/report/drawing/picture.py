@@ -41,11 +41,14 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
     wanted = [[mark.values() for mark in panel.marks] for panel in panels]
     low, high = limits([each for values in wanted for across, _ in values for each in across])
     ranges = [
-        limits([each for _, up in values for each in up], panel.logarithmic)
+        _range_of_rows(panel)
+        or limits([each for _, up in values for each in up], panel.logarithmic)
         for panel, values in zip(panels, wanted, strict=True)
     ]
     ticks = [
-        Scale(*up, 0, 1, panel.logarithmic).ticks(panel.height * UNIT // _FOR_A_TICK)
+        Ticks(_rows(panel), ("",) * len(panel.names))
+        if panel.names
+        else Scale(*up, 0, 1, panel.logarithmic).ticks(panel.height * UNIT // _FOR_A_TICK)
         for panel, up in zip(panels, ranges, strict=True)
     ]
     left = 80 + _LETTER * max(len(text) for each in ticks for text in (*each.texts, "0"))
@@ -61,6 +64,7 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
         upright = Scale(*up, foot, top, panel.logarithmic)
         last = number == len(panels) - 1
         parts += [*legend, title_place, *_axes(across, upright, each, panel.across if last else "")]
+        parts += _row_names(panel, across, upright)
         marks = [mark_path(mark, across, upright) for mark in panel.marks]
         parts += [mark for mark in marks if mark is not None]
         if not any(marks):
@@ -94,6 +98,7 @@ def _axes(across: Scale, up: Scale, ticks: Ticks, title: str) -> list[Html | str
     parts += [
         element("text", text, class_="up", x=str(across.start - 60), y=str(y + 45))
         for text, y in zip(ticks.texts, rows, strict=True)
+        if text
     ]
     if title:
         foot = up.start + _LINE
@@ -105,6 +110,33 @@ def _axes(across: Scale, up: Scale, ticks: Ticks, title: str) -> list[Html | str
         named = _axis_title(title, below.exponent)
         parts.append(element("text", named, class_="across", x=middle, y=str(foot + _LINE)))
     return parts
+
+
+def _rows(panel: Panel) -> tuple[float, ...]:
+    return tuple(-float(row) for row in range(len(panel.names)))
+
+
+def _range_of_rows(panel: Panel) -> tuple[float, float] | None:
+    """Room for the last row's marks, and for the first row's name."""
+    return (0.6 - len(panel.names), 0.75) if panel.names else None
+
+
+def _row_names(panel: Panel, across: Scale, up: Scale) -> list[Html | str]:
+    """Each row's name above it, cut where the picture ends."""
+    room = across.stop - across.start - 80
+    x, rows = str(across.start + 40), up.places(_rows(panel)).tolist()
+    return [
+        element("text", _cut(name, room), x=x, y=str(y - 110))
+        for name, y in zip(panel.names, rows, strict=True)
+    ]
+
+
+def _cut(text: str, room: int) -> str:
+    """A text with its middle left out where there is no room for it."""
+    if _width(text) <= room:
+        return text
+    kept = max(2, len(text) * room // _width(text) - 3)
+    return f"{text[: kept - kept // 2]}…{text[len(text) - kept // 2 :]}"
 
 
 def _ticks_across(across: Scale) -> Ticks:
@@ -159,9 +191,10 @@ def _summary(
     said = [f"Across: {panels[-1].across}, from {across[0]:.3g} to {across[1]:.3g}."]
     for panel, up in zip(panels, ranges, strict=True):
         drawn = "; ".join(_counted(mark) for mark in panel.marks if mark.label)
-        said.append(
-            f"Up: {panel.up}, from {up[0]:.3g} to {up[1]:.3g}{': ' if drawn else ''}{drawn}."
-        )
+        shown = f"{panel.up}, from {up[0]:.3g} to {up[1]:.3g}"
+        if panel.names:
+            shown = f"{panel.up}, from above: {', '.join(panel.names)}"
+        said.append(f"Up: {shown}{': ' if drawn else ''}{drawn}.")
     return " ".join(said)
 
 

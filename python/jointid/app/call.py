@@ -1,0 +1,176 @@
+"""What a user of the page has stated: a file, how it is read, the joint, the settings, stretches to leave out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.base.values import dataclass
+from jointid.joint.joint import Joint
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+    from jointid.recording.recording import Recording
+
+# As `Action` says; other arguments replace those of the call.
+_MERGED = ("columns", "units", "scale", "parameters")
+_FEWEST = 50  # samples of a piece between two stretches that are left out
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Call:
+    """One identification, as a user would write it: ``identify(load(file, …), joint, …)``.
+
+    Attributes
+    ----------
+    file : Path
+        Where the recording is.
+    name : str
+        What the user calls it; "" for the file's name.
+    load : mapping
+        Arguments of `load`.
+    joint : Joint or None
+    identify : mapping
+        Arguments of `identify`.
+    left_out : tuple of (float, float)
+        Stretches of the recording's time [s] that are not used.
+    """
+
+    file: Path
+    name: str = ""
+    load: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    joint: Joint | None = None
+    identify: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    left_out: tuple[tuple[float, float], ...] = ()
+
+    def obey(self, action: Action) -> Call | None:
+        """Return the call with the action's arguments; None where no program can do what it says."""
+        if action.kind != "call" or _unknown(action.arguments):
+            return None
+        if action.function == "load":
+            return replace(self, load=_merged(self.load, action.arguments))
+        if action.function == "identify":
+            return replace(self, identify=_merged(self.identify, action.arguments))
+        if action.function == "Joint":
+            return replace(self, joint=(self.joint or Joint()).replace(**action.arguments))
+        return None
+
+    def recording(self) -> Recording:
+        """Return the recording, whole."""
+        from jointid.recording.readers.loading import load
+
+        return load(self.file, **{"name": self.name or None, **self.load})
+
+    def recordings(self) -> list[Recording]:
+        """Return the pieces of the recording that are left.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, or nothing is left.
+        """
+        whole = self.recording()
+        if not self.left_out:
+            return [whole]
+        pieces = [whole.crop(start, stop) for start, stop in self._kept_of(whole)]
+        if not pieces:
+            raise InputError(
+                "nothing is left of the recording", argument="left_out", value=self.left_out
+            )
+        return pieces
+
+    def run(self, **more: Any) -> Estimate:
+        """Return the estimate.
+
+        Parameters
+        ----------
+        **more
+            Further arguments of `identify`; they replace those of the call.
+        """
+        from jointid.identification.identification import identify
+
+        return identify(self.recordings(), self.joint, **{**self.identify, **more})
+
+    def _kept_of(self, whole: Recording) -> list[tuple[float | None, float | None]]:
+        """The stretches that are left, without those of a few samples."""
+        time, found = whole.time, []
+        for start, stop in kept(self.left_out):
+            first = 0 if start is None else int(np.searchsorted(time, start))
+            last = len(time) if stop is None else int(np.searchsorted(time, stop, side="right"))
+            if last - first >= _FEWEST:
+                found.append((start, stop))
+        return found
+
+    def script(self, whole: Recording) -> str:
+        """Return the call as a Python program.
+
+        Parameters
+        ----------
+        whole : Recording
+            As `recording` returns it.
+        """
+        lines = ["import jointid as jid", ""]
+        stated = "".join(f", {name}={value!r}" for name, value in self.load.items())
+        lines += [f"recording = jid.load({(self.name or self.file.name)!r}{stated})"]
+        what = "recording"
+        if self.left_out:
+            pieces = ", ".join(
+                f"recording[{_bound(start)}:{_bound(stop)}]" for start, stop in self._kept_of(whole)
+            )
+            lines += [f"pieces = [{pieces}]  # by time [s]"]
+            what = "pieces"
+        lines += ['joint = jid.Joint.load("joint.toml")  # exported beside this program'] * (
+            self.joint is not None
+        )
+        given = "".join(f", {name}={value!r}" for name, value in self.identify.items())
+        lines += [
+            f"estimate = jid.identify({what}{', joint' if self.joint is not None else ''}{given})",
+            "print(estimate.report())",
+            "",
+        ]
+        return "\n".join(lines)
+
+
+def kept(
+    left_out: tuple[tuple[float, float], ...],
+) -> list[tuple[float | None, float | None]]:
+    """Return the stretches [s] between those that are left out; None for the recording's begin and end.
+
+    Examples
+    --------
+    >>> kept(((2.0, 3.0), (2.5, 4.0)))
+    [(None, 2.0), (4.0, None)]
+    """
+    found: list[tuple[float | None, float | None]] = []
+    at: float | None = None
+    for start, stop in sorted(left_out):
+        if at is None or start > at:
+            found.append((at, start))
+        at = stop if at is None else max(at, stop)
+    return [*found, (at, None)]
+
+
+def _bound(time: float | None) -> str:
+    return "" if time is None else f"{time:.6g}"
+
+
+def _merged(given: Mapping[str, Any], advised: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(given)
+    for name, value in advised.items():
+        if name in _MERGED and isinstance(value, Mapping) and merged.get(name) is not None:
+            merged[name] = {**merged[name], **value}
+        else:
+            merged[name] = value
+    return merged
+
+
+def _unknown(value: object) -> bool:
+    if isinstance(value, Mapping):
+        return any(map(_unknown, value.values()))
+    return value is ... or value == "..."

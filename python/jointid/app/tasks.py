@@ -1,0 +1,83 @@
+"""What the page asks of its process: each takes `report` first, for progress."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jointid.app.call import Call
+from jointid.base.values import dataclass
+
+if TYPE_CHECKING:
+    from jointid.comparison.result import Comparison
+    from jointid.estimate.estimate import Estimate
+    from jointid.recording.readers.looking import FirstLook
+    from jointid.recording.recording import Recording
+
+Report = Callable[[float, str], object]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Read:
+    """A recording, and what is said about how it was read."""
+
+    recording: Recording
+    remarks: tuple[str, ...]
+
+
+def look(_report: Report, path: Path) -> FirstLook:
+    """What a file holds."""
+    from jointid.recording.readers.looking import first_look
+
+    return first_look(path)
+
+
+def read(_report: Report, call: Call) -> Read:
+    """The whole recording."""
+    from jointid.recording.file_remarks import remarks
+
+    recording = call.recording()
+    return Read(recording=recording, remarks=tuple(remarks(recording.metadata)))
+
+
+def identify(report: Report, call: Call) -> tuple[Estimate, str]:
+    """The estimate, and its report as a page."""
+    from jointid._core import GaOptions, Generation
+    from jointid.identification.search.search import Search
+    from jointid.report.html import html_report
+
+    total = GaOptions().generations
+
+    def shown(generation: Generation) -> None:
+        report(generation.number / total, f"generation {generation.number} of {total}")
+
+    search = Search.of(call.identify.get("search"))
+    if search.method == "ga":
+        search = replace(search, callback=shown)
+    estimate = call.run(search=search)
+    return estimate, html_report(estimate)
+
+
+def compare(report: Report, call: Call, models: Sequence[str]) -> Comparison:
+    """The comparison of some models; the default ones where none is named."""
+    from jointid.comparison.comparison import ComparisonStep, compare_models
+
+    def shown(step: ComparisonStep) -> None:
+        report(step.number / step.total, f"fit {step.number} of {step.total}: {step.model}")
+
+    allowed = (
+        "parameters",
+        "residual",
+        "windows",
+        "torque_hold",
+        "mask_standstill",
+        "shift",
+        "min_speed",
+        "terms",
+    )
+    arguments = {name: value for name, value in call.identify.items() if name in allowed}
+    if models:
+        arguments["models"] = list(models)
+    return compare_models(call.recordings(), call.joint, callback=shown, **arguments)

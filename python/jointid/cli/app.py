@@ -1,0 +1,55 @@
+"""The command `app`."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from jointid.base.errors import InputError
+
+if TYPE_CHECKING:
+    from jointid.cli.parser import CommandParser
+
+_LARGEST_PORT = 65535
+
+
+def add_app(command: CommandParser) -> None:
+    """Add the command's grammar."""
+    command.epilog = (
+        "The page is served to this machine alone, at an address with a token that changes with each start. It needs "
+        "the extra app: pip install 'jointid[app]'."
+    )
+    command.add_argument("--port", type=int, default=0, help="default: a free one")
+    command.add_argument("--no-browser", action="store_true", help="print the address only")
+    command.add_argument(
+        "--largest", type=float, default=200.0, help="megabytes of an upload (default 200)"
+    )
+
+
+def serve_page(arguments: argparse.Namespace) -> None:
+    """Serve the page until Ctrl-C."""
+    import webbrowser
+
+    from jointid.app.serving import serve
+
+    if not 0 <= arguments.port <= _LARGEST_PORT:
+        raise InputError(
+            f"an integer from 0 to {_LARGEST_PORT} is expected",
+            argument="port",
+            value=arguments.port,
+        )
+    if not 0.0 < arguments.largest < float("inf"):
+        raise InputError(
+            "a number of megabytes above 0 is expected", argument="largest", value=arguments.largest
+        )
+
+    def told(address: str) -> None:
+        print(f"jointid is served to this machine at\n{address}\nCtrl-C ends it.", flush=True)
+        if not arguments.no_browser:
+            webbrowser.open(address)
+
+    serve(
+        told,
+        port=arguments.port,
+        largest=int(1e6 * arguments.largest),
+    )

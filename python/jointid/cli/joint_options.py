@@ -1,0 +1,234 @@
+"""The joint of a command: a joint file, options for the facts that most joints need, or both."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import decimal, number_or_text
+from jointid.cli.reading import gear_ratios
+
+if TYPE_CHECKING:
+    from jointid.joint.joint import Joint
+    from jointid.joint.model import Model
+    from jointid.recording.recording import Recording
+
+_DRIVE = ("torque_constant", "rotor_inertia")
+# By option: the field of a joint's link.
+_LINK = {"mass": "mass", "centre_of_mass": "centre_of_mass", "link_angle": "angle"}
+
+
+def joint_arguments(command: argparse.ArgumentParser) -> None:
+    """Add the joint file, and the facts that may stand in its place or beside it."""
+    command.add_argument("--joint", type=Path, help="joint file (.toml)")
+    fact_arguments(command)
+
+
+def fact_arguments(command: argparse.ArgumentParser) -> None:
+    """Add the facts of a drive and its link; the gear ratio is among the options of a reading."""
+    for option, explanation in (
+        ("--torque-constant", "of the motor [N·m/A], for a recorded current"),
+        ("--rotor-inertia", "of the motor with all that turns with it, motor side [kg·m²]"),
+        ("--mass", "of the link [kg], with --centre-of-mass: its weight is then known"),
+        ("--centre-of-mass", "distance of the link's centre of mass from the axis [m]"),
+    ):
+        command.add_argument(option, type=decimal, metavar="VALUE", help=explanation)
+    command.add_argument(
+        "--link-angle",
+        type=_angle,
+        metavar="ANGLE",
+        help="of the centre of mass above the horizontal at position 0: rad, or as 90deg (default 0)",
+    )
+
+
+def _angle(text: str) -> float:
+    from jointid.joint.angles import in_radians
+
+    number = number_or_text(text)
+    value = in_radians(text) if isinstance(number, str) else number
+    if isinstance(value, str):
+        raise argparse.ArgumentTypeError(f"'{text}' is neither a number nor an angle such as 90deg")
+    return float(value)
+
+
+def joint_file(arguments: argparse.Namespace) -> Joint | None:
+    """The joint of --joint; None without one. The options are read, too: before any recording.
+
+    Raises
+    ------
+    InputError
+        No such file, no joint file, or an option that is no number.
+    """
+    from jointid.joint.joint import Joint
+
+    _inertia(arguments)
+    return None if arguments.joint is None else Joint.load(arguments.joint)
+
+
+def joint_of(
+    arguments: argparse.Namespace, file: Joint | None, recordings: Sequence[Recording]
+) -> Joint | None:
+    """The joint of a command: that of its file with the options' facts, which win; None where nothing is known.
+
+    Without a file the joint is of the recordings' kind, and has a sensor if they have.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of a command with `joint_arguments`.
+    file : Joint or None
+        As `joint_file` returned it.
+    recordings : sequence of Recording
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used; it names the option.
+    """
+    first = recordings[0]
+    sensor = all(each.sensor is not None for each in recordings)
+    return with_facts(file, facts_of(arguments, file), first.name, first.kind, sensor=sensor)
+
+
+def with_facts(
+    file: Joint | None, facts: Mapping[str, Any], name: str, kind: str, *, sensor: bool
+) -> Joint | None:
+    """A joint with some fields changed, or one of these; None where there is neither.
+
+    Parameters
+    ----------
+    file : Joint or None
+    facts : mapping of str to object
+        Fields of a joint, as of `facts_of`.
+    name, kind, sensor
+        Of a joint that is in no file.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used; it names the option.
+    """
+    from jointid.joint.joint import Joint
+    from jointid.joint.model import Model
+
+    if not facts:
+        return file
+    try:
+        if file is not None:
+            return file.replace(**weighed(facts, file.model, sensor=file.sensor))
+        facts = weighed(facts, Model(), sensor=sensor) if kind == "revolute" else facts
+        own: dict[str, Any] = {"name": name, "kind": kind, "sensor": sensor}
+        return Joint(**own, **facts)
+    except InputError as error:
+        raise _of_option(error) from None
+
+
+def weighed(facts: Mapping[str, Any], model: Model, *, sensor: bool) -> dict[str, Any]:
+    """Facts of a joint, with the weight of a link that the options state: a sensor measures it, else it is known.
+
+    Parameters
+    ----------
+    facts : mapping of str to object
+    model : Model
+        Of the joint file: what it says of gravity stays.
+    sensor : bool
+        Whether the joint has a torque sensor.
+    """
+    if "link" not in facts or sensor or model.gravity is not None:
+        return dict(facts)
+    return {**facts, "model": model.replace(gravity="known")}
+
+
+def torque_needed(arguments: argparse.Namespace, file: Joint | None) -> Callable[[Recording], Any]:
+    """What raises that a recording has no torque that the command's joint could turn into one at the output."""
+    from jointid.problem.recordings import output_torque
+
+    def check(recording: Recording) -> None:
+        joint = joint_of(arguments, file, [recording])
+        current = recording.torque is None and recording.motor_torque is None
+        if current and file is None and (joint is None or joint.torque_constant is None):
+            joint = None  # then all options are named that are missing
+        output_torque(recording, joint)
+
+    return check
+
+
+def facts_of(arguments: argparse.Namespace, file: Joint | None = None) -> dict[str, Any]:
+    """The fields of a joint that the options state.
+
+    Parameters
+    ----------
+    arguments : Namespace
+    file : Joint or None
+        Whose link the options change. Default: none.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, or half of a link; it names the option.
+    """
+    from jointid.joint.link import Link
+
+    facts: dict[str, Any] = _stated(arguments, {name: name for name in _DRIVE})
+    if (ratios := gear_ratios(arguments)) is not None and len(ratios) == 1:
+        facts["gear_ratio"] = ratios[0]
+    if (inertia := _inertia(arguments)) is not None:
+        facts["inertia"] = inertia
+    link = _stated(arguments, _LINK)
+    if not link:
+        return facts
+    link = {**({} if file is None or file.link is None else _fields(file.link)), **link}
+    for name in ("mass", "centre_of_mass"):
+        if name not in link:
+            remedy = f"add --{name.replace('_', '-')} VALUE"
+            raise InputError("a link needs it, too", argument=name, remedy=remedy)
+    try:
+        facts["link"] = Link(**link)
+    except InputError as error:
+        raise _of_option(error) from None
+    return facts
+
+
+def _inertia(arguments: argparse.Namespace) -> float | None:
+    """The inertia of one joint; of a robot the option says what of it is identified."""
+    stated = getattr(arguments, "inertia", None)
+    if isinstance(stated, list):  # compare --robot takes several
+        if len(stated) > 1:
+            raise InputError("one joint has one inertia", argument="inertia", value=stated)
+        stated = stated[0]
+    if stated is None:
+        return None
+    number = number_or_text(stated)
+    if isinstance(number, str):
+        raise InputError(
+            "of one joint a number [kg·m²] is expected; of a robot --robot names the URDF",
+            argument="inertia",
+            value=stated,
+        )
+    return float(number)
+
+
+def _stated(arguments: argparse.Namespace, names: dict[str, str]) -> dict[str, Any]:
+    found = {field: getattr(arguments, option, None) for option, field in names.items()}
+    return {field: value for field, value in found.items() if value is not None}
+
+
+def _fields(link: Any) -> dict[str, Any]:
+    from dataclasses import fields
+
+    return {each.name: getattr(link, each.name) for each in fields(link)}
+
+
+def _of_option(error: InputError) -> InputError:
+    """An error about a field, without the place that Python names: on a command line the option says it."""
+    options = {field: option for option, field in _LINK.items()}
+    of_link = error.place == "link"
+    return InputError(
+        error.reason,
+        argument=options.get(error.argument, error.argument) if of_link else error.argument,
+        value=error.value,
+        remedy=error.remedy,
+    )

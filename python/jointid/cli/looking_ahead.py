@@ -1,0 +1,117 @@
+"""Advice that suffices: what an error advises, together with what the next reading would ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+
+_STEPS = 4  # errors that are looked for beyond the first
+_MERGED = ("columns", "units", "scale", "where")
+_USUAL = {"gear_ratio": 1.0}  # in place of what only the user knows, to look further
+_OF_SEVERAL = "load_robot"
+_READING = ("load", "Joint")  # both are options of a command
+
+
+def looked_ahead(
+    error: InputError,
+    attempt: Callable[[Mapping[str, Any]], object],
+    torque_column: Callable[[Mapping[str, Any]], Action | None],
+) -> InputError:
+    """Return an error whose first advice leads to a recording that can be used, as far as that can be seen.
+
+    Each advice is followed and the file read again: whoever starts with a foreign log gets all that is missing in
+    one line instead of one thing at a time.
+
+    Parameters
+    ----------
+    error : InputError
+        Of the first reading.
+    attempt : callable
+        Reads again, with arguments of `load` beside those of the call; raises what is wrong then.
+    torque_column : callable
+        Returns the call with a column that may hold the torque, None where none does.
+
+    Returns
+    -------
+    InputError
+        The same error where nothing else is missing.
+    """
+    found = [(error, _call(error, torque_column, {}))]
+    while found[-1][1] is not None and len(found) <= _STEPS:
+        advised = _merged([action for _, action in found if action is not None])
+        filled = _filled(advised)
+        if filled is None:
+            break
+        try:
+            attempt(filled)
+        except InputError as following:
+            action = _call(following, torque_column, filled)
+            if action is None or _merged([Action("call", advised), action]) == advised:
+                break
+            found.append((following, action))
+        else:
+            break
+    actions = [action for _, action in found if action is not None]
+    if not actions or (len(actions) == 1 and error.remedy and actions[0] is error.remedy[0]):
+        return error
+    merged = _merged(actions)
+    purposes = " and ".join(dict.fromkeys(action.text for action in actions if action.text))
+    return InputError(
+        "; ".join(_reason(each, first=each is error) for each, _ in found),
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=(Action("call", merged, purposes, "load"), *_of_all_joints(error, merged)),
+    )
+
+
+def _reason(error: InputError, *, first: bool) -> str:
+    return error.reason if first or not error.argument else f"{error.argument}: {error.reason}"
+
+
+def _call(
+    error: InputError,
+    torque_column: Callable[[Mapping[str, Any]], Action | None],
+    given: Mapping[str, Any],
+) -> Action | None:
+    """The first advice of an error, if it is one for a reading."""
+    first = error.remedy[0] if error.remedy else None
+    if not isinstance(first, Action) or first.kind != "call" or first.function not in _READING:
+        return None
+    if first.arguments == {"columns": {"torque": ...}}:
+        return torque_column(given) or first
+    return first
+
+
+def _merged(actions: list[Action]) -> dict[str, Any]:
+    merged: dict[str, Any] = {}
+    for action in actions:
+        for name, value in action.arguments.items():
+            known = merged.get(name) if name in _MERGED else None
+            merged[name] = {**known, **value} if known else value
+    return merged
+
+
+def _filled(advised: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Arguments that can be tried; None where only the user knows one."""
+    filled = {
+        name: _USUAL.get(name, value) if value is ... else value for name, value in advised.items()
+    }
+    unknown = [value for value in filled.values() if value is ...]
+    inner = [
+        each for value in filled.values() if isinstance(value, Mapping) for each in value.values()
+    ]
+    return None if unknown or ... in inner else filled
+
+
+def _of_all_joints(error: InputError, merged: Mapping[str, Any]) -> tuple[str | Action, ...]:
+    """The other advice of a file with several joints: all of them, with their ratios where one needs its own."""
+    ratio = {name: merged[name] for name in ("gear_ratio",) if name in merged}
+    return tuple(
+        Action("call", {**each.arguments, **ratio}, each.text, each.function)
+        for each in error.remedy[1:]
+        if isinstance(each, Action) and each.function == _OF_SEVERAL
+    )

@@ -1,0 +1,201 @@
+"""The recordings of a command: how they are read, and what is advised where they cannot be."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.cli.arguments import by_name, number_or_text, numbers_by_name
+
+if TYPE_CHECKING:
+    from jointid.joint.model import Model
+    from jointid.recording.recording import Recording
+
+
+def load_all(
+    paths: Sequence[Path],
+    arguments: argparse.Namespace,
+    models: Sequence[Model] = (),
+    *,
+    usable: Callable[[Recording], object] | None = None,
+) -> list[Recording]:
+    """The recordings of a command, each read with the same --column, --unit and --where.
+
+    Parameters
+    ----------
+    models : sequence of Model
+        Their own terms name columns that are read as extra signals, unless --extra says which. Default: none.
+    usable : callable, optional
+        Raises what a recording lacks for the command. Default: nothing is needed.
+
+    Raises
+    ------
+    InputError
+        With all that is missing, as far as one can see: see `looked_ahead`.
+    """
+    from jointid.recording.readers.loading import load
+
+    several, ratios = joints_wanted(arguments), gear_ratios(arguments)
+    if several is not None and len(several) != 1:
+        raise InputError(
+            "one joint is expected here; identify takes several",
+            argument="joints",
+            value=arguments.joints,
+        )
+    if ratios is not None and len(ratios) > 1:
+        raise InputError(
+            "one ratio is expected for one joint", argument="gear_ratio", value=arguments.gear_ratio
+        )
+    reading = {
+        "joint": several[0] if several else None,
+        "gear_ratio": ratios[0] if ratios else None,
+        "drop_copies": arguments.drop_copies,
+        "drop_invalid": arguments.drop_invalid,
+        **how_to_read(arguments, models),
+    }
+
+    def read(path: Path, changes: Mapping[str, Any]) -> Recording:
+        recording = load(path, **with_changes(reading, changes))
+        if usable is not None:
+            usable(recording)
+        return recording
+
+    recordings = []
+    for path in paths:
+        try:
+            recordings.append(read(path, {}))
+        except InputError as error:
+            from jointid.cli.looking_ahead import looked_ahead
+
+            further = looked_ahead(
+                error,
+                partial(read, path),
+                lambda changes, path=path: _torque_of(path, with_changes(reading, changes)),  # type: ignore[misc]
+            )
+            raise as_given(_of_joints(further), arguments) from None
+    return recordings
+
+
+def with_changes(reading: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of `load` with some changed; columns, units and factors signal by signal."""
+    changed = dict(reading)
+    for name, value in changes.items():
+        both = isinstance(value, Mapping) and changed.get(name)
+        changed[name] = {**changed[name], **value} if both else value
+    return changed
+
+
+def _torque_of(path: Path, reading: Mapping[str, Any]) -> Action | None:
+    """The call with a column that may hold the torque of a file in which no header says so."""
+    from jointid.recording.column_lookup import column_index
+    from jointid.recording.likely_torque import torque_column
+    from jointid.recording.matching import match_columns
+    from jointid.recording.readers.loading import table_of
+
+    if reading["joint"] is not None:  # the headers of several joints say whose torque it is
+        return None
+    parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
+    table = table_of(path, **parts)
+    columns = reading["columns"]
+    found = match_columns(table, columns=columns, units=None, scale=None, kind=None).found
+    taken = {column.index for column in found.values()}
+    taken |= {column_index(table, header, "where") for header in reading["where"] or ()}
+    index = torque_column(table, taken, found["position"].index)
+    if index is None:
+        return None
+    header = table.headers[index]
+    return Action(
+        "call",
+        {
+            "columns": {"torque": header if table.headers.count(header) == 1 else index},
+            "scale": {"torque": 1.0},
+        },
+        "if that column is proportional to the torque, with the factor to SI instead of 1",
+        "load",
+    )
+
+
+def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> dict[str, Any]:
+    """How the recordings of a command are read, as arguments of `load` and `load_robot`."""
+    columns = {
+        signal: int(header) if header.isdigit() else None if header == "none" else header
+        for signal, header in by_name("columns", arguments.column).items()
+    }
+    where = {
+        column: number_or_text(value) for column, value in by_name("where", arguments.where).items()
+    }
+    extra: dict[str, str | int] = {
+        name: int(header) if header.isdigit() else header
+        for name, header in by_name("extra", arguments.extra).items()
+    }
+    for model in models:
+        for signal in model.resolved.terms.signals:
+            extra.setdefault(signal, signal)
+    return {
+        "columns": columns or None,
+        "units": by_name("units", arguments.unit) or None,
+        "scale": numbers_by_name("scale", arguments.scale) or None,
+        "extra": extra or None,
+        "where": where or None,
+        "topic": arguments.topic,
+        "group": arguments.group,
+        "unpacked": arguments.unpacked,
+    }
+
+
+def joints_wanted(arguments: argparse.Namespace) -> list[str] | None:
+    """The joints of --joints; an empty list for all, None if the option is not there."""
+    text = arguments.joints
+    if text is None:
+        return None
+    names = [] if text == "all" else [name.strip() for name in text.split(",")]
+    if "" in names:
+        raise InputError(
+            "names or numbers such as 1,3,5 are expected, or all", argument="joints", value=text
+        )
+    return names
+
+
+def gear_ratios(arguments: argparse.Namespace) -> list[float] | None:
+    """The ratios of --gear-ratio; None if the option is not there."""
+    text = arguments.gear_ratio
+    if text is None:
+        return None
+    ratios = [number_or_text(part.strip()) for part in text.split(",")]
+    if any(isinstance(ratio, str) for ratio in ratios):
+        raise InputError(
+            "numbers such as 32,45,-48 are expected", argument="gear_ratio", value=text
+        )
+    return [float(ratio) for ratio in ratios]
+
+
+def as_given(error: InputError, arguments: argparse.Namespace) -> InputError:
+    """An error about an extra signal that only an own term names: on the command line it is the term's."""
+    root, _, name = error.argument.partition(".")
+    if root != "extra" or name not in by_name(
+        "terms", arguments.term if "term" in arguments else []
+    ):
+        return error
+    if name in by_name("extra", arguments.extra):
+        return error
+    return InputError(
+        error.reason, argument="terms", value=name, place=error.place, remedy=error.remedy
+    )
+
+
+def _of_joints(error: InputError) -> InputError:
+    """An error about `joint`, which on the command line is --joints; --joint is a file."""
+    if error.argument != "joint":
+        return error
+    return InputError(
+        error.reason,
+        argument="joints",
+        value=error.value,
+        place=error.place,
+        remedy=error.remedy,
+    )

@@ -1,0 +1,96 @@
+"""Facts of a joint that must fit to each other."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from jointid.base.errors import InputError
+
+if TYPE_CHECKING:
+    from jointid.joint.joint import Joint
+
+# Two values of the same inertia may differ by this share: printed values are rounded.
+_INERTIA_TOLERANCE = 1e-3
+
+
+def check_consistency(joint: Joint, owner: str) -> None:
+    """Refuse fields that contradict each other.
+
+    Parameters
+    ----------
+    joint : Joint
+    owner : str
+        The joint as messages name it.
+
+    Raises
+    ------
+    InputError
+    """
+    _check_inertia(joint, owner)
+    _check_gravity(joint, owner)
+    _check_tolerances(joint, owner)
+
+
+def _check_inertia(joint: Joint, owner: str) -> None:
+    if joint.rotor_inertia is None:
+        return
+    reflected = joint.gear_ratio * joint.gear_ratio * joint.rotor_inertia
+    product = f"gear_ratio² · rotor_inertia is {reflected:.6g}"
+    if not math.isfinite(reflected) or reflected == 0.0:
+        raise InputError(
+            f"{product} kg·m², which cannot be used",
+            argument="rotor_inertia",
+            value=joint.rotor_inertia,
+            place=owner,
+        )
+    tolerance = _INERTIA_TOLERANCE * reflected
+    if joint.inertia is not None and abs(joint.inertia - reflected) > tolerance:
+        raise InputError(
+            f"but {product}",
+            argument="inertia",
+            value=joint.inertia,
+            place=owner,
+            remedy="give only one of the two",
+        )
+
+
+def _check_gravity(joint: Joint, owner: str) -> None:
+    gravity = joint.model.resolved.gravity
+    if gravity != "none" and joint.kind == "prismatic":
+        raise InputError(
+            "gravity on a prismatic joint is the same at every position",
+            argument="gravity",
+            value=gravity,
+            place=owner,
+            remedy="set gravity to none, and torque_offset to true",
+        )
+    if gravity == "known" and joint.link is None:
+        raise InputError(
+            "there is no link",
+            argument="gravity",
+            value=gravity,
+            place=owner,
+            remedy="give the link's mass and centre_of_mass",
+        )
+
+
+def _check_tolerances(joint: Joint, owner: str) -> None:
+    facts = joint.facts
+    for name, stated in joint.tolerances.given.items():
+        if name in ("mass", "centre_of_mass", "link_inertia") and joint.link is None:
+            raise InputError(
+                "there is no link",
+                argument=name,
+                value=stated,
+                place=f"{owner}: tolerances",
+                remedy="give the link's mass and centre_of_mass",
+            )
+        if not isinstance(stated, str) and facts[name] is None:
+            raise InputError(
+                "the fact itself is not given",
+                argument=name,
+                value=stated,
+                place=f"{owner}: tolerances",
+                remedy='give the fact, or a share such as "5 %"',
+            )

