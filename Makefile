@@ -29,7 +29,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
-        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants soak clean
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants write-faults soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -155,6 +155,9 @@ fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader
 
 mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
 	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
+
+write-faults: $(INSTALLED) .venv/.test-tools  ## a full disk, a bad one, a power loss at 1,000 calls that write; by hand
+	@JOINTID_WRITE_FAULTS=all $(BIN)/python -m pytest -s tests/base/test_write_faults.py
 
 soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py

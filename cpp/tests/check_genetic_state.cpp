@@ -1,6 +1,5 @@
 // A search interrupted anywhere goes on to the same bits, also through the bytes of a checkpoint.
 
-#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -98,9 +97,9 @@ CHECK_CASE("genetic state: alike is relative to the best, and a tolerance of 0 i
   GaOptions options;
   options.generations = 5;
   options.tolerance = 1e-3;
-  const Function high = [](const Candidate& x) { return 1e4 + std::min(1.0, sphere(x)); };
+  const Function high = [](const Candidate& x) { return 1e5 + sphere(x); };
   CHECK(go(options, {}, 2, {}, high).stop == Stop::converged);
-  const Function low = [](const Candidate& x) { return 1e-4 * (1.0 + sphere(x)); };
+  const Function low = [](const Candidate& x) { return 1e-6 * (1.0 + sphere(x)); };
   options.mutation_probability = 1.0;
   CHECK(go(options, {}, 2, {}, low).stop != Stop::converged);
   options.tolerance = 0.0;

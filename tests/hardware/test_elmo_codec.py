@@ -162,3 +162,21 @@ def test_registers_speak() -> None:
     assert failed is not None
     assert "the motor must be on (EC 58)" in failed.meaning
     assert Emergency.of(b"\x00") is None
+
+
+def test_the_least_integer_fits_and_the_next_does_not() -> None:
+    least = Command(letters="PX", value=-(2**31))
+    assert Command.of(least.payload()) == least
+    with pytest.raises(jid.InputError, match="32-bit"):
+        Command(letters="PX", value=-(2**31) - 1)
+
+
+def test_a_command_with_a_value_assigns() -> None:
+    assert Command(letters="BG").executes
+    assert not Command(letters="BG", value=1).executes
+    assert not Command(letters="TC").executes
+
+
+def test_a_truth_value_is_no_index() -> None:
+    with pytest.raises(jid.InputError, match="a whole number is expected"):
+        Command(letters="CL", index=True)

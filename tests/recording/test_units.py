@@ -187,3 +187,11 @@ def test_si_values_keep_their_bits(values: list[float]) -> None:
     array = np.array(values)
     for name in ("rad", "m", "s", "Nm", "N", "A", "degC", "raw"):
         assert UNITS[name].to_si(array).tobytes() == array.tobytes()
+
+
+@pytest.mark.parametrize(("text", "name"), [("r_min", "rpm"), ("r/min", "rpm"), ("Mm", "mm")])
+def test_more_spellings(text: str, name: str) -> None:
+    """Of two letters the first may be a capital by habit."""
+    unit = find_unit(text)
+    assert unit is not None
+    assert unit.name == name

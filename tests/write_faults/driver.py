@@ -1,15 +1,19 @@
 """Run under the failing library: a scenario of writing, once for each call and each fault, in a process of its own.
 
-Prints a line for each fault after which a file is torn, something acknowledged is lost, or no sentence was said.
+Prints a line for each fault after which a file is torn, something acknowledged is lost, or no sentence was said. The
+last fault of a scenario is a loss of power behind its end.
 """
 
 import ctypes
 import errno
 import os
 import sys
+import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Timer
 
 import designs
 import numpy as np
@@ -17,11 +21,15 @@ from closed_loop import TRUTH
 
 import jointid as jid
 from jointid.hardware.session.recorder import COLUMNS, Recorder
+from jointid.report.html import save_report
 from jointid.study.row import Row
 from jointid.study.study_file import StudyFile
+from write_faults import commands
 
 Acknowledge = Callable[[], object]
 _POWER = 99  # exit code of a process whose power failed
+_AFTER = -1  # the power fails behind the end
+_MISSING = 1.0  # [s]: not more of a session is lost with the power
 _TIME = np.arange(20) * 1e-3
 _OLD = jid.Recording(time=_TIME, position=np.sin(_TIME), torque=np.cos(_TIME))
 _NEW = jid.Recording(time=_TIME, position=np.sin(2.0 * _TIME), torque=np.cos(_TIME))
@@ -114,6 +122,25 @@ def _judged_run(folder: Path, known: int) -> str:
         return "" if not known and "\n" not in said and path.name in said else f"torn: {said}"
 
 
+def _recorded(folder: Path, acknowledge: Acknowledge) -> None:
+    """A session that goes on while the power fails: each row is acknowledged, 1,000 a second."""
+    recorder = Recorder(folder / "run.csv", {"session": True})
+    begin = time.monotonic()
+    for number in range(5000):
+        left = begin + 1e-3 * number - time.monotonic()
+        if left > 0.0:
+            time.sleep(left)
+        recorder.sample([number * 1e-3, *[0.25 * number] * (len(COLUMNS) - 1)])
+        acknowledge()
+
+
+def _judged_recorded(folder: Path, known: int) -> str:
+    rows = (folder / "run.csv").read_text().count("\n") - 2
+    if rows < known - _MISSING / 1e-3:
+        return f"lost: {rows} of {known} rows are left"
+    return "" if rows < 8 or len(jid.load(folder / "run.csv").time) == rows else "torn"
+
+
 _JOINT = jid.thesis_joint()
 _FIRST, _SECOND = (
     jid.Estimate.load(
@@ -127,58 +154,101 @@ SCENARIOS = {
     "joint": _whole("joint.toml", _JOINT.save, _JOINT.with_parameters(TRUTH).save),
     "design": _whole("design.toml", _DESIGN.save, designs.designed(seed=7).save),
     "estimate": _whole("estimate.json", _FIRST.save, _SECOND.save),
+    "report": _whole("report.html", partial(save_report, _FIRST), partial(save_report, _SECOND)),
     "run": (_nothing, _ran, _judged_run),
     "sweep": (_nothing, _swept, _judged_study),
-}
+} | {f"command {name}": scenario for name, scenario in commands.SCENARIOS.items()}
 
 
 def _faulted(name: str, call: int, number: int, library: ctypes.CDLL) -> tuple[int, str]:
     """How often the scenario calls (of a call above all: without a fault), and what is wrong."""
     prepare, act, judge = SCENARIOS[name]
     with TemporaryDirectory() as place:
-        folder = Path(place).resolve()
+        folder = Path(place).resolve() / "files"
+        folder.mkdir()
         prepare(folder)
         reading, writing = os.pipe()
         child = os.fork()
         if child == 0:
-            library.arm(os.fsencode(folder), ctypes.c_long(call), number)
+            library.arm(os.fsencode(folder), ctypes.c_long(max(call, 0)), number)
             said = "0"
             try:
                 act(folder, lambda: os.write(writing, b"+"))
-            except (OSError, jid.InputError) as error:
+            except (OSError, jid.InputError, commands.CommandError) as error:
                 said = "1" if "\n" not in str(error) and str(error) else "2"
-            except BaseException:
+            except BaseException as error:
+                os.write(2, f"{error!r}\n".encode())
                 said = "2"
-            os.write(writing, f" {said} {library.counted()}".encode())
+            calls = library.counted()
+            if call == _AFTER:
+                library.lose()
+            os.write(writing, f" {said} {calls}".encode())
             os._exit(0)
         os.close(writing)
         with os.fdopen(reading) as stream:
             acknowledged, *rest = stream.read().split(" ")
         _, status = os.waitpid(child, 0)
         powerless = os.waitstatus_to_exitcode(status) == _POWER
-        known = 0 if powerless and name == "sweep" else len(acknowledged)
+        known = 0 if powerless and name == "sweep" and call != _AFTER else len(acknowledged)
         wrong = judge(folder, known)
         if not powerless and (not rest or rest[0] == "2"):
             wrong = wrong or "no sentence"
+        if call == 0 and rest[:1] != ["0"]:
+            wrong = wrong or "fails without a fault"
         left = [each.name for each in folder.iterdir() if each.name.startswith(".")]
         if left and not powerless:
             wrong = wrong or f"left behind: {left}"
         return int(rest[1]) if len(rest) > 1 else 0, wrong
 
 
-def main(name: str, path: str) -> None:
-    """Each call of a scenario, with each fault."""
-    library = ctypes.CDLL(path)
-    total, _ = _faulted(name, 0, 0, library)
-    faults = 0
-    for call in range(1, total + 1):
-        for number in (errno.ENOSPC, errno.EIO, 0):
-            faults += 1
-            _, wrong = _faulted(name, call, number, library)
+def _interrupted(times: list[float], library: ctypes.CDLL) -> list[str]:
+    """What is wrong after the power failed at some moments of a session."""
+    said = []
+    for moment in times:
+        with TemporaryDirectory() as place:
+            folder = Path(place).resolve() / "files"
+            folder.mkdir()
+            reading, writing = os.pipe()
+            child = os.fork()
+            if child == 0:
+                library.arm(os.fsencode(folder), ctypes.c_long(0), 0)
+                Timer(moment, library.lose).start()
+                _recorded(folder, partial(os.write, writing, b"+"))
+                os._exit(0)
+            os.close(writing)
+            with os.fdopen(reading) as stream:
+                known = len(stream.read())
+            _, status = os.waitpid(child, 0)
+            wrong = _judged_recorded(folder, known)
+            if os.waitstatus_to_exitcode(status) != _POWER:
+                wrong = wrong or "the power did not fail"
             if wrong:
-                said = errno.errorcode.get(number, "power")
-                sys.stdout.write(f"call {call} of {total}, {said}: {wrong}\n")
-    sys.stdout.write(f"{faults} faults\n")
+                said.append(f"power after {moment:g} s: {wrong}\n")
+    return said
+
+
+def main(name: str, path: str, most: str = "0") -> None:
+    """Calls of a scenario, all or about `most` of them, with each fault."""
+    library = ctypes.CDLL(path)
+    if name == "session":
+        times = [0.7, 1.3, 2.1, 3.4] if int(most) else list(np.arange(0.3, 4.4, 0.17))
+        sys.stdout.writelines(_interrupted(times, library))
+        sys.stdout.write(f"{len(times)} faults\n")
+        return
+    # Twice: a first run of a command may make what later ones find.
+    (_, _), (total, failed) = (_faulted(name, 0, 0, library) for _ in range(2))
+    if failed:
+        sys.stdout.write(f"{failed}\n")
+    chosen = range(1, total + 1)
+    if 0 < int(most) < total:
+        chosen = sorted({1 + (total - 1) * k // (int(most) - 1) for k in range(int(most))})  # type: ignore[assignment]
+    faults = [(call, number) for call in chosen for number in (errno.ENOSPC, errno.EIO, 0)]
+    for call, number in [*faults, (_AFTER, 0)]:
+        _, wrong = _faulted(name, call, number, library)
+        if wrong:
+            said = errno.errorcode.get(number, "power")
+            sys.stdout.write(f"call {call} of {total}, {said}: {wrong}\n")
+    sys.stdout.write(f"{len(faults) + 1} faults\n")
 
 
 if __name__ == "__main__":

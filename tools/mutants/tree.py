@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 from mutants import switched_sources
@@ -50,7 +51,8 @@ def built_core(folder: Path, mutants: list[Mutant]) -> tuple[Path, Path]:
         "-DJOINTID_BUILD_CHECKS=ON",
     ]
     setup += ["-DCMAKE_BUILD_TYPE=Release", f"-DPython_EXECUTABLE={sys.executable}"]
-    setup.append(f"-Dpybind11_DIR={_pybind11()}")
+    setup += [f"-Dpybind11_DIR={_pybind11()}", f"-DSKBUILD_PROJECT_VERSION={_version()}"]
+    setup.append("-DJOINTID_BUILD_EXTENSION=ON")  # with the checks: the core is compiled once
     if shutil.which("ccache"):
         setup.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
         environment["CCACHE_BASEDIR"] = str(sources)
@@ -63,6 +65,11 @@ def built_core(folder: Path, mutants: list[Mutant]) -> tuple[Path, Path]:
             raise MutantError("\n".join((done.stderr[-2000:], *(wrong or [done.stdout[-3000:]]))))
     (extension,) = objects.glob("_core*.so")
     return extension, objects / "core_check"
+
+
+def _version() -> str:
+    text = (REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")
+    return str(tomllib.loads(text)["project"]["version"])
 
 
 def _pybind11() -> str:

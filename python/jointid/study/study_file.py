@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.base.files import open_locked
+from jointid.base.files import open_locked, sync_folder
 from jointid.base.schema import read_bytes, read_json
 from jointid.study.row import REFUSED, Row
 from jointid.study.saved_header import EXPECTED, read_header
@@ -57,6 +57,7 @@ class StudyFile:
         self._file = open_locked(path)
         try:
             self._begin(header, resume)
+            sync_folder(path.parent)
         except BaseException:
             self._file.close()
             raise

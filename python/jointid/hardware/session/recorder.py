@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from jointid.base.errors import InputError
-from jointid.hardware.session.appended_file import AppendedFile, Syncing, sync_folder
+from jointid.base.files import sync_folder
+from jointid.hardware.session.appended_file import AppendedFile, Syncing
 from jointid.recording.saving import CSV_MARK, SCHEMA
 from jointid.recording.truncated import CLOSING, OPENING
 
