@@ -29,7 +29,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
-        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz soak clean
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -71,7 +71,7 @@ vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo
 
 browser: .venv/.strict .venv/.test-tools  ## install Chromium (root or sudo), then look at the pages in it
 	@tools/install_browser.sh
-	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py
+	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py tests/app/test_app_in_browser.py
 
 lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub, workflow
 	@echo "ruff check";         $(BIN)/ruff check
@@ -140,6 +140,7 @@ bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
 	@$(BIN)/python benchmarks/latency.py --output docs/latency.md
+	@$(BIN)/python benchmarks/projections.py --output docs/projection.md
 
 notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
@@ -152,6 +153,9 @@ fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader
 	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) \
 	  tools/fuzz.sh --numprocesses auto --dist load tests/fuzz tests/base/test_read_back.py
 
+mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
+	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
+
 soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py
 
@@ -159,7 +163,7 @@ clean:  ## remove everything made here, .venv too
 	@rm -rf .venv build dist demo .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
-tools: .venv/.test-tools .venv/.lint-tools  # before two of the others run at the same time
+tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of the others run at the same time
 
 .venv/.created:
 	@python="$$(tools/find_python.sh)"; \

@@ -1,6 +1,6 @@
 """Instructions of warm calls, counted by callgrind: what does not depend on what else the machine does. Markdown.
 
-A program with some calls, less one with fewer: imports and the first call drop out. Needs valgrind, which emulates
+Counting begins after a first call, so that imports and what is made once drop out. Needs valgrind, which emulates
 AVX2. With one thread of BLAS, since threads that wait count, too.
 """
 
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 _PROGRAM = """
-import sys
+import os, subprocess, sys
 import jointid as jid
 recording, joint = jid.load(sys.argv[1]), jid.thesis_joint()
 estimate = jid.identify(recording, joint)
@@ -23,6 +23,7 @@ calls = {
     "identify": lambda: jid.identify(recording, joint),
     "auto": lambda: jid.identify(recording, joint, model="auto"),
     "bootstrap": lambda: estimate.bootstrap(1000),
+    "json": estimate.to_json,
     "compare two": lambda: jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"]),
     "compare five": lambda: jid.compare_models(
         recording,
@@ -30,10 +31,14 @@ calls = {
         models=["coulomb_viscous", "stribeck", "stribeck_general", "stribeck:ripple=1", "coulomb_viscous:ripple=1"],
     ),
 }
-for _ in range(int(sys.argv[3])):
-    calls[sys.argv[2]]()
+def count(state):
+    subprocess.run(["callgrind_control", "-i", state, str(os.getpid())], stdout=subprocess.DEVNULL, check=True)
+
+calls[sys.argv[2]]()
+count("on")
+calls[sys.argv[2]]()
+count("off")
 """
-_FEWER = 1  # calls of the program that is subtracted
 _OLDEST = 67.8  # millions: a default identify() of version 0.1.0
 _OLDEST_TIME = 7.1  # [ms] of CPU on the machine to which required times refer
 
@@ -44,7 +49,6 @@ class Row:
 
     name: str
     what: str
-    calls: int
     instructions: float | None = None
     time: float | None = None
 
@@ -57,39 +61,40 @@ class Row:
 
 
 ROWS = (
-    Row(name="identify", what="default `identify()`", calls=4, instructions=45.0),
-    Row(name="auto", what='`identify(model="auto")`', calls=2, time=25.0),
-    Row(name="bootstrap", what="`bootstrap(1000)`", calls=2, time=150.0),
-    Row(name="compare two", what="`compare_models` of two models", calls=1, time=35.0),
-    Row(name="compare five", what="the same of five, one general", calls=1, time=250.0),
+    Row(name="identify", what="default `identify()`", instructions=45.0),
+    Row(name="auto", what='`identify(model="auto")`', time=25.0),
+    Row(name="bootstrap", what="`bootstrap(1000)`", time=150.0),
+    Row(name="json", what="`to_json`", time=3.0),
+    Row(name="compare two", what="`compare_models` of two models", time=35.0),
+    Row(name="compare five", what="the same of five, one general", time=250.0),
 )
 
 
 def counted(row: Row, path: Path) -> float:
     """Millions of instructions of one call."""
-    totals = [_total(row.name, path, _FEWER + more) for more in (0, row.calls)]
-    return (totals[1] - totals[0]) / row.calls / 1e6
-
-
-def _total(name: str, path: Path, calls: int) -> int:
     with tempfile.TemporaryDirectory() as folder:
         found = Path(folder) / "found"
         environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
         subprocess.run(
             [
-                *("valgrind", "--tool=callgrind", f"--callgrind-out-file={found}"),
-                *(sys.executable, "-c", _PROGRAM, str(path), name, str(calls)),
+                *(
+                    "valgrind",
+                    "--tool=callgrind",
+                    "--instr-atstart=no",
+                    f"--callgrind-out-file={found}",
+                ),
+                *(sys.executable, "-c", _PROGRAM, str(path), row.name),
             ],
             env=environment,
             check=True,
             stderr=subprocess.DEVNULL,
         )
         text = found.read_text(encoding="utf-8")
-    return int(re.findall(r"^(?:summary|totals): (\d+)", text, re.MULTILINE)[-1])
+    return int(re.findall(r"^(?:summary|totals): (\d+)", text, re.MULTILINE)[-1]) / 1e6
 
 
-def table(names: list[str]) -> str:
-    """The rows as Markdown; without valgrind a sentence."""
+def table(names: list[str] | None = None) -> str:
+    """The rows as Markdown, all of them by default; without valgrind a sentence."""
     if shutil.which("valgrind") is None:
         return "Instructions were not counted: valgrind is not installed.\n"
     path = Path(__file__).resolve().parents[1] / "examples" / "data" / "well_excited.csv.gz"
@@ -98,7 +103,7 @@ def table(names: list[str]) -> str:
         "|---|---|---|---|",
     ]
     for row in ROWS:
-        if row.name not in names:
+        if names is not None and row.name not in names:
             continue
         found = counted(row, path)
         holds = "yes" if found <= row.limit else "**no**"
@@ -110,4 +115,4 @@ if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
     known = [row.name for row in ROWS]
     arguments.add_argument("names", nargs="*", choices=[*known, []], help="default: all of them")
-    print(table(arguments.parse_args().names or known))
+    print(table(arguments.parse_args().names or None))

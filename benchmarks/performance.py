@@ -178,28 +178,6 @@ def anatomy_table(store: Store) -> str:
     return table(header, [*lines, whole])
 
 
-def projection_table(store: Store) -> str:
-    """A line a problem: CPU time from the ready penalty to the end of the search."""
-    lines = []
-    for r in store.of("projection"):
-        quickest = min(r["genetic"], r["separable"])
-        lines.append(
-            [
-                r["name"],
-                f"{r['samples']:,}",
-                seconds(r["genetic"]),
-                seconds(r["separable"]),
-                seconds(r["numpy"]),
-                seconds(r["compiled"]),
-                f"{r['numpy'] / quickest:.2f}",
-                VERDICTS[r["numpy"] >= quickest],
-            ]
-        )
-    header = ["problem", "samples", "our search, default", "our search, separable"]
-    header += ["variable projection, NumPy", "with our compiled column", "NumPy / our quicker one"]
-    return table([*header, "not slower"], lines)
-
-
 def missed(store: Store, order: list[str]) -> str:
     """A line a missed ratio; empty when none is."""
     lines = []
@@ -255,7 +233,6 @@ def write(store: Store, order: list[str], limit: float, path: Path) -> None:
         ),
         ratios=ratios(store, order),
         missed=missed(store, order),
-        projection=projection_table(store),
         models=table(
             ["call", "CPU time", "times `stribeck`"],
             [[r["name"], seconds(r["seconds"]), f"{r['ratio']:.2f}"] for r in store.of("model")],

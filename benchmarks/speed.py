@@ -17,7 +17,6 @@ import interruption
 import literal_code
 import model_costs
 import performance
-import projections
 import scaling
 from peers.contest import make_contest
 from peers.table import all_peers
@@ -46,9 +45,6 @@ def main(*, budget: float, quick: bool, output: Path) -> None:
             store.append(record)
     if not store.of("model"):
         for record in model_costs.measure(contest):
-            store.append(record)
-    if not store.of("projection"):
-        for record in projections.measure():
             store.append(record)
     if not store.of("literal"):
         store.append(literal_code.measure(contest.recording, WORK, 2 if quick else 7))

@@ -14,6 +14,7 @@ version = release = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="
 ]
 copyright = author  # noqa: A001  Sphinx's name of it
 language = "en"
+smartquotes_action = "qe"  # two hyphens begin an option
 
 extensions = [
     "myst_parser",
@@ -22,7 +23,7 @@ extensions = [
     "documentation.notebooks",
     "documentation.mathml",
 ]
-exclude_patterns = ["repository/**", "generated/**"]
+exclude_patterns = ["repository/**", "generated/**", "as_it_is/**"]
 suppress_warnings = ["ref.python"]  # a field with the name of another class's: it needs no link
 default_role = "literal"  # a name in a docstring
 
@@ -46,7 +47,6 @@ html_css_files = ["pictures.css", "site.css"]
 html_show_sphinx = False
 html_copy_source = False
 html_show_sourcelink = False
-templates_path = ["_templates"]
 html_theme_options = {"navigation_with_keys": True, "footer_icons": []}
 pygments_style = "a11y-high-contrast-light"
 pygments_dark_style = "a11y-high-contrast-dark"

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from obeyed_advice import Call
 from plants import Bench, Law, Log, Plant, simulate, sines, thesis
 
 import jointid as jid
+from jointid.app.call import Call
 
 DURATION = 8.0
 _TURN = 101.0  # of the motor, an output turn

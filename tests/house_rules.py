@@ -118,13 +118,14 @@ FOLDERS: dict[str, Folder] = {
         },
         packages={"numpy", "pinocchio"},
     ),
+    "servo": Folder(may_use={*_DATA, "estimate"}, packages={"numpy"}),
     "plot": Folder(
-        may_use={*_DATA, "simulation", "estimate", "study"},
+        may_use={*_DATA, "simulation", "estimate", "study", "servo"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
         may_use={
-            *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
+            *("base", "joint", "estimate", "joints", "robot", "servo", "identification/warnings"),
             *("report/drawing", "recording", "commissioning", "comparison", "study", "design"),
         },
         packages={"numpy"},
@@ -182,6 +183,7 @@ FOLDERS: dict[str, Folder] = {
                 "comparison",
                 "joints",
                 "robot",
+                "servo",
                 "simulation",
                 "study",
                 "design",
@@ -198,7 +200,15 @@ FOLDERS: dict[str, Folder] = {
     "": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
+            *(
+                "recording/readers",
+                "recording/wide",
+                "comparison",
+                "joints",
+                "online",
+                "robot",
+                "servo",
+            ),
             *("simulation", "study", "design"),
             *("plot", "report", "exports", "hardware", "commissioning", "cli"),
         },

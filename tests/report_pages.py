@@ -48,8 +48,12 @@ def of_several_joints() -> str:
 
 
 def of_a_comparison() -> str:
+    return report_page(jid.compare_models(good(), jid.thesis_joint(), folds=4))
+
+
+def of_a_named_comparison() -> str:
     joint = replace(jid.thesis_joint(), name=HOSTILE)
-    return report_page(jid.compare_models(good(), joint, folds=4))
+    return report_page(jid.compare_models(good(), joint, models=["stribeck", "coulomb_viscous"]))
 
 
 @cache
@@ -126,8 +130,9 @@ def of_a_stopped_session() -> str:
 
 
 PAGES: tuple[Callable[[], str], ...] = (
-    *(of_a_joint, of_a_search, of_several_joints, of_a_comparison, of_a_study, of_a_study_of_rows),
-    *(of_a_design, of_a_refused_design, of_a_robot, of_a_robot_comparison),
+    *(of_a_joint, of_a_search, of_several_joints, of_a_comparison, of_a_named_comparison),
+    *(of_a_study, of_a_study_of_rows, of_a_design, of_a_refused_design),
+    *(of_a_robot, of_a_robot_comparison),
     *(of_a_session, of_a_stopped_session),
 )
 

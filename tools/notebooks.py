@@ -37,7 +37,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help="such as 01; default: all")
     names = parser.parse_args().names
-    os.environ.pop("JOINTID_QUICK", None)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["IPYTHONDIR"] = folder
         for path in sorted(FOLDER.glob("*.ipynb")):

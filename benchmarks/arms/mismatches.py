@@ -11,6 +11,7 @@ from simulated_arm import random_motion, run
 import jointid as jid
 from arms.seven import URDF, Arm, Errors, Sensors, of_estimate, random_arm, recorded
 from arms.tx40_tables import percent
+from jointid.robot.inertia import Inertia
 
 FAR = 0.05
 
@@ -147,7 +148,7 @@ def table(seeds: range) -> Iterator[str]:
             yield _row(mismatch.name, inertia, runs)
 
 
-def _row(name: str, inertia: str, runs: list[tuple[Arm, jid.RobotRecording]]) -> str:
+def _row(name: str, inertia: Inertia, runs: list[tuple[Arm, jid.RobotRecording]]) -> str:
     worst = {"coulomb": 0.0, "viscous": 0.0}
     residual, silent, refused, codes = 0.0, 0, 0, []
     for arm, recording in runs:

@@ -10,6 +10,7 @@ import jointid as jid
 from arms.mismatches import MISMATCHES, late
 from arms.seven import URDF, Errors, Sensors, of_estimate, random_arm, recorded, simulated
 from arms.tx40_tables import percent
+from jointid.robot.inertia import Inertia
 
 DELAYS = (0.0, 1e-3, 3e-3, 10e-3)  # [s]
 NEAR = 3e-4  # [s]
@@ -77,11 +78,12 @@ def causes(seeds: range) -> Iterator[str]:
             arm = mismatch.arm(random_arm(seed))
             made = recorded(run(arm, random_motion(seed)), mismatch.sensors, seed)
             runs.append(mismatch.recording(made))
-        for inertia, code in zip(("urdf", "free"), NAMES[mismatch.name], strict=True):
+        modes: tuple[Inertia, Inertia] = ("urdf", "free")
+        for inertia, code in zip(modes, NAMES[mismatch.name], strict=True):
             yield _row(mismatch.name, inertia, code, runs)
 
 
-def _row(name: str, inertia: str, code: str, runs: list[jid.RobotRecording]) -> str:
+def _row(name: str, inertia: Inertia, code: str, runs: list[jid.RobotRecording]) -> str:
     known = {each for pair in NAMES.values() for each in pair}
     right, wrong, others, shares = 0, 0, set(), []
     for recording in runs:

@@ -21,13 +21,14 @@ from arms.seven import (
     simulated,
 )
 from arms.tx40_tables import percent
+from jointid.robot.inertia import Inertia
 
 NEAR = 0.03
 NOISES = (1e-5, 3e-5, 1e-4, 3e-4)  # [rad]
 Values = tuple[dict[str, Any], dict[str, Any]]
 
 
-def identified(recording: jid.RobotRecording, inertia: str) -> jid.RobotEstimate:
+def identified(recording: jid.RobotRecording, inertia: Inertia) -> jid.RobotEstimate:
     """The call that a user makes."""
     return jid.identify_robot(recording, jid.Robot.from_urdf(URDF), inertia=inertia)
 

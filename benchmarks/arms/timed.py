@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import jointid as jid
+from jointid.robot.inertia import Inertia
 
 URDF = Path(__file__).resolve().parents[2] / "tests" / "simulated_arm" / "seven_joints.urdf"
 
@@ -46,7 +47,7 @@ def recorded_bytes(recording: jid.RobotRecording) -> int:
     return sum(each.nbytes for each in every)
 
 
-def main(path: str, inertia: str, repeats: int) -> None:
+def main(path: str, inertia: Inertia, repeats: int) -> None:
     """Measure and print as JSON."""
     recording = jid.load_robot(path)
     robot = jid.Robot.from_urdf(URDF)
@@ -64,4 +65,4 @@ def main(path: str, inertia: str, repeats: int) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2], int(sys.argv[3]))
+    main(sys.argv[1], "free" if sys.argv[2] == "free" else "urdf", int(sys.argv[3]))

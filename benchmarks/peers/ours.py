@@ -23,11 +23,8 @@ def whole_identify(method: Method, windows: int | None) -> Solve:
         )
         found = estimate.convergence
         objective.evaluations += int(found.evaluations[-1]) if found is not None else 0
-        if windows == WINDOWS:
-            values = [estimate.parameters[name].value for name in contest.direct.names]
-            objective.best = min(objective.best, contest.direct(values))
-        else:  # other windows, another penalty: held against its own optimum
-            objective.best = contest.best_penalty * estimate.penalty / own_optimum(contest, windows)
+        # By instruments, as the default is, and over its windows: held against its own optimum.
+        objective.best = contest.best_penalty * estimate.penalty / own_optimum(contest, windows)
 
     return solve
 
@@ -36,7 +33,7 @@ _OPTIMA: dict[int | None, float] = {}
 
 
 def own_optimum(contest: Contest, windows: int | None) -> float:
-    """The optimal penalty over other windows; found once, in the untimed first round."""
+    """The optimal penalty of the whole call; found once, in the untimed first round."""
     if windows not in _OPTIMA:
         best = jid.identify(contest.recording, contest.joint, windows=windows, search="separable")
         _OPTIMA[windows] = best.penalty
@@ -74,8 +71,10 @@ def separable(objective: Objective, seed: int) -> None:
     del seed
     contest = objective.contest
     low, high = contest.full_lower, contest.full_upper
-    form = _core.CompressedPenalty(contest.direct, low, high)
-    found = _core.minimise_separable(form, low, high)
+    found = _core.minimise_projected(contest.direct, low, high).found
+    if found is None:  # as `identify` does
+        form = _core.CompressedPenalty(contest.direct, low, high)
+        found = _core.minimise_separable(form, low, high)
     objective.evaluations += found.evaluations
     objective.best = min(objective.best, contest.direct(found.best))
 

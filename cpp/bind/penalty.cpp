@@ -198,8 +198,15 @@ void bind_penalty(py::module_& m) {
       .def_property_readonly("window_count", &Penalty::window_count)
       .def_property_readonly("windows", &Penalty::window_bounds,
                              "First and last sample of each window, shape (window_count, 2).")
-      .def_property_readonly("recording_of", &Penalty::recording_of,
-                             "Which recording each window belongs to.")
+      .def_property_readonly(
+          "recording_of",
+          [](const Penalty& p) {  // an array: a list is made and read number by number
+            const std::vector<int>& run = p.recording_of();
+            return Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>(
+                Eigen::Map<const Eigen::VectorXi>(run.data(), static_cast<Eigen::Index>(run.size()))
+                    .cast<std::int64_t>());
+          },
+          "Which recording each window belongs to, shape (window_count,).")
       .def_property_readonly("usable_duration", &Penalty::usable_duration,
                              "Integrated time of each window [s].")
       .def_property_readonly("window_duration",

@@ -55,17 +55,6 @@ void bind_regression(py::module_& m) {
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
       "Products of whitened rows over segments: with each other, and with the residual.");
-  m.def(
-      "robust_variance",
-      [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,
-         const Eigen::MatrixXd& weights, int threads) {
-        const py::gil_scoped_release nogil;
-        return with_pool(jacobian.rows() * kSamplesEach, threads, [&](base::Pool* pool) {
-          return identify::robust_variance(jacobian, residual, scale, weights, pool);
-        });
-      },
-      py::arg("jacobian"), py::arg("residual"), py::arg("scale"), py::arg("weights"), py::kw_only(),
-      py::arg("threads") = 0, "Prewhitened Newey-West variance of weighted sums of the scores.");
 }
 
 }  // namespace jointid::bind

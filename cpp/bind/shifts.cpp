@@ -83,7 +83,9 @@ void bind_shifts(py::module_& m) {
       .def_readonly("whole", &signals::FittedShift::whole)
       .def_readonly("conservative", &signals::FittedShift::conservative)
       .def_readonly("friction", &signals::FittedShift::friction)
-      .def_readonly("unexplained", &signals::FittedShift::unexplained);
+      .def_readonly("unexplained", &signals::FittedShift::unexplained)
+      .def_readonly("unshifted", &signals::FittedShift::unshifted,
+                    "Coefficients of the columns without a shift; empty where one was searched.");
   m.def(
       "fit_shift",
       [](const std::vector<StretchArrays>& stretches, const Matrix& columns,

@@ -2,6 +2,7 @@
 
 #include "bind/bind.hpp"
 #include "text/control_character.hpp"
+#include "text/number_list.hpp"
 #include "text/number_table.hpp"
 
 namespace jointid::bind {
@@ -15,6 +16,13 @@ void bind_text(py::module_& m) {
       },
       py::arg("text"), py::arg("below"), py::arg("separator"), py::arg("columns"),
       "The numbers of all rows below the first lines; None where a cell is not a plain number.");
+  m.def(
+      "number_list",
+      [](const Eigen::VectorXd& values) {
+        const py::gil_scoped_release nogil;
+        return text::number_list({values.data(), static_cast<std::size_t>(values.size())});
+      },
+      py::arg("values"), "A list of finite numbers as JSON; None where Python has to write it.");
   m.def(
       "find_control_character",
       [](const py::bytes& content) -> py::ssize_t {

@@ -239,6 +239,7 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
   VectorXd missed;
   VectorXd total;
   MatrixXd slopes(count, rubs ? 2 : 1);
+  VectorXd unshifted;
   bool none = false;
   for (int turn = 0; turn < rounds; ++turn) {
     double step = 0.0;
@@ -247,6 +248,7 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
       if (cancel != nullptr) cancel->check();
       levels.at(delay, level);
       const VectorXd found = projection->coefficients(level);
+      if (turn == 0 && i == 0 && delay == 0.0) unshifted = found;
       rest = level;
       for (Index part = 0; part < slopes.cols(); ++part) {
         const Index first = part == 0 ? 0 : rows.conservative;
@@ -278,7 +280,7 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
   }
   const auto groups = clusters_of(rows, levels.used());
   const double own = errors_of(total, missed, weights, groups, projection->rank())[0];
-  FittedShift result{{delay, own}, {delay, own}, {delay, own}, 0.0};
+  FittedShift result{{delay, own}, {delay, own}, {delay, own}, 0.0, std::move(unshifted)};
   if (rubs && !none) {
     const MatrixXd inverse = inverse_of(slopes.transpose() * weights.asDiagonal() * slopes);
     const VectorXd apart = -inverse * (slopes.transpose() * weights.cwiseProduct(rest));

@@ -45,6 +45,7 @@ struct FittedShift {
   std::array<double, 2> conservative;
   std::array<double, 2> friction;
   double unexplained;
+  Eigen::VectorXd unshifted;  ///< as `shift_coefficients`; empty where the search has a reach
 };
 
 /// The signal's window means, shifted, are regressed on the columns and on their own rate of

@@ -109,7 +109,9 @@ ServoMotion roll_out(const ServoLoop& loop, const ServoLog& log, double step,
     const double part = span / parts;
     for (double k = 0.0; k < parts; k += 1.0) {
       double duty = log.command[i];
-      if (loop.closed) duty = loop.gain * (duty - servo.motion.position);
+      // In the middle of the step, as all that acts in it: the loop is no half step late.
+      const double there = servo.motion.position + 0.5 * part * servo.motion.velocity;
+      if (loop.closed) duty = loop.gain * (duty - there);
       duty = std::clamp(duty, -loop.saturation, loop.saturation);
       const double acting = delayed.at(log.time[i] + k * part, duty);
       servo.advance(acting * log.supply[i], log.driven[i] > 0.5, part);

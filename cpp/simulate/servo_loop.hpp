@@ -12,7 +12,7 @@ namespace jointid::simulate {
 
 /// Motor and position loop of a servo; output side of the gear, SI.
 struct ServoLoop {
-  model::Joint joint{};  ///< without friction of the load, which is below
+  model::Joint joint{};             ///< without friction of the load, which is below
   double torque_per_voltage = 1.0;  ///< k_t / R [N·m/V]
   double back_emf = 0.0;            ///< k_t² / R [N·m·s/rad], while the motor is driven
   /// Dry friction per torque through the gear: what the motor gives less what the load takes [1].

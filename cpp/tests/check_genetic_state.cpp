@@ -1,5 +1,7 @@
 // A search interrupted anywhere goes on to the same bits, also through the bytes of a checkpoint.
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -90,6 +92,38 @@ CHECK_CASE("genetic state: a converged run stays converged") {
   const auto whole = go(options, {}, 2, {}, raised);
   CHECK(whole.stop == Stop::converged);
   CHECK(same_run(go(options, {&*whole.state, {}, 50}, 2, {}, raised), whole));
+}
+
+CHECK_CASE("genetic state: alike is relative to the best, and a tolerance of 0 is none") {
+  GaOptions options;
+  options.generations = 5;
+  options.tolerance = 1e-3;
+  const Function high = [](const Candidate& x) { return 1e4 + std::min(1.0, sphere(x)); };
+  CHECK(go(options, {}, 2, {}, high).stop == Stop::converged);
+  const Function low = [](const Candidate& x) { return 1e-4 * (1.0 + sphere(x)); };
+  options.mutation_probability = 1.0;
+  CHECK(go(options, {}, 2, {}, low).stop != Stop::converged);
+  options.tolerance = 0.0;
+  const Function same = [](const Candidate&) { return 5.0; };
+  CHECK(go(options, {}, 2, {}, same).stop != Stop::converged);
+}
+
+CHECK_CASE("genetic state: another penalty is refused, also an infinite one") {
+  GaOptions options;
+  options.generations = 5;
+  const Function raised = [](const Candidate& x) { return 1.0 + sphere(x); };
+  const Function infinite = [](const Candidate&) {
+    return std::numeric_limits<double>::infinity();
+  };
+  const auto state = *go(options, {}, 2, {}, raised).state;
+  const Function rounded = [](const Candidate& x) { return (1.0 + 1e-12) * (1.0 + sphere(x)); };
+  const Function other = [](const Candidate& x) { return (1.0 + 1e-6) * (1.0 + sphere(x)); };
+  CHECK(go(options, {&state, {}, 50}, 2, {}, rounded).stop == Stop::generations);
+  CHECK_REFUSED(go(options, {&state, {}, 50}, 2, {}, other), "another recording");
+  CHECK_REFUSED(go(options, {&state, {}, 50}, 2, {}, infinite), "another recording");
+  const auto nowhere = *go(options, {}, 2, {}, infinite).state;
+  CHECK(go(options, {&nowhere, {}, 50}, 2, {}, infinite).stop == Stop::generations);
+  CHECK_REFUSED(go(options, {&nowhere, {}, 50}, 2, {}, raised), "another recording");
 }
 
 CHECK_CASE("genetic state: bytes that are not a whole state are refused") {

@@ -149,6 +149,39 @@ CHECK_CASE("motion: second order, with reversals, under gravity and Stribeck fri
   }
 }
 
+CHECK_CASE("motion: where a joint stops within a step is known") {
+  // Dry and viscous friction alone: it stops after m/c ln(1 + c v/F).
+  Joint joint;
+  joint.inertia = 2.0;
+  joint.coulomb_positive = joint.coulomb_negative = 10.0;
+  joint.viscous_positive = joint.viscous_negative = 4.0;
+  const double speed = 0.25;  // c v / F is a tenth
+  const double share = 0.1;
+  const double whole = joint.inertia * speed * speed / 10.0;
+  const double expected = whole * (1.0 / share - std::log1p(share) / (share * share));
+  for (const double side : {1.0, -1.0}) {
+    Motion motion;
+    motion.velocity = side * speed;
+    simulate::advance(joint, motion, 0.0, 0.3);
+    CHECK(motion.velocity == 0.0);
+    CHECK_CLOSE(side * motion.position, expected, 0.02 * expected);
+  }
+}
+
+CHECK_CASE("motion: a joint that is turned round within a step gains what fine steps give it") {
+  Joint joint = thesis();
+  joint.weights.clear();
+  const auto push = [](double) { return -150.0; };
+  Motion start;
+  start.velocity = 0.02;
+  const double step = 2e-3;
+  const Motion coarse = moved(joint, start, step, 1, push);
+  const Motion fine = moved(joint, start, step, 4000, push);
+  CHECK(fine.velocity < -0.05);
+  CHECK_CLOSE(coarse.velocity, fine.velocity, 8e-3 * std::fabs(fine.velocity));
+  CHECK_CLOSE(coarse.position, fine.position, 0.02 * std::fabs(fine.position));
+}
+
 CHECK_CASE("motion: stiff bristles do not blow up and hold the load") {
   Joint joint = thesis();
   joint.bristles = true;

@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from jointid.joint.model import Model
     from jointid.joint.parameters import Parameter
     from jointid.joint.thesis import thesis_joint
+    from jointid.joint.voltage_drive import PositionLoop, VoltageDrive
     from jointid.joints.identifying import identify_joints
     from jointid.joints.result import JointEstimates
     from jointid.online.online_estimate import OnlineEstimate
@@ -74,6 +75,10 @@ if TYPE_CHECKING:
     from jointid.robot.identifying import identify_robot
     from jointid.robot.result import RobotEstimate
     from jointid.robot.robot import Robot
+    from jointid.servo.comparing import ServoComparison, compare_servo_models
+    from jointid.servo.estimate import ServoEstimate
+    from jointid.servo.identifying import identify_servo
+    from jointid.servo.rolling_out import Rollout, rollout
     from jointid.simulation.batch import SimulatedBatch, simulate_batch
     from jointid.simulation.plant import Bristle, control_estimates
     from jointid.simulation.scenario import Scenario
@@ -113,16 +118,20 @@ __all__ = [
     "Parameter",
     "Pd",
     "Pid",
+    "PositionLoop",
     "Recording",
     "Robot",
     "RobotComparison",
     "RobotEstimate",
     "RobotRecording",
+    "Rollout",
     "Scenario",
     "Search",
     "Selection",
     "SelfTest",
     "Sensors",
+    "ServoComparison",
+    "ServoEstimate",
     "SimulatedBatch",
     "SimulatedRecording",
     "Study",
@@ -131,11 +140,13 @@ __all__ = [
     "StudyStep",
     "Trajectory",
     "Truth",
+    "VoltageDrive",
     "WindowOptions",
     "__version__",
     "commissioning",
     "compare_models",
     "compare_robot_models",
+    "compare_servo_models",
     "control_estimates",
     "design_excitation",
     "export",
@@ -143,11 +154,13 @@ __all__ = [
     "identify",
     "identify_joints",
     "identify_robot",
+    "identify_servo",
     "load",
     "load_design",
     "load_robot",
     "load_runs",
     "plot",
+    "rollout",
     "save_report",
     "simulate",
     "simulate_batch",
@@ -190,6 +203,7 @@ _HOMES = {
     "jointid.joint.link": ("Limits", "Link"),
     "jointid.joint.model": ("Model",),
     "jointid.joint.parameters": ("Parameter",),
+    "jointid.joint.voltage_drive": ("PositionLoop", "VoltageDrive"),
     "jointid.joint.thesis": ("thesis_joint",),
     "jointid.joints.identifying": ("identify_joints",),
     "jointid.joints.result": ("JointEstimates",),
@@ -205,6 +219,10 @@ _HOMES = {
     "jointid.robot.identifying": ("identify_robot",),
     "jointid.robot.result": ("RobotEstimate",),
     "jointid.robot.robot": ("Robot",),
+    "jointid.servo.comparing": ("ServoComparison", "compare_servo_models"),
+    "jointid.servo.estimate": ("ServoEstimate",),
+    "jointid.servo.identifying": ("identify_servo",),
+    "jointid.servo.rolling_out": ("Rollout", "rollout"),
     "jointid.simulation.batch": ("SimulatedBatch", "simulate_batch"),
     "jointid.simulation.plant": ("Bristle", "control_estimates"),
     "jointid.simulation.scenario": ("Scenario",),
@@ -249,5 +267,6 @@ if not TYPE_CHECKING:  # a type checker sees the imports above, and no name that
 
 
 def __dir__() -> list[str]:
-    """List the public names, also those that were not asked for yet."""
-    return sorted({*globals(), *__all__})
+    """List the public names, also those that were not asked for yet; not what the package itself imports."""
+    own = {name for name in globals() if name.startswith("__")}
+    return sorted({*own, *__all__})

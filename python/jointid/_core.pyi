@@ -89,12 +89,12 @@ __all__: list[str] = [
     "models",
     "noise_products",
     "non_negative_least_squares",
+    "number_list",
     "number_table",
     "parameter_names",
     "polish",
     "position_noise",
     "refine_separable",
-    "robust_variance",
     "roll_out_servos",
     "roughness",
     "segment_sums",
@@ -493,9 +493,9 @@ class Penalty(PenaltyFunction):
     @property
     def noise_share(self) -> float: ...
     @property
-    def recording_of(self) -> list[int]:
+    def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
         """
-        Which recording each window belongs to.
+        Which recording each window belongs to, shape (window_count,).
         """
     @property
     def standing_samples(self) -> int: ...
@@ -1246,6 +1246,11 @@ class FittedShift:
     def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
     def unexplained(self) -> float: ...
+    @property
+    def unshifted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Coefficients of the columns without a shift; empty where one was searched.
+        """
     @property
     def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
 
@@ -3658,6 +3663,13 @@ def non_negative_least_squares(
     The solution without negative entries, and the norm of what is left of the target.
     """
 
+def number_list(
+    values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> str | None:
+    """
+    A list of finite numbers as JSON; None where Python has to write it.
+    """
+
 def number_table(
     text: str,
     below: typing.SupportsInt | typing.SupportsIndex,
@@ -3702,18 +3714,6 @@ def refine_separable(
 ) -> SeparableResult:
     """
     The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
-    """
-
-def robust_variance(
-    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    weights: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    *,
-    threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    Prewhitened Newey-West variance of weighted sums of the scores.
     """
 
 def roll_out_servos(

@@ -37,3 +37,41 @@ def test_an_error_names_the_target(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert refused.value.filename == str(target)
     assert target.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_a_file_keeps_its_mode_and_a_new_one_has_the_users(tmp_path: Path) -> None:
+    old, new = tmp_path / "old", tmp_path / "new"
+    old.write_bytes(b"1")
+    old.chmod(0o604)
+    mask = os.umask(0o027)
+    try:
+        write_whole(old, b"2")
+        write_whole(new, b"3")
+        assert os.umask(0o027) == 0o027  # as it was
+    finally:
+        os.umask(mask)
+    assert [path.stat().st_mode & 0o7777 for path in (old, new)] == [0o604, 0o640]
+
+
+def test_a_link_stays_a_link(tmp_path: Path) -> None:
+    target, link = tmp_path / "target", tmp_path / "link"
+    target.write_bytes(b"1")
+    link.symlink_to(target)
+    write_whole(link, b"2")
+    assert link.is_symlink()
+    assert target.read_bytes() == b"2"
+
+
+def test_nothing_is_left_of_a_write_that_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "file"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        write_whole(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]

@@ -42,7 +42,7 @@ def test_all_joints(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pat
     text = page.read_text(encoding="utf-8")
     assert text.count("<svg ") == 4
     assert '<h2 id="joint-2">Joint 2</h2>' in text
-    assert '<a href="#joint-2">2</a>' in text
+    assert '<a href="#joint-2">Joint 2</a>: ' in text
     assert "joint 2&#x27;s speed explains" in text
 
 

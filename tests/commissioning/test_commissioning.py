@@ -133,10 +133,12 @@ def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main(["run", str(path), "--emulate", "--output", str(output), "--quiet"]) == 3
     wording = capsys.readouterr().err
     assert "tracking_error" in wording
-    first, second = wording.splitlines()
+    first, second, third = wording.splitlines()
     assert first.startswith("jointid run: stopped by tracking_error")
     assert second == f"the motor was seen off; recorded: {output / 'initial.csv'}"
     assert (output / "initial.csv").exists()
+    assert third == f"report: {output / 'report.html'}"
+    assert (output / "report.html").exists()
 
 
 def test_what_was_recorded_is_kept_by_what_ends_a_commissioning(

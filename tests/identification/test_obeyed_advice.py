@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from defective_logs import Case, names, simulated
 from defects import DEFECTS
-from obeyed_advice import Call, obeyed
+from obeyed_advice import obeyed
 
 import jointid as jid
+from jointid.app.call import Call
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding
 

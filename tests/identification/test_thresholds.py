@@ -275,6 +275,26 @@ def test_a_clipped_sensor_is_to_stay_inside_its_range() -> None:
     assert motion.arguments["limits"]["sensor_range"] == pytest.approx(0.9 * 39.0, rel=0.005)
 
 
+def test_one_outlier_is_no_speed_to_stay_below() -> None:
+    """One sample of a thousand is left out, not ten."""
+    velocity = np.ones(len(TIME))
+    velocity[:3] = 2.0, 2.0, 100.0
+    run = jid.Recording(
+        time=TIME, position=TIME.copy(), velocity=velocity, torque=np.sin(3.0 * TIME)
+    )
+    edge = SimpleNamespace(there=200, moving=200, near=200)
+    clipped = inspected(run, counts={"torque": signal(upper=edge)})
+    (finding,) = found("clipped", evidence(recordings=(run,), inspections=(clipped,)))
+    (motion,) = (each for each in finding.advice if each.function == "next_motion")
+    assert motion.arguments["limits"]["velocity"] == 2.0
+
+
+@pytest.mark.parametrize(("travel", "wide"), [(14.9, True), (15.1, False)])
+def test_turns_that_do_not_come_back_are_no_swing(travel: float, wide: bool) -> None:
+    run = jid.Recording(time=TIME, position=travel * TIME / TIME[-1], torque=np.sin(TIME))
+    assert bool(found("speed", _inspection(run, swing=30.0))) == wide
+
+
 def test_one_outlier_is_no_speed() -> None:
     velocity = np.full(len(TIME), 1.0)
     velocity[1000] = 30.0
@@ -305,7 +325,7 @@ def test_the_interval_of_a_delay_is_told_where_it_is_wide(stderr: float, told: b
 
 
 @pytest.mark.parametrize(
-    ("early", "held"), [(0.31, True), (0.29, False), (0.69, True), (0.71, False)]
+    ("early", "held"), [(0.301, True), (0.299, False), (0.699, True), (0.701, False)]
 )
 def test_a_torque_half_a_sample_early_may_be_held(early: float, held: bool) -> None:
     delay = Delay(

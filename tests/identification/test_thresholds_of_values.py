@@ -386,9 +386,30 @@ def _regressed(scatter: float) -> tuple[Any, Unbounded]:
 
 def test_ten_errors_are_sure() -> None:
     _, free = _regressed(0.01)
-    assert not free.sure("inertia", 1.0 + 0.08)
-    assert free.sure("inertia", 1.0 + 0.12)
-    assert free.sure("inertia", 1.0 - 0.12)
+    assert not free.sure("inertia", 1.0 + 0.098)
+    assert free.sure("inertia", 1.0 + 0.102)
+    assert free.sure("inertia", 1.0 - 0.102)
+
+
+def test_the_reverse_regression_finds_what_noise_of_the_sensor_hides() -> None:
+    """torque = 3 inertia + 2 reading, and the reading is noisy: regressed on it, both come out wrong."""
+    rng = np.random.default_rng(2)
+    inertia, load = rng.normal(size=4000), rng.normal(size=4000)
+    reading = load + rng.normal(size=4000)
+    triangle = Triangle(np.column_stack([inertia, reading, 3.0 * inertia + 2.0 * load]))
+    regressor = Regressor(names=("inertia", "sensor_gain"), triangle=triangle)
+    values = {"inertia": 3.0, "sensor_gain": 1.0}
+    free = Unbounded(
+        evidence=evidence(), regressor=regressor, best=None, values=values, relative=0.0
+    )
+    reverse = free.with_noisy_sensor()
+    assert reverse is not None
+    assert reverse["inertia"] == pytest.approx(3.0, rel=0.03)
+    assert reverse["sensor_gain"] == pytest.approx(2.0, rel=0.03)
+    free = Unbounded(
+        evidence=evidence(), regressor=regressor, best=None, values={"inertia": 3.0}, relative=0.0
+    )
+    assert free.with_noisy_sensor() is None
 
 
 def test_other_shapes_are_tried_where_much_is_left(monkeypatch: pytest.MonkeyPatch) -> None:

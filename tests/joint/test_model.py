@@ -137,3 +137,11 @@ def test_digits_that_state_no_number_are_refused(key: str, digits: str) -> None:
         Model.parse(f"stribeck:{key}={digits}")
     assert refused.value.argument == key
     assert len(str(refused.value)) < 300
+
+
+def test_equal_models_with_own_terms_in_another_order_keep_their_text() -> None:
+    one = Model("stribeck", terms={"q5": "viscous", "q6": "viscous"})
+    other = Model("stribeck", terms={"q6": "viscous", "q5": "viscous"})
+    assert one == other
+    assert str(one.resolved) == str(one)
+    assert str(other.resolved) == str(other)

@@ -8,7 +8,9 @@ import contextlib
 import doctest
 import importlib
 import inspect
+import io
 import pkgutil
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,6 +20,7 @@ import matplotlib
 import numpy as np
 import pandas as pd
 import pytest
+import small_arm
 
 import jointid as jid
 from jointid.cli.command_line import main as cli
@@ -59,6 +62,26 @@ def test_an_example_runs(
     assert runner.failures == 0, "".join(said)
 
 
+def test_every_public_name_has_an_example() -> None:
+    """In its own docstring, in that of a method, or as `jid.NAME` in an example of what uses it."""
+    every = list(_examples())
+    lines = [line.source for each in every for line in each.examples if not _skipped(line)]
+    used = set(re.findall(r"\bjid\.(\w+)", "\n".join(lines)))
+    own = {part for each in every for part in each.name.split(".")[-2:]}
+    names = {name for name in jid.__all__ if not inspect.ismodule(getattr(jid, name))}
+    assert names - {"__version__"} - own - used == set()
+
+
+def test_few_examples_are_skipped() -> None:
+    """What needs the links of a robot, a log of messages, or prints what another computer may print otherwise."""
+    skipped = [line.source for each in _examples() for line in each.examples if _skipped(line)]
+    assert len(skipped) <= 6, skipped
+
+
+def _skipped(line: doctest.Example) -> bool:
+    return bool(line.options.get(doctest.SKIP))
+
+
 def _module(name: str) -> str:
     while True:
         try:
@@ -85,8 +108,11 @@ def prepared(repo: Path) -> dict[str, Any]:
     return {
         "jid": jid,
         "np": np,
+        "io": io,
+        "Path": Path,
         "recording": recording,
         "joint": joint,
+        "known": _known(),
         "estimate": estimate,
         "bench": bench,
         "before": before,
@@ -111,6 +137,11 @@ def workplace(
             make(tmp_path / name, prepared["recording"])
     if '"joint.toml"' in text:
         shutil.copy(repo / "examples" / "hardware" / "joint.toml", tmp_path)
+    if '"arm.urdf"' in text:  # the log is then one of this arm
+        pytest.importorskip("pinocchio")
+        small_arm.recording(small_arm.urdf(tmp_path).rename(tmp_path / "arm.urdf")).save(
+            tmp_path / "arm.csv"
+        )
     if "examples/" in text:
         (tmp_path / "examples").symlink_to(repo / "examples")
     monkeypatch.chdir(tmp_path)

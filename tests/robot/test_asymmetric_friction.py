@@ -9,6 +9,7 @@ import pytest
 from small_arm import VISCOUS, recording, urdf
 
 import jointid as jid
+from jointid.robot.inertia import Inertia
 
 pytest.importorskip("pinocchio")
 DIFFERENCE, OFFSET = 0.3, 0.2  # of the elbow, half of what is more in the positive direction
@@ -37,7 +38,7 @@ def _found(path: Path, run: jid.RobotRecording) -> jid.RobotEstimate:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])
-def test_it_comes_back(path: Path, run: jid.RobotRecording, inertia: str) -> None:
+def test_it_comes_back(path: Path, run: jid.RobotRecording, inertia: Inertia) -> None:
     found = jid.identify_robot(
         run, jid.Robot.from_urdf(path), inertia=inertia, model={"elbow": "auto:asymmetric"}
     )

@@ -7,6 +7,7 @@ import pytest
 from small_arm import COULOMB, ROTOR, URDF, VISCOUS, recording, urdf
 
 import jointid as jid
+from jointid.robot.inertia import Inertia
 
 pytest.importorskip("pinocchio")
 
@@ -26,7 +27,7 @@ def values(found: jid.RobotEstimate, name: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "scaled", "free"])
-def test_known_friction_comes_back(path: Path, run: jid.RobotRecording, inertia: str) -> None:
+def test_known_friction_comes_back(path: Path, run: jid.RobotRecording, inertia: Inertia) -> None:
     found = jid.identify_robot(run, jid.Robot.from_urdf(path), inertia=inertia)
     assert list(found.joints) == ["shoulder", "elbow"]
     np.testing.assert_allclose(values(found, "coulomb"), COULOMB, rtol=0.01)
@@ -87,7 +88,7 @@ def test_a_model_for_each_joint(path: Path, run: jid.RobotRecording) -> None:
 
 @pytest.mark.parametrize("inertia", ["urdf", "scaled", "free"])
 def test_a_prediction_of_the_same_recording_has_the_same_residual(
-    path: Path, run: jid.RobotRecording, inertia: str
+    path: Path, run: jid.RobotRecording, inertia: Inertia
 ) -> None:
     found = jid.identify_robot(run, jid.Robot.from_urdf(path), inertia=inertia)
     again = found.predict(run)

@@ -13,6 +13,7 @@ from small_arm import recording, urdf
 
 import jointid as jid
 from jointid.report.robot_page import robot_report
+from jointid.robot.inertia import Inertia
 
 pytest.importorskip("pinocchio")
 
@@ -36,7 +37,7 @@ Path_ = tuple[str | int, ...]
 
 
 @cache
-def made(inertia: str = "free") -> tuple[jid.RobotEstimate, str, jid.RobotRecording]:
+def made(inertia: Inertia = "free") -> tuple[jid.RobotEstimate, str, jid.RobotRecording]:
     with TemporaryDirectory() as folder:
         path = urdf(Path(folder))
         run = recording(path, static=0.5, duration=6.0)
@@ -67,7 +68,7 @@ def damaged(path: Path_, junk: str) -> str:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "scaled", "free"])
-def test_everything_works_after_reading_back(inertia: str, tmp_path: Path) -> None:
+def test_everything_works_after_reading_back(inertia: Inertia, tmp_path: Path) -> None:
     found, _, run = made(inertia)
     again = jid.RobotEstimate.load(found.save(tmp_path / "arm.json"))
     assert again.report() == found.report()

@@ -19,6 +19,7 @@ from simulated_arm import (
 )
 
 import jointid as jid
+from jointid.robot.inertia import Inertia
 
 pytest.importorskip("pinocchio")
 
@@ -61,7 +62,7 @@ def assert_near(found: jid.RobotEstimate, arm: Arm, share: float) -> None:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "scaled", "free"])
-def test_friction_comes_back(plain: Run, inertia: str) -> None:
+def test_friction_comes_back(plain: Run, inertia: Inertia) -> None:
     """With a host's stamps, an encoder's steps, and velocities that are 5 ms late."""
     found = jid.identify_robot(
         recorded(plain, Sensors(), SEED), robot(), inertia=inertia, model="coulomb_viscous"
@@ -78,14 +79,14 @@ def test_friction_comes_back(plain: Run, inertia: str) -> None:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])
-def test_friction_with_a_stribeck_rise_comes_back(with_stribeck: Run, inertia: str) -> None:
+def test_friction_with_a_stribeck_rise_comes_back(with_stribeck: Run, inertia: Inertia) -> None:
     recording = recorded(with_stribeck, Sensors(), SEED)
     found = jid.identify_robot(recording, robot(), inertia=inertia)
     assert_near(found, with_stribeck.arm, 0.03)
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])
-def test_no_acceleration_is_needed(plain: Run, inertia: str) -> None:
+def test_no_acceleration_is_needed(plain: Run, inertia: Inertia) -> None:
     """The second difference of these positions is noise."""
     noise = Sensors(position_noise=3e-5, velocity_delay=None)
     recording = recorded(plain, noise, SEED)
@@ -97,7 +98,7 @@ def test_no_acceleration_is_needed(plain: Run, inertia: str) -> None:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])
-def test_short_standstills_in_noise_do_no_harm(with_stribeck: Run, inertia: str) -> None:
+def test_short_standstills_in_noise_do_no_harm(with_stribeck: Run, inertia: Inertia) -> None:
     """Joints stick at their reversals, and noise hides it: static friction was lost, and a delay was invented."""
     recording = recorded(with_stribeck, Sensors(position_noise=1e-5, velocity_delay=None), SEED)
     found = jid.identify_robot(recording, robot(), inertia=inertia)

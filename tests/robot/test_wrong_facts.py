@@ -12,6 +12,7 @@ from simulated_arm import JOINTS, URDF, Arm, Run, Sensors, random_arm, random_mo
 
 import jointid as jid
 from jointid.estimate.findings import Finding
+from jointid.robot.inertia import Inertia
 
 pinocchio = pytest.importorskip("pinocchio")
 
@@ -42,7 +43,7 @@ def changed(
 
 
 def identified(
-    recording: jid.RobotRecording, inertia: str = "urdf", **facts: Any
+    recording: jid.RobotRecording, inertia: Inertia = "urdf", **facts: Any
 ) -> jid.RobotEstimate:
     return jid.identify_robot(
         recording, jid.Robot.from_urdf(URDF, **facts), inertia=inertia, model="coulomb_viscous"
@@ -56,7 +57,7 @@ def only(found: jid.RobotEstimate, code: str) -> Finding:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "scaled", "free"])
-def test_nothing_is_said_of_right_facts(clean: jid.RobotRecording, inertia: str) -> None:
+def test_nothing_is_said_of_right_facts(clean: jid.RobotRecording, inertia: Inertia) -> None:
     assert identified(clean, inertia).warnings == ()
 
 
@@ -67,7 +68,7 @@ def tilted(arm: Arm) -> Arm:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])
-def test_a_tilted_base_is_named_and_cured(inertia: str) -> None:
+def test_a_tilted_base_is_named_and_cured(inertia: Inertia) -> None:
     recording = ran(tilted)
     said = only(identified(recording, inertia), "tilted_base")
     assert said.evidence["tilt"].value == pytest.approx(np.rad2deg(0.15), abs=0.3)
@@ -80,7 +81,7 @@ def test_a_tilted_base_is_named_and_cured(inertia: str) -> None:
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])
-def test_a_wrong_torque_constant_is_named(clean: jid.RobotRecording, inertia: str) -> None:
+def test_a_wrong_torque_constant_is_named(clean: jid.RobotRecording, inertia: Inertia) -> None:
     recording = changed(clean, "torque", 4, 1.1)
     said = only(identified(recording, inertia), "wrong_torque_scale")
     assert "joint_4" in said.cause

@@ -6,6 +6,7 @@ PYTHONPATH=tools python -m documentation --output build/docs
 from __future__ import annotations
 
 import argparse
+import shutil
 import sys
 from pathlib import Path
 
@@ -37,30 +38,31 @@ def main() -> int:
     write_gallery(stage)
     write_reference(stage)
     stage.write("_static/pictures.css", style())
-    stage.finish()
-
-    from sphinx.cmd.build import main as sphinx
-
     site = arguments.output / "site"
-    common = [
-        "-c",
-        str(ROOT / "docs"),
-        "-d",
-        str(arguments.output / "doctrees"),
-        "-W",
-        "--keep-going",
-        "-q",
-    ]
-    code = sphinx(["-b", "html", *common, str(source), str(site)])
+    if stage.finish():  # no page stays on the site whose source is gone
+        shutil.rmtree(site, ignore_errors=True)
+    code = _sphinx("html", source, site)
     if code == 0:
         wrong = list(broken(site))
         print(*wrong, sep="\n", end="\n" * bool(wrong), file=sys.stderr)
         code = int(bool(wrong))
     if code == 0 and arguments.links:
-        code = sphinx(["-b", "linkcheck", *common, str(source), str(arguments.output / "links")])
+        code = _sphinx("linkcheck", source, arguments.output / "links")
     if code == 0:
+        # How old it is; a page that does not change is not written again.
+        (arguments.output / "complete").touch()
         print(f"Open {site / 'index.html'} in a browser; the folder can be served as it is.")
     return code
+
+
+def _sphinx(builder: str, source: Path, target: Path) -> int:
+    """Run Sphinx, warnings are errors, and return its exit code."""
+    from sphinx.cmd.build import main as sphinx
+
+    options = ["-b", builder, "-c", str(ROOT / "docs"), "-d", str(source.parent / "doctrees")]
+    options += ["-D", f"html_static_path={source / '_static'}"]
+    options += ["-D", f"html_extra_path={source / 'as_it_is'}"]
+    return sphinx([*options, "-W", "--keep-going", "-q", str(source), str(target)])
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ recording that was made for it.
 
 from __future__ import annotations
 
+import re
 import tempfile
 from html import escape
 from pathlib import Path
@@ -112,9 +113,11 @@ def _plain(text: str) -> str:
 
 
 def _code(text: str) -> str:
-    """An advice: what can be pasted stands behind "with"."""
-    before, word, after = text.partition(" with ")
-    return f"{before} with `{after}`" if word and "`" not in after else _plain(text)
+    """An advice: what can be pasted stands behind "with" or "by", and what it is for in brackets behind that."""
+    found = re.fullmatch(r"(.*?\b(?:with|designed by)) ([^`]+?)( \([^()]*\))?", text)
+    if found is None:
+        return _plain(text)
+    return f"{found[1]} `{found[2]}`{_plain(found[3] or '')}"
 
 
 def _raw(html: str) -> list[str]:

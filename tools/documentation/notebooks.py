@@ -43,7 +43,8 @@ def markdown_of(notebook: dict[str, Any], folder: Path, name: str) -> str:
         parts.append(_block("python", source))
         parts += [_shown(output, folder) for output in cell["outputs"]]
     title, _, rest = "\n\n".join(filter(None, parts)).partition("\n")
-    return f"{title}\n\n{{.download}}\n[Download this notebook]({name}){{download=''}}\n{rest}\n"
+    download = f'<p><a href="../notebooks/{name}" download>Download this notebook</a></p>'
+    return f"{title}\n\n{_block('{raw} html', download)}\n{rest}\n"
 
 
 def _block(kind: str, text: str) -> str:

@@ -126,6 +126,19 @@ GROUPS = (
             *("compare_robot_models", "RobotComparison"),
         ),
     ),
+    Group(
+        "servos",
+        "Servos",
+        _of(
+            "jointid",
+            "identify_servo",
+            "ServoEstimate",
+            "VoltageDrive",
+            "PositionLoop",
+            "rollout",
+            "Rollout",
+        ),
+    ),
     Group("online", "While the joint runs", _of("jointid", "OnlineIdentifier", "OnlineEstimate")),
     Group(
         "motion",
@@ -166,7 +179,7 @@ GROUPS = (
             ),
         ),
     ),
-    Group("exports", "Exports", _of("jointid", "export")),
+    Group("exports", "Reports and exports", _of("jointid", "save_report", "export")),
     Group(
         "plots",
         "Pictures",

@@ -14,6 +14,7 @@ from jointid.cli.command_table import HELP
 from jointid.cli.parser import command_parser
 from jointid.joint import joint_file
 from jointid.joint.tolerances import Tolerances
+from jointid.joint.voltage_drive import INPUTS, VoltageDrive
 
 
 def write_reference(stage: Stage) -> None:
@@ -106,6 +107,10 @@ _OWN = {
     ("", "schema"): Described(
         "int", f"Version of the format: {joint_file.SCHEMA}; required. Older ones are read."
     ),
+    ("drive", "input"): Described(
+        "str",
+        f"{' or '.join(INPUTS)}: what the log has of the drive. Default torque. The keys below are of a voltage.",
+    ),
     ("sensor", "present"): Described("bool", "Default true, where the table is there."),
 }
 
@@ -116,7 +121,7 @@ def joint_file_page() -> str:
     model = described(jid.Model)
     texts: dict[str, Mapping[str, Described]] = {
         "": joint,
-        "drive": joint,
+        "drive": described(VoltageDrive) | dict(joint),
         "model": model | {"friction": model["name"], "torque_offset": joint["torque_offset"]},
         "sensor": {},
         "link": described(jid.Link),

@@ -78,7 +78,7 @@ class Stage:
             picture, label, target = found.groups()
             if re.match(r"[a-z]+:|#", target):
                 return found[0]
-            code = label.strip("`")
+            code = hidden.get(label, label).strip("`")
             if target.endswith("findings.md") and code in finding_types():
                 return f"[{label}]({posixpath.relpath(f'gallery/{code}.md', posixpath.dirname(name) or '.')})"
             there = self._place(posixpath.normpath(posixpath.join(posixpath.dirname(home), target)))
@@ -109,11 +109,14 @@ class Stage:
         self.write_bytes(f"repository/{path}", file.read_bytes())
         return f"repository/{path}"
 
-    def finish(self) -> None:
-        """Remove what an earlier run has put there and this one has not."""
-        for path in self.folder.rglob("*"):
-            if path.is_file() and path not in self._kept:
-                path.unlink()
+    def finish(self) -> bool:
+        """Remove what an earlier run has put there and this one has not; return whether there was any."""
+        old = [path for path in self.folder.rglob("*") if path.is_file() and path not in self._kept]
+        # Pictures of notebooks are written while they are read.
+        old = [path for path in old if path.parent != self.folder / "tutorials" / "pictures"]
+        for path in old:
+            path.unlink()
+        return bool(old)
 
 
 def stage_documents(stage: Stage) -> None:
@@ -129,7 +132,8 @@ def stage_documents(stage: Stage) -> None:
     table = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
     stage.write("findings.md", linked_findings(table))
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
-        stage.write_bytes(f"tutorials/{path.name}", path.read_bytes())
+        for folder in ("tutorials", "as_it_is/notebooks"):  # as a page, and to be downloaded
+            stage.write_bytes(f"{folder}/{path.name}", path.read_bytes())
 
 
 def _without_missing(text: str) -> str:

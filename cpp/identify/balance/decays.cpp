@@ -14,8 +14,6 @@ namespace {
 
 // Rates side by side: the lanes of a vector. Windows hold some ten samples, too few to sum along.
 constexpr std::size_t kLanes = 8;
-// exp(-50) = 2e-22 of a sample's weight is nothing beside 1, which the samples at rest have.
-constexpr double kVanishing = 50.0;
 
 JOINTID_CLONES void squares(const double* speed, std::size_t count, double* x) {
   for (std::size_t i = 0; i < count; ++i) x[i] = speed[i] * speed[i];
@@ -65,9 +63,8 @@ void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const 
     std::array<double, kLanes> rates{};
     std::copy_n(group.rates.begin() + static_cast<std::ptrdiff_t>(from), lanes, rates.begin());
     const double least = *std::min_element(rates.begin(), rates.begin() + lanes);
-    const double vanishing = least > 0.0 ? kVanishing / least : HUGE_VAL;
     window_sums(x.data(), nodes.weight.data() + begin, nodes.first.data() + windows.begin, rows,
-                rates.data(), vanishing, sums.data());
+                rates.data(), vanishing_at(least), sums.data());
     const Eigen::Map<const Eigen::MatrixXd> found(sums.data(), kLanes,
                                                   static_cast<Eigen::Index>(rows));
     columns.middleCols(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(lanes)) =

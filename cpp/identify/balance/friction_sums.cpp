@@ -1,7 +1,10 @@
-// Sums of friction over the nodes of windows.
+// Friction at samples, and its sums over the nodes of windows.
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "base/clones.hpp"
 #include "identify/balance/quadrature.hpp"
@@ -102,6 +105,18 @@ void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
   }
 }
 
+/// sgn v exp(-s v^2) of one direction or both.
+JOINTID_CLONES void signed_decays(const double* velocity, std::size_t count, double shape,
+                                  model::Direction direction, double* result) {
+  const double forward = direction == model::Direction::negative ? 0.0 : 1.0;
+  const double backward = direction == model::Direction::positive ? 0.0 : -1.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double v = velocity[i];
+    const double side = (v > 0.0 ? forward : 0.0) + (v < 0.0 ? backward : 0.0);
+    result[i] = side * base::exp(-shape * v * v);
+  }
+}
+
 /// A general decay whose exponent is 2 is a Gaussian one.
 bool is_gaussian(const Term& term, const double* shapes) {
   return term.basis == model::SpeedBasis::stribeck_general && shapes[1] == 2.0;
@@ -112,6 +127,35 @@ double gaussian_rate(const double* shapes) {
 }
 
 }  // namespace
+
+Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity,
+                               const Eigen::VectorXd& shapes, double load) {
+  if (!is_friction(term)) {
+    throw std::invalid_argument("'" + term.key + "' is not a friction term");
+  }
+  if (shapes.size() != static_cast<Eigen::Index>(term.shapes.size())) {
+    throw std::invalid_argument("'" + term.key + "' has " + std::to_string(term.shapes.size()) +
+                                " shape parameters, got " + std::to_string(shapes.size()));
+  }
+  if (term.integral == Integral::displacement) return velocity;
+  if (term.basis == model::SpeedBasis::stribeck && !needs_load(term)) {
+    Eigen::VectorXd result(velocity.size());
+    signed_decays(velocity.data(), static_cast<std::size_t>(velocity.size()), shapes[0],
+                  term.direction, result.data());
+    return result;
+  }
+  const auto value = [&](double speed) {
+    return needs_load(term) ? std::fabs(load)
+                            : model::basis_value(term.basis, speed, shapes.data());
+  };
+  return velocity.unaryExpr([&](double v) {
+    if (v == 0.0 || (v > 0.0 && term.direction == model::Direction::negative) ||
+        (v < 0.0 && term.direction == model::Direction::positive)) {
+      return 0.0;
+    }
+    return std::copysign(value(std::fabs(v)), v);
+  });
+}
 
 void FrictionNodes::take_logarithms() {
   logarithm.resize(speed.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -12,11 +13,12 @@ namespace jointid::identify {
 
 namespace {
 
+constexpr std::size_t kShort = 256;  // samples of a window whose nodes are made at once
+
 /// Whether every interval of a window is usable.
 bool whole(const std::vector<std::uint8_t>& usable, const Window& window) {
-  std::uint8_t all = 1;
-  for (auto k = window.begin; k < window.end; ++k) all &= usable[static_cast<std::size_t>(k)];
-  return all != 0;
+  const auto count = static_cast<std::size_t>(window.end - window.begin);
+  return std::memchr(usable.data() + window.begin, 0, count) == nullptr;
 }
 
 /// Sum over a window's usable intervals of value(k), k the interval k -> k+1.
@@ -55,14 +57,12 @@ void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uin
 
 /// 1 or -1 if all velocities of a window have that sign, else 0.
 double common_sign(const RecordingView::Signal& velocity, const Window& window) {
-  Eigen::Index positive = 0;
-  Eigen::Index negative = 0;
+  const double* v = velocity.data();
+  const double side = v[window.begin] > 0.0 ? 1.0 : -1.0;
   for (auto k = window.begin; k <= window.end; ++k) {
-    positive += velocity[k] > 0.0 ? 1 : 0;
-    negative += velocity[k] < 0.0 ? 1 : 0;
+    if (!(side * v[k] > 0.0)) return 0.0;
   }
-  const Eigen::Index all = window.end - window.begin + 1;
-  return positive == all ? 1.0 : (negative == all ? -1.0 : 0.0);
+  return side;
 }
 
 /// The series of that name.
@@ -97,19 +97,27 @@ Shares shares(double v0, double v1) {
   return {sign(v0) * before, sign(v1) * (1.0 - before)};
 }
 
-/// Coulomb friction of windows none of which is cut or holds a reversal: the time it acts, signed.
-/// False where that is not so.
-bool steady(const Term& term, const RecordingView& r, const std::vector<std::uint8_t>& usable,
-            std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+/// Coulomb friction of windows: the time it acts, signed. Those that are cut or hold a reversal are
+/// summed over their nodes.
+void integrate_sign(const Term& term, const RecordingView& r,
+                    const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
+                    Eigen::Ref<Eigen::VectorXd> result) {
+  FrictionNodes nodes;
   for (std::size_t w = 0; w < windows.size(); ++w) {
+    const auto row = static_cast<Eigen::Index>(w);
     const double direction = common_sign(r.velocity, windows[w]);
-    if (direction == 0.0 || !whole(usable, windows[w])) return false;
+    if (direction == 0.0 || !whole(usable, windows[w])) {
+      nodes.clear();
+      append_nodes(r, usable, windows.subspan(w, 1), nodes);
+      integrate_friction(term, nodes_of(term.direction, nodes), nullptr, nullptr,
+                         result.segment(row, 1));
+      continue;
+    }
     const bool acts = term.direction == model::Direction::both ||
                       (term.direction == model::Direction::positive) == (direction > 0.0);
     const double time = r.time[windows[w].end] - r.time[windows[w].begin];
-    result[static_cast<Eigen::Index>(w)] = acts ? direction * time : 0.0;
+    result[row] = acts ? direction * time : 0.0;
   }
-  return true;
 }
 
 }  // namespace
@@ -155,6 +163,10 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
     case Integral::friction:
       break;
   }
+  if (term.basis == model::SpeedBasis::one) {
+    integrate_sign(term, r, usable, windows, result);
+    return;
+  }
   // A few windows at a time: their nodes stay in the cache.
   constexpr std::size_t kWindows = 64;
   FrictionNodes nodes;
@@ -162,7 +174,6 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
     const auto part = windows.subspan(w, std::min(kWindows, windows.size() - w));
     const auto rows =
         result.segment(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(part.size()));
-    if (term.basis == model::SpeedBasis::one && steady(term, r, usable, part, rows)) continue;
     nodes.clear();
     append_nodes(r, usable, part, nodes);
     integrate_friction(term, nodes_of(term.direction, nodes), nullptr, nullptr, rows);
@@ -186,26 +197,25 @@ void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& u
 
 void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                   std::span<const Window> windows, FrictionNodes& nodes) {
-  std::vector<double> speeds;
-  std::vector<double> weights;
+  std::array<double, kShort + 1> speeds;
+  std::array<double, kShort + 1> weights;
   for (const auto& window : windows) {
-    const double direction = common_sign(r.velocity, window);
+    const auto count = static_cast<std::size_t>(window.end - window.begin);
+    const double direction = count <= kShort ? common_sign(r.velocity, window) : 0.0;
     if (direction != 0.0 && whole(usable, window)) {  // the same without a question a sample
-      const auto count = static_cast<std::size_t>(window.end - window.begin);
-      speeds.resize(count + 1);
-      weights.resize(count + 1);
+      const double* time = r.time.data() + window.begin;
+      const double* velocity = r.velocity.data() + window.begin;
       double left = 0.0;
       for (std::size_t i = 0; i < count; ++i) {
-        const auto k = window.begin + static_cast<Eigen::Index>(i);
-        const double half = 0.5 * (r.time[k + 1] - r.time[k]) * direction;
-        speeds[i] = std::fabs(r.velocity[k]);
+        const double half = 0.5 * (time[i + 1] - time[i]) * direction;
+        speeds[i] = std::fabs(velocity[i]);
         weights[i] = left + half;
         left = half;
       }
-      speeds[count] = std::fabs(r.velocity[window.end]);
+      speeds[count] = std::fabs(velocity[count]);
       weights[count] = left;
-      nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.end());
-      nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.end());
+      nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.begin() + count + 1);
+      nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.begin() + count + 1);
       nodes.first.push_back(nodes.speed.size());
       continue;
     }

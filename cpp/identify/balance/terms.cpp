@@ -301,29 +301,6 @@ model::Decay decay_of(const Term& term) {
   return term.basis == SpeedBasis::stribeck_general ? model::Decay::general : model::Decay::none;
 }
 
-Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity,
-                               const Eigen::VectorXd& shapes, double load) {
-  if (!is_friction(term)) {
-    throw std::invalid_argument("'" + term.key + "' is not a friction term");
-  }
-  if (shapes.size() != static_cast<Eigen::Index>(term.shapes.size())) {
-    throw std::invalid_argument("'" + term.key + "' has " + std::to_string(term.shapes.size()) +
-                                " shape parameters, got " + std::to_string(shapes.size()));
-  }
-  if (term.integral == Integral::displacement) return velocity;
-  const auto value = [&](double speed) {
-    return needs_load(term) ? std::fabs(load)
-                            : model::basis_value(term.basis, speed, shapes.data());
-  };
-  return velocity.unaryExpr([&](double v) {
-    if (v == 0.0 || (v > 0.0 && term.direction == Direction::negative) ||
-        (v < 0.0 && term.direction == Direction::positive)) {
-      return 0.0;
-    }
-    return std::copysign(value(std::fabs(v)), v);
-  });
-}
-
 Term find_term(std::string_view key) {
   std::string known;
   for (const auto& row : term_table()) {

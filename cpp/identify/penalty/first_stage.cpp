@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/circle.hpp"
+#include "base/clones.hpp"
 #include "identify/penalty/penalty.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
@@ -22,7 +23,25 @@ constexpr std::size_t kKept = 4;     // blocks up to which their rows are kept b
 // Each recording's link has columns of its own while windows outnumber all columns by this.
 constexpr std::size_t kPerColumn = 50;
 
+JOINTID_CLONES void weighted_sums(const double* weight, const double* decays, std::size_t count,
+                                  double* sums) {
+  constexpr std::size_t kRates = kShares.size();
+  std::array<double, kRates> sum{};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < kRates; ++k) sum[k] += weight[i] * decays[i * kRates + k];
+  }
+  for (std::size_t k = 0; k < kRates; ++k) sums[k] = sum[k];
+}
+
 }  // namespace
+
+std::vector<double> instrument_rates(double fastest) {
+  std::vector<double> rates;
+  if (fastest > 0.0) {
+    for (const double share : kShares) rates.push_back(1.0 / (share * share * fastest * fastest));
+  }
+  return rates;
+}
 
 Instruments Penalty::instruments(const std::vector<Eigen::Index>& free, std::size_t windows) const {
   Instruments result;
@@ -36,11 +55,7 @@ Instruments Penalty::instruments(const std::vector<Eigen::Index>& free, std::siz
       result.shaped.push_back(static_cast<std::size_t>(shaped - shaped_.begin()));
     }
   }
-  if (fastest_ > 0.0) {
-    for (const double share : kShares) {
-      result.rates.push_back(1.0 / (share * share * fastest_ * fastest_));
-    }
-  }
+  result.rates = instrument_rates(fastest_);
   result.runs = runs_;
   if (windows < kPerColumn * static_cast<std::size_t>(result.size())) result.runs = 1;
   return result;
@@ -56,6 +71,39 @@ std::vector<Stretch> Penalty::blocks() const {
   return result;
 }
 
+void Penalty::sum_decays(const FrictionNodes& nodes, const Stretch& windows,
+                         const std::vector<double>& rates,
+                         Eigen::Ref<Eigen::MatrixXd> columns) const {
+  const DecayRates decays{2.0, rates};
+  std::size_t others = windows.begin;  // windows from here on are not summed yet
+  const auto sum_others = [&](std::size_t end) {
+    if (others < end) {
+      const auto rows = static_cast<Eigen::Index>(end - others);
+      integrate_decays(nodes, {others, end}, decays, nullptr,
+                       columns.middleRows(static_cast<Eigen::Index>(others - windows.begin), rows));
+    }
+    others = end + 1;
+  };
+  std::array<double, kShares.size()> sums;
+  for (std::size_t w = windows.begin; w < windows.end && !decays_.empty(); ++w) {
+    const auto& known = decays_[static_cast<std::size_t>(recording_of_[w])];
+    const auto begin = static_cast<std::size_t>(windows_[w].begin);
+    const std::size_t count = nodes.first[w + 1] - nodes.first[w];
+    if (known == nullptr || count != static_cast<std::size_t>(windows_[w].end) - begin + 1 ||
+        !std::equal(known->speed.data() + begin, known->speed.data() + begin + count,
+                    nodes.speed.data() + nodes.first[w])) {
+      continue;  // cut, or with a reversal
+    }
+    sum_others(w);
+    weighted_sums(nodes.weight.data() + nodes.first[w],
+                  known->values.data() + begin * kShares.size(), count, sums.data());
+    for (std::size_t k = 0; k < kShares.size(); ++k) {
+      columns(static_cast<Eigen::Index>(w - windows.begin), static_cast<Eigen::Index>(k)) = sums[k];
+    }
+  }
+  sum_others(windows.end);
+}
+
 Eigen::MatrixXd Penalty::instrument_rows(const Instruments& instruments,
                                          const Stretch& windows) const {
   const auto first = static_cast<Eigen::Index>(windows.begin);
@@ -63,12 +111,11 @@ Eigen::MatrixXd Penalty::instrument_rows(const Instruments& instruments,
   Eigen::MatrixXd result(rows, instruments.size());
   Eigen::Index to = 0;
   for (const auto j : instruments.own) result.col(to++) = columns_.col(j).segment(first, rows);
-  const DecayRates decays{2.0, instruments.rates};
   const auto rates = static_cast<Eigen::Index>(instruments.rates.size());
   for (const auto number : instruments.shaped) {
     if (rates == 0) break;
     auto columns = result.middleCols(to, rates);
-    integrate_decays(nodes(shaped_[number].term.direction), windows, decays, nullptr, columns);
+    sum_decays(nodes(shaped_[number].term.direction), windows, instruments.rates, columns);
     if (cumulative_) {
       for (Eigen::Index j = 0; j < rates; ++j) accumulate(columns.col(j));
     }

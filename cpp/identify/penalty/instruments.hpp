@@ -31,6 +31,9 @@ struct Instruments {
   static constexpr Eigen::Index kLink = 4;     ///< with the velocity change
 };
 
+/// The rates of decays for recordings of that largest speed; none at rest.
+std::vector<double> instrument_rates(double fastest);
+
 /// The solved first stage.
 struct FirstStage {
   Instruments instruments;

@@ -179,6 +179,12 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       backward.push_back(backward_intervals(masked->recording(), masked->usable()));
     }
   }
+  if (residual_ == Residual::instruments && !shaped_.empty()) {
+    decays_.clear();
+    for (const auto& recording : recordings) {
+      decays_.push_back(recording->decays(instrument_rates(fastest_)));
+    }
+  }
   struct Block {  // windows of one recording
     std::size_t begin;
     std::size_t end;

@@ -132,6 +132,10 @@ class Penalty final : public PenaltyFunction {
   void integrate_link(const RecordingView& recording, Eigen::Index first, Eigen::Index count);
   [[nodiscard]] Instruments instruments(const std::vector<Eigen::Index>& free,
                                         std::size_t windows) const;
+  /// Window sums of the instruments' decays: by those of the samples where a window's nodes are its
+  /// samples.
+  void sum_decays(const FrictionNodes& nodes, const Stretch& windows,
+                  const std::vector<double>& rates, Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// The instruments over some windows; of running sums, over all.
   [[nodiscard]] Eigen::MatrixXd instrument_rows(const Instruments& instruments,
                                                 const Stretch& windows) const;
@@ -171,7 +175,8 @@ class Penalty final : public PenaltyFunction {
   std::vector<Eigen::MatrixXd> kept_rows_;  ///< instruments between the two stages, if few
   Eigen::VectorXd reading_;                 ///< the gain's column before its projection
   std::optional<FirstStage> first_stage_;
-  double fastest_ = 0.0;  ///< in the whole recordings
+  double fastest_ = 0.0;                                     ///< in the whole recordings
+  std::vector<std::shared_ptr<const SampleDecays>> decays_;  ///< of each recording, of instruments
   Eigen::Index runs_ = 0;
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
   Eigen::Index load_ = -1;              ///< load friction, among the shapes; -1 without it

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/clones.hpp"
+#include "base/elementary.hpp"
 #include "base/quantile.hpp"
 
 namespace jointid::identify {
@@ -23,6 +25,20 @@ double squared_changes(const double* v, Eigen::Index count, Eigen::Index lag) {
   }
   for (; k < count; ++k) sum[0] += (v[k + lag] - v[k]) * (v[k + lag] - v[k]);
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+constexpr Eigen::Index kMostDecays = 1 << 18;  // samples
+
+JOINTID_CLONES void decays_at(const double* velocity, std::size_t samples, const double* rates,
+                              std::size_t count, double vanishing, double* speed, double* values) {
+  for (std::size_t i = 0; i < samples; ++i) {
+    speed[i] = std::fabs(velocity[i]);
+    const double x = speed[i] * speed[i];
+    const double kept = x < vanishing ? 1.0 : 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      values[i * count + k] = kept * base::exp_decay(rates[k] * x);
+    }
+  }
 }
 
 }  // namespace
@@ -80,6 +96,23 @@ double MaskedRecording::structure(Eigen::Index lag, const base::Cancel* cancel) 
   const double mean = pairs > 0 ? sum / static_cast<double>(pairs) : 0.0;
   structure_.emplace(lag, mean);
   return mean;
+}
+
+std::shared_ptr<const SampleDecays> MaskedRecording::decays(
+    const std::vector<double>& rates) const {
+  if (recording_.samples() > kMostDecays || rates.empty()) return nullptr;
+  const std::lock_guard lock(mutex_);
+  if (decays_ != nullptr && decays_->rates == rates) return decays_;
+  const auto samples = static_cast<std::size_t>(recording_.samples());
+  auto made = std::make_shared<SampleDecays>();
+  made->rates = rates;
+  made->speed.resize(samples);
+  made->values.resize(samples * rates.size());
+  decays_at(recording_.velocity.data(), samples, rates.data(), rates.size(),
+            vanishing_at(*std::min_element(rates.begin(), rates.end())), made->speed.data(),
+            made->values.data());
+  decays_ = std::move(made);
+  return decays_;
 }
 
 }  // namespace jointid::identify

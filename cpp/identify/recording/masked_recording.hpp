@@ -1,8 +1,10 @@
 #pragma once
 // A recording with its mask and the statistics that every cut into windows needs, computed once.
 
+#include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <vector>
 
@@ -10,6 +12,18 @@
 #include "identify/recording/mask.hpp"
 
 namespace jointid::identify {
+
+/// From this x on exp(-rate x) is nothing beside the 1 that samples at rest have: exp(-50) = 2e-22.
+inline double vanishing_at(double rate) {
+  return rate > 0.0 ? 50.0 / rate : HUGE_VAL;
+}
+
+/// Decays exp(-rate v^2) at every sample; zero where the slowest of them has vanished.
+struct SampleDecays {
+  std::vector<double> rates;
+  std::vector<double> speed;   ///< |v|
+  std::vector<double> values;  ///< those of one sample side by side
+};
 
 class MaskedRecording {
  public:
@@ -34,6 +48,9 @@ class MaskedRecording {
   /// Structure function D(lag) = mean (v[k+lag] - v[k])^2 over what is usable throughout; 0 if
   /// nothing is. Remembered.
   [[nodiscard]] double structure(Eigen::Index lag, const base::Cancel* cancel = nullptr) const;
+  /// The decays of some rates; remembered, since windows of several lengths sum the same. Null of a
+  /// recording so long that they would fill memory.
+  [[nodiscard]] std::shared_ptr<const SampleDecays> decays(const std::vector<double>& rates) const;
 
  private:
   struct Run {  ///< samples begin .. end, all intervals between them usable
@@ -49,6 +66,7 @@ class MaskedRecording {
   double noise_ = 0.0;
   mutable std::mutex mutex_;
   mutable std::map<Eigen::Index, double> structure_;
+  mutable std::shared_ptr<const SampleDecays> decays_;
 };
 
 }  // namespace jointid::identify

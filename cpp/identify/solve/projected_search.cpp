@@ -23,10 +23,10 @@ constexpr int kSpeeds = 12;                // over a speed's, of two shapes
 constexpr int kExponents = 6;              // over an exponent's
 constexpr std::size_t kValleys = 3;
 constexpr double kTold = 50.0;      // variances that tell one point of the scan from another
-constexpr double kFar = 0.1;        // of a range: all windows must agree with some so far
-constexpr double kSettled = 1e-13;  // of the penalty: what a step still promises
+constexpr double kSettled = 1e-13;  // of the penalty: what the last step but one promises at most
+constexpr double kRough = 1e-4;     // the same over some windows, which only give a start
 constexpr int kSteps = 30;
-constexpr int kRoughSteps = 8;             // over some windows
+constexpr int kRoughSteps = 8;
 constexpr const char* kAtEnd = "the optimum lies near the end of a shape's range";
 constexpr std::size_t kLarge = 1U << 17U;  // nodes: an evaluation beyond must be interruptible
 
@@ -66,11 +66,10 @@ class ProjectedSearch {
   std::string find_valleys(const Projection& few, std::vector<Eigen::VectorXd>& result) {
     const auto values = scan(few);
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    const auto spare = static_cast<double>(few.windows() - penalty_.parameters());
-    if (!((*most / *least - 1.0) * spare > kTold)) return "the penalty hardly depends on the shapes";
+    if (!is_told(few, *most, *least)) return "the penalty hardly depends on the shapes";
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const bool close = (values[i] / *least - 1.0) * spare <= kTold;
+      const bool close = !is_told(few, values[i], *least);
       if (values[i] == *least || (close && is_valley(values, i))) found.push_back(i);
     }
     if (found.size() > kValleys) return "the penalty has many valleys";
@@ -87,8 +86,20 @@ class ProjectedSearch {
     return {};
   }
 
+  /// Whether the windows tell two values by more than chance.
+  [[nodiscard]] bool is_told(const Projection& few, double value, double least) const {
+    const auto spare = static_cast<double>(few.windows() - penalty_.parameters());
+    return (value / least - 1.0) * spare > kTold;
+  }
+
+  /// Whether the windows contradict what all of them together found.
+  bool contradict(const Projection& few, const Found& rough, const Found& found) {
+    return is_told(few, evaluate(few, found.shares).value, rough.point.value);
+  }
+
   /// Gauss-Newton steps within the ranges, damped where one does not lead down.
-  Found descend(const Projection& projection, const Eigen::VectorXd& start, int most) {
+  Found descend(const Projection& projection, const Eigen::VectorXd& start, int most,
+                double settled) {
     Found best{start, evaluate(projection, start), false};
     double damping = 0.0;
     Eigen::MatrixXd secant;  // of a single shape: the gradient's own slope
@@ -97,14 +108,17 @@ class ProjectedSearch {
       const double promised =
           -best.point.gradient.dot(move) -
           0.5 * move.dot((secant.size() > 0 ? secant : best.point.curvature) * move);
-      if (!(promised > kSettled * best.point.value)) {
-        best.settled = promised >= -kSettled * best.point.value;  // not if an end bent the step
+      const bool last = !(promised > settled * best.point.value);
+      if (last) best.settled = promised >= -settled * best.point.value;  // not if an end bent it
+      if (last && promised <= 0.0) break;
+      Found next{best.shares + move, {}, best.settled};
+      next.point = evaluate(projection, next.shares);
+      if (last) {  // rounding decides which value is lower, the gradient tells the place
+        if (next.point.value <= best.point.value * (1.0 + settled)) best = std::move(next);
         break;
       }
-      Found next{best.shares + move, {}, false};
-      next.point = evaluate(projection, next.shares);
       if (next.point.value > best.point.value) {
-        best.settled = next.point.value - best.point.value <= kSettled * best.point.value;
+        best.settled = next.point.value - best.point.value <= settled * best.point.value;
         if (best.settled || damping > 1e6) break;
         damping = std::max(1e-2, 10.0 * damping);
         secant.resize(0, 0);
@@ -297,13 +311,14 @@ Projected minimise_projected(const Penalty& penalty, const search::Domain& domai
   }
   std::optional<ProjectedPoint> best;
   for (const auto& start : valleys) {
-    const Found rough = search.descend(few, start, kRoughSteps);
-    const Found found = search.descend(*all, rough.shares, kSteps);
+    const Found rough = search.descend(few, start, kRoughSteps, kRough);
+    const Found found = search.descend(*all, rough.shares, kSteps, kSettled);
     if (!found.settled) return {{}, "the steps did not settle"};
     const bool inside = found.shares.minCoeff() > 0.0 && found.shares.maxCoeff() < 1.0;
     if (!inside) return {{}, kAtEnd};
-    const bool near = (found.shares - rough.shares).cwiseAbs().maxCoeff() <= kFar;
-    if (!near) return {{}, "some of the windows and all of them differ"};
+    if (search.contradict(few, rough, found)) {
+      return {{}, "some of the windows and all of them differ"};
+    }
     if (!best || found.point.value < best->value) best = found.point;
   }
   SeparableResult result;

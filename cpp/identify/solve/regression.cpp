@@ -2,10 +2,8 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include "base/elementary.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
 namespace jointid::identify {
@@ -14,8 +12,6 @@ namespace {
 
 constexpr Eigen::Index kRows = 512;    // of a block: it stays in the cache
 constexpr Eigen::Index kTask = 16384;  // rows that one task brings down to one triangle
-// Scores are hardly ever more persistent; beyond, recolouring would amplify its own error.
-constexpr double kMostPersistent = 0.97;
 
 Eigen::MatrixXd upper(const Eigen::MatrixXd& block) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block);
@@ -25,17 +21,6 @@ Eigen::MatrixXd upper(const Eigen::MatrixXd& block) {
 
 std::size_t tasks(Eigen::Index rows) {
   return static_cast<std::size_t>(std::max<Eigen::Index>(1, (rows + kTask - 1) / kTask));
-}
-
-/// Newey and West's sum of one white series.
-double long_run(const Eigen::VectorXd& white, Eigen::Index lags) {
-  double total = white.squaredNorm();
-  const Eigen::Index rows = white.size();
-  for (Eigen::Index lag = 1; lag <= std::min(lags, rows - 1); ++lag) {
-    const double share = 1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
-    total += 2.0 * share * white.tail(rows - lag).dot(white.head(rows - lag));
-  }
-  return total;
 }
 
 }  // namespace
@@ -63,52 +48,6 @@ Eigen::MatrixXd triangle(const Eigen::Ref<const Eigen::MatrixXd>& matrix, base::
     all = upper(both);
   }
   return all;
-}
-
-Eigen::VectorXd robust_variance(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
-                                const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,
-                                const Eigen::MatrixXd& weights, base::Pool* pool) {
-  const Eigen::Index rows = jacobian.rows();
-  const Eigen::Index columns = jacobian.cols();
-  Eigen::VectorXd persistence = Eigen::VectorXd::Zero(columns);
-  const auto score = [&](Eigen::Index row, Eigen::Index j) {
-    return jacobian(row, j) * scale[j] * residual[row];
-  };
-  for_each(static_cast<std::size_t>(rows < 4 ? 0 : columns), pool, [&](std::size_t column) {
-    const auto j = static_cast<Eigen::Index>(column);
-    double power = 0.0;
-    double lagged = 0.0;
-    double before = score(0, j);
-    for (Eigen::Index row = 1; row < rows; ++row) {
-      const double here = score(row, j);
-      power += before * before;
-      lagged += here * before;
-      before = here;
-    }
-    double found = lagged / (power > 0.0 ? power : 1.0);
-    // The estimate of a persistence is biased down by about (1 + 3 rho) / n (Kendall 1954).
-    found += (1.0 + 3.0 * found) / static_cast<double>(rows);
-    persistence[j] = std::clamp(found, 0.0, kMostPersistent);
-  });
-  const auto lags = static_cast<Eigen::Index>(
-      rows < 4 ? 0.0 : 4.0 * base::pow(static_cast<double>(rows) / 100.0, 2.0 / 9.0));
-  Eigen::VectorXd variance(weights.cols());
-  // Whitening and weighting are linear: a weighted sum of white scores is one white series.
-  for_each(static_cast<std::size_t>(weights.cols()), pool, [&](std::size_t index) {
-    Eigen::VectorXd white = Eigen::VectorXd::Zero(rows);
-    for (Eigen::Index j = 0; j < columns; ++j) {
-      const double weight = weights(j, static_cast<Eigen::Index>(index)) / (1.0 - persistence[j]);
-      double before = score(0, j);
-      white[0] += weight * before * std::sqrt(1.0 - persistence[j] * persistence[j]);
-      for (Eigen::Index row = 1; row < rows; ++row) {
-        const double here = score(row, j);
-        white[row] += weight * (here - persistence[j] * before);
-        before = here;
-      }
-    }
-    variance[static_cast<Eigen::Index>(index)] = long_run(white, lags);
-  });
-  return variance;
 }
 
 SegmentSums segment_sums(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,

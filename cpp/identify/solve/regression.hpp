@@ -1,6 +1,6 @@
 #pragma once
-// What least squares over very many windows comes down to: the triangle of a tall matrix, and how
-// far its rows' scores hang together.
+// What least squares over very many windows comes down to: the triangle of a tall matrix, and sums
+// of its rows over segments.
 
 #include <Eigen/Core>
 
@@ -11,15 +11,6 @@ namespace jointid::identify {
 /// R of the QR decomposition of a tall matrix, by blocks of rows and then of their triangles; all
 /// that least squares needs of the matrix (Golub and Van Loan, 5.2).
 Eigen::MatrixXd triangle(const Eigen::Ref<const Eigen::MatrixXd>& matrix, base::Pool* pool);
-
-/// Prewhitened Newey-West variance of weighted sums of scores, one for each column of `weights`.
-///
-/// Row i of the scores is residual[i] times row i of `jacobian` times `scale`. Each column is
-/// stripped of its first-order persistence (Andrews and Monahan 1992), Newey and West's (1987) sum
-/// is taken and the persistence put back.
-Eigen::VectorXd robust_variance(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
-                                const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,
-                                const Eigen::MatrixXd& weights, base::Pool* pool);
 
 /// Products of the directions `whitening` makes of the Jacobian's rows, over each segment of rows.
 struct SegmentSums {

@@ -94,7 +94,6 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
                 "nameTextStyle": {"align": "left", "color": _TEXT},
                 "axisLabel": {"color": _TEXT},
                 "splitLine": {"lineStyle": {"color": _GRID}},
-        "splitLine": {"lineStyle": {"color": _GRID}},
             }
             for k, name in enumerate(names)
         ],

@@ -40,7 +40,9 @@ def columns_step(desk: Desk) -> dict[str, Callable[[], object]]:
             ui.label("Load a log first.")
             return
         headers = {_NONE: "—"} | {k: each.header for k, each in enumerate(desk.looked.columns)}
-        with ui.grid(columns="max-content minmax(9rem, 1fr) max-content minmax(12rem, 2fr)").classes("items-center w-full"):
+        with ui.grid(
+            columns="max-content minmax(9rem, 1fr) max-content minmax(12rem, 2fr)"
+        ).classes("items-center w-full"):
             for signal in _SIGNALS:
                 ranges[signal] = _row(desk, signal, headers)
         _facts(desk)

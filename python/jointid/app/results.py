@@ -11,7 +11,7 @@ from nicegui import ui
 from jointid.app.charts import estimate_options
 from jointid.app.desk import Desk
 from jointid.estimate.html_tables import html_table
-from jointid.report.html import verdict_lines
+from jointid.report.answering import verdict_lines
 
 if TYPE_CHECKING:
     from jointid.base.advice import Action
@@ -27,7 +27,7 @@ def result_step(desk: Desk) -> Callable[[], object]:
     def draw() -> None:
         estimate = desk.estimate
         if estimate is not None:
-            for line in verdict_lines(estimate):
+            for line in verdict_lines(estimate.verdict):
                 ui.html(str(line), sanitize=False)
             ui.html(str(html_table(estimate)), sanitize=False).props("id=estimate")
             _findings(desk, estimate)

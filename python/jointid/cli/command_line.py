@@ -1,4 +1,4 @@
-"""The command line: `jointid demo | identify | compare | simulate | sweep | design | run | emulate | report | info`.
+"""The command line: `jointid demo | new | identify | compare | simulate | sweep | design | run | report | info | …`.
 
 What `jointid --help` shows is here and in the table of commands; the rest is imported by the command that needs it.
 """
@@ -31,6 +31,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         130 interrupted by Ctrl-C.
     """
     _show_every_character()
+    if sys.stdout.isatty() or sys.stderr.isatty():
+        from jointid.cli.terminal import fit_streams
+
+        fit_streams()
     # What is imported stays: looking through it for garbage takes a tenth of a short command.
     gc.set_threshold(_SELDOM, *gc.get_threshold()[1:])
     atexit.register(gc.freeze)

@@ -10,6 +10,11 @@ _TABLE = {
         "jointid.cli.grammar:add_demo",
         "jointid.cli.commands:demo",
     ),
+    "new": (
+        "write a joint file to begin with: from options, a recording, or answers at the terminal",
+        "jointid.cli.new_joint:add_new",
+        "jointid.cli.new_joint:new",
+    ),
     "identify": (
         "identify a joint from one recording or several",
         "jointid.cli.grammar:add_identify",

@@ -79,6 +79,11 @@ def identify(arguments: argparse.Namespace) -> int:
     }
     options = GaOptions(**budget)
     file = joint_file(arguments)
+    if file is not None and file.voltage is not None:
+        from jointid.cli.servo import identify_runs
+
+        return identify_runs(arguments, file)
+    _for_a_torque(arguments)
     model = with_terms(arguments.model, arguments)
     merged = model if file is None else model.over(file.model)
     usable = torque_needed(arguments, file)
@@ -138,6 +143,15 @@ def _with_checks(
 def _for_one_joint(arguments: argparse.Namespace) -> None:
     if arguments.facts is not None:
         raise InputError("this is for a robot; name its URDF with --robot", argument="facts")
+
+
+def _for_a_torque(arguments: argparse.Namespace) -> None:
+    for name in ("by", "rollout"):
+        if getattr(arguments, name):
+            raise InputError(
+                'this is for a servo, whose joint file says input = "voltage" in [drive]',
+                argument=name,
+            )
 
 
 def compare(arguments: argparse.Namespace) -> int:

@@ -40,7 +40,8 @@ def add_identify(identify: CommandParser) -> None:
         "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
         "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)\n"
         "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html\n"
-        "  jointid identify arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)"
+        "  jointid identify arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)\n"
+        "  jointid identify runs/*.csv --joint servo.toml --rollout   (a servo that logs its duty, no torque)"
     )
     several_recordings(identify)
     _identification_arguments(identify, method="ga")
@@ -69,6 +70,16 @@ def add_identify(identify: CommandParser) -> None:
         "--causes",
         action="store_true",
         help="say why the model does not fit: causes by name, what they explain and what they move",
+    )
+    identify.add_argument(
+        "--by",
+        metavar="COLUMN",
+        help="of a servo: a file holds several runs, and this column numbers them; see docs/servos.md",
+    )
+    identify.add_argument(
+        "--rollout",
+        action="store_true",
+        help="of a servo: simulate the closed loop of each run and say how far it ends from the log",
     )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")

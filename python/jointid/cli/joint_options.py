@@ -13,6 +13,7 @@ from jointid.cli.reading import gear_ratios
 
 if TYPE_CHECKING:
     from jointid.joint.joint import Joint
+    from jointid.joint.model import Model
     from jointid.recording.recording import Recording
 
 _DRIVE = ("torque_constant", "rotor_inertia")
@@ -23,6 +24,11 @@ _LINK = {"mass": "mass", "centre_of_mass": "centre_of_mass", "link_angle": "angl
 def joint_arguments(command: argparse.ArgumentParser) -> None:
     """Add the joint file, and the facts that may stand in its place or beside it."""
     command.add_argument("--joint", type=Path, help="joint file (.toml)")
+    fact_arguments(command)
+
+
+def fact_arguments(command: argparse.ArgumentParser) -> None:
+    """Add the facts of a drive and its link; the gear ratio is among the options of a reading."""
     for option, explanation in (
         ("--torque-constant", "of the motor [N·m/A], for a recorded current"),
         ("--rotor-inertia", "of the motor with all that turns with it, motor side [kg·m²]"),
@@ -106,16 +112,34 @@ def with_facts(
         A value that cannot be used; it names the option.
     """
     from jointid.joint.joint import Joint
+    from jointid.joint.model import Model
 
     if not facts:
         return file
     try:
         if file is not None:
-            return file.replace(**facts)
+            return file.replace(**weighed(facts, file.model, sensor=file.sensor))
+        facts = weighed(facts, Model(), sensor=sensor) if kind == "revolute" else facts
         own: dict[str, Any] = {"name": name, "kind": kind, "sensor": sensor}
         return Joint(**own, **facts)
     except InputError as error:
         raise _of_option(error) from None
+
+
+def weighed(facts: Mapping[str, Any], model: Model, *, sensor: bool) -> dict[str, Any]:
+    """Facts of a joint, with the weight of a link that the options state: a sensor measures it, else it is known.
+
+    Parameters
+    ----------
+    facts : mapping of str to object
+    model : Model
+        Of the joint file: what it says of gravity stays.
+    sensor : bool
+        Whether the joint has a torque sensor.
+    """
+    if "link" not in facts or sensor or model.gravity is not None:
+        return dict(facts)
+    return {**facts, "model": model.replace(gravity="known")}
 
 
 def torque_needed(arguments: argparse.Namespace, file: Joint | None) -> Callable[[Recording], Any]:

@@ -55,6 +55,16 @@ _ESTIMATE = {"report": "--report", "save": "--save"}
 
 OPTIONS: Mapping[str, Mapping[str, str]] = {
     "demo": {"output": "--output"},
+    "new": {
+        **_READING,
+        **_FACTS,
+        "name": "--name",
+        "kind": "--kind",
+        "position": "--position",
+        "velocity": "--velocity",
+        "torque": "--torque",
+        "current": "--current",
+    },
     "identify": {
         **_IDENTIFICATION,
         **_ESTIMATE,
@@ -62,6 +72,8 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "ga.generations": "--generations",
         "selftest": "--selftest",
         "causes": "--causes",
+        "by": "--by",
+        "rollout": "--rollout",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
         "n": "--bootstrap",
@@ -195,7 +207,8 @@ FLAGS = frozenset(
             "--emulate",
             "--dry-run",
         ),
-        *("--selftest", "--causes", "--unknown-friction", "--json", "--watchdog", "--approximate"),
+        *("--selftest", "--causes", "--rollout", "--unknown-friction", "--json", "--watchdog"),
+        "--approximate",
     }
 )
 """Options that may stand without a value."""

@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self, TextIO
 
 from jointid._core import GaOptions, Generation
+from jointid.cli.terminal import columns_of
 
 if TYPE_CHECKING:
     from jointid.comparison.comparison import ComparisonStep
@@ -33,7 +34,9 @@ class _Bar:
             return
         self._drawn = now
         full = round(_WIDTH * min(1.0, share))
-        self._stream.write(f"\r{'█' * full}{'·' * (_WIDTH - full)} {text}\033[K")
+        line = f"{'█' * full}{'·' * (_WIDTH - full)} {text}"
+        # A line that goes on in the next one could not be drawn over.
+        self._stream.write(f"\r{line[: (columns_of(self._stream) or len(line) + 1) - 1]}\033[K")
         self._stream.flush()
 
     def __enter__(self) -> Self:

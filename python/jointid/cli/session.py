@@ -227,11 +227,11 @@ def run(arguments: argparse.Namespace) -> int:
             write_whole(arguments.save, arguments.joint.read_bytes())
         result.estimates[-1].save(arguments.save)
     if arguments.output is not None:
-        _write(result, arguments.output)
+        _write(result, arguments.output, _wording(arguments, result, output))
     if as_json:
         print(json.dumps(document(result, output), indent=1, ensure_ascii=False))
     else:
-        print(result.report())
+        print(result.report(_wording(arguments, result, output).of_action))
         if arguments.output is not None:
             written = "recordings, frame logs" + (", estimates" if result.estimates else "")
             print(f"\n{written} and report.html: {arguments.output}")
@@ -368,11 +368,17 @@ def _write_page_of(error: Exception, folder: Path | None) -> None:
         print(f"report: {page}", file=sys.stderr)
 
 
-def _write(result: Commissioning, folder: Path) -> None:
+def _wording(arguments: argparse.Namespace, result: Commissioning, output: Path | None) -> Wording:
+    """The words of the command's advice: with its joint file, and the estimate that it wrote last."""
+    saved = "ESTIMATE" if output is None else str(output / f"cycle_{len(result.estimates)}.json")
+    return Wording("run", joint_file=str(arguments.joint), saved=saved)
+
+
+def _write(result: Commissioning, folder: Path, wording: Wording) -> None:
     """The session's page, and its outcome as text and numbers."""
     from jointid.base.files import write_whole
     from jointid.report.saving import save_report
 
     save_report(result, folder / "report.html", action=ADVICE.of_action)
-    write_whole(folder / "ring.txt", (result.report() + "\n").encode())
+    write_whole(folder / "ring.txt", (result.report(wording.of_action) + "\n").encode())
     write_whole(folder / "ring.json", json.dumps(result.to_dict(), indent=1).encode())

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
+
+from jointid.base.advice import Action
 
 if TYPE_CHECKING:
     from jointid.commissioning.ring import Commissioning
     from jointid.estimate.estimate import Estimate
 
 
-def text_report(result: Commissioning) -> str:
-    """Tables of tracking errors and parameters."""
+def text_report(result: Commissioning, action: Callable[[Action], str] = str) -> str:
+    """Tables of tracking errors and parameters.
+
+    Parameters
+    ----------
+    result : Commissioning
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+    """
     lines = _runs(result)
     if result.estimates:
         lines += ["", *_table(parameter_rows(result))]
@@ -19,7 +29,7 @@ def text_report(result: Commissioning) -> str:
     if result.motion_warning:
         lines += ["", f"The motion: {result.motion_warning}."]
     warned = [
-        f"- {found.code}: {found.message}"
+        f"- {found.code}: {found.worded(action)}"
         for estimate in result.estimates[-1:]
         for found in estimate.warnings
     ]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
@@ -117,11 +118,17 @@ class Commissioning:
             else {name: found.value for name, found in self.without_ripple.parameters.items()},
         }
 
-    def report(self) -> str:
-        """Return tables of tracking errors and parameters."""
+    def report(self, action: Callable[[Action], str] = str) -> str:
+        """Return tables of tracking errors and parameters.
+
+        Parameters
+        ----------
+        action : callable
+            Words the advice of a finding. Default: as at a Python prompt.
+        """
         from jointid.commissioning.report import text_report
 
-        return text_report(self)
+        return text_report(self, action)
 
 
 def commission(

@@ -14,7 +14,7 @@ from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.prediction import FittedModel
+from jointid.estimate.prediction import FittedModel, TorquePredictor
 from jointid.estimate.settings import model_of
 from jointid.identification.identification import identify
 from jointid.identification.prepared import prepare
@@ -136,6 +136,12 @@ def compare_models(
         Input that cannot be used: the error names the argument and the reason.
     KeyboardInterrupt
         Ctrl-C.
+
+    Examples
+    --------
+    >>> found = jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
+    >>> found.winner, found.estimate.settings["model"]
+    ('stribeck', 'stribeck')
     """
     runs = listed(recordings)
     specs = default_models() if models is None else compared_models(models)
@@ -270,6 +276,7 @@ class _Fitter:
         # A drift that all data show is looked for in their parts, too.
         inferred = not spec.named or any(key.endswith("_removed") for key in whole.settings)
         found = []
+        predictor = TorquePredictor()  # of one recording's blocks, all in the same windows
         for number, split in enumerate(splits, start=1):
             where = f", fold {number} of {len(splits)}"
             fitted = (
@@ -278,7 +285,7 @@ class _Fitter:
                 else self._values(spec, split.training, windows, where)
             )
             try:
-                found.append(split.residual(fitted))
+                found.append(split.residual(fitted, predictor))
             except InputError as error:
                 raise error.at(f"model '{_text(spec)}'{where}") from error
         return found

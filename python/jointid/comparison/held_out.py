@@ -9,7 +9,7 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.estimate.prediction import FittedModel, predicted_torque
+from jointid.estimate.prediction import FittedModel, TorquePredictor
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
 
@@ -40,7 +40,7 @@ class Fold:
     training: tuple[Recording, ...]
     held_out: tuple[Block, ...]
 
-    def residual(self, fitted: FittedModel) -> float:
+    def residual(self, fitted: FittedModel, predictor: TorquePredictor) -> float:
         """Return the relative residual of the held-out windows: norm of the torque's residuals over that of the torque.
 
         The torque is predicted from the motion, and from the reading where there is a sensor, whatever the residual
@@ -50,6 +50,8 @@ class Fold:
         ----------
         fitted : FittedModel
             Of `training`.
+        predictor : TorquePredictor
+            Of several fits of one model.
 
         Raises
         ------
@@ -58,7 +60,7 @@ class Fold:
         """
         missed = measured = 0.0
         for block in self.held_out:
-            found = predicted_torque(fitted, block.recording)
+            found = predictor.predicted(fitted, block.recording)
             inside = (found.start >= block.start) & (found.stop <= block.stop)
             missed += float(np.sum(found.residual[inside] ** 2))
             measured += float(np.sum(found.torque[inside] ** 2))

@@ -74,6 +74,12 @@ class Comparison:
     settings : mapping
         Folds, what each held out ("held_out"), windows, method, residual, and the models that were not
         compared with the reason for each ("left_out").
+
+    Examples
+    --------
+    >>> comparison = jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
+    >>> comparison.winner
+    'stribeck'
     """
 
     rows: tuple[ComparedModel, ...]

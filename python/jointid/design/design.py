@@ -66,6 +66,12 @@ class Design:
         The parameter with the largest error.
     limited_by : str
         What keeps that error from being smaller: a limit that is reached, the duration, the noise, …
+
+    Examples
+    --------
+    >>> design = jid.load_design("motion.toml")
+    >>> design.trajectory.duration
+    4.0
     """
 
     status: str

@@ -71,6 +71,15 @@ class DesignProgress:
         Motions that were tried, of all.
     best : float
         What the search minimises, of the best motion so far: a relative error.
+
+    Examples
+    --------
+    >>> said = []
+    >>> search = jid.DesignSearch(evaluations=64, joints=2, rehearsals=10)
+    >>> design = jid.design_excitation(known, {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}, duration=4.0,
+    ...     search=search, callback=said.append)
+    >>> isinstance(said[-1], jid.DesignProgress)
+    True
     """
 
     number: int

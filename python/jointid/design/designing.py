@@ -113,10 +113,10 @@ def design_excitation(
 
     Examples
     --------
-    >>> design = design_excitation(
-    ...     joint, {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
-    ... )  # doctest: +SKIP
-    >>> design.save("motion.toml")  # doctest: +SKIP
+    >>> limits = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
+    >>> search = jid.DesignSearch(evaluations=64, joints=2, rehearsals=10)  # the default takes seconds
+    >>> design = design_excitation(known, limits, duration=4.0, search=search)
+    >>> design.save("new_motion.toml")
     """
     require_kind("joint", joint, Joint)
     check_stated(joint, controller, sensors, parameters, callback)

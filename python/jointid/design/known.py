@@ -22,6 +22,12 @@ class Known:
         Of parameters; of others nothing is known.
     information : ndarray, shape (p, p)
         Inverse of the covariance [1 / product of the two units]; singular where a direction is not determined.
+
+    Examples
+    --------
+    >>> told = jid.Known(names=("coulomb", "viscous"), information=np.diag([4.0, 25.0]))
+    >>> told.stderr()["viscous"]
+    0.2
     """
 
     names: tuple[str, ...]

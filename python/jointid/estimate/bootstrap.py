@@ -63,6 +63,12 @@ class Bootstrap:
     blocks : int
         Blocks in a draw.
     seed : int
+
+    Examples
+    --------
+    >>> drawn = estimate.bootstrap(50)
+    >>> len(drawn.samples), sorted(drawn.parameters)[0]
+    (50, 'coulomb')
     """
 
     parameters: Mapping[str, BootstrapParameter]

@@ -92,6 +92,14 @@ class Estimate(Questions):
         How the model was chosen; None if it was named.
     follow_up : FollowUp or None
         Answers questions that need the recordings; None in an estimate that was read from a file.
+
+    Examples
+    --------
+    >>> estimate = jid.identify(recording, joint, model="stribeck")
+    >>> round(estimate["coulomb"].value), estimate["coulomb"].unit
+    (25, 'N·m')
+    >>> str(estimate.verdict.level)
+    'usable'
     """
 
     parameters: Mapping[str, ParameterEstimate]
@@ -190,8 +198,8 @@ class Estimate(Questions):
 
         Examples
         --------
-        >>> estimate.friction([0.1, 0.2]).torque  # doctest: +SKIP
-        array([34.36, 29.37])
+        >>> estimate.friction([0.1, 0.2]).torque.round(1)
+        array([34.4, 29.4])
         """
         from jointid.estimate.friction_map import friction_curve
         from jointid.joint.checks import finite_number

@@ -35,7 +35,7 @@ class FittedModel:
     Attributes
     ----------
     settings : mapping
-        As `Estimate.settings`.
+        As `Estimate.settings`; of a fit without inference without the recordings.
     joint : Joint or None
         None: a joint without a gear, of which nothing is known.
     values : mapping of str to float
@@ -73,7 +73,10 @@ class PredictedTorque:
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
     """Predict a recording: see `Estimate.predict`."""
-    problem, penalty, theta = _posed(FittedModel.of(estimate), recording)
+    fitted = FittedModel.of(estimate)
+    problem = _posed(fitted, recording)
+    penalty = problem.penalty(fitted.settings["windows"])
+    theta = _values_in(fitted, penalty)
     table = problem.table(penalty, theta)
     return Prediction(
         windows=table,
@@ -82,15 +85,30 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
     )
 
 
-def predicted_torque(fitted: FittedModel, recording: Recording) -> PredictedTorque:
-    """Return how a fit predicts the drive's torque, by whichever residual it was made.
+class TorquePredictor:
+    """Predictions of the drive's torque by several fits, which mostly pose the same problem: it is cut once."""
 
-    Raises
-    ------
-    InputError
-        As `Estimate.predict`.
-    """
-    _, penalty, theta = _posed(fitted, recording)
+    def __init__(self) -> None:
+        self._last: tuple[Problem, Any, _core.Penalty] | None = None
+
+    def predicted(self, fitted: FittedModel, recording: Recording) -> PredictedTorque:
+        """Return how a fit predicts the drive's torque, by whichever residual it was made.
+
+        Raises
+        ------
+        InputError
+            As `Estimate.predict`.
+        """
+        problem, windows = _posed(fitted, recording), fitted.settings["windows"]
+        if self._last is None or self._last[:2] != (problem, windows):
+            self._last = (problem, windows, problem.penalty(windows))
+        return _predicted_torque(fitted, recording, self._last[2])
+
+
+def _predicted_torque(
+    fitted: FittedModel, recording: Recording, penalty: _core.Penalty
+) -> PredictedTorque:
+    theta = _values_in(fitted, penalty)
     residual = np.asarray(penalty.residuals(theta))
     if penalty.residual == _core.Residual.sensor:
         residual = residual * theta[penalty.names.index("sensor_gain")]
@@ -103,8 +121,8 @@ def predicted_torque(fitted: FittedModel, recording: Recording) -> PredictedTorq
     )
 
 
-def _posed(fitted: FittedModel, recording: Recording) -> tuple[Problem, _core.Penalty, Array]:
-    """Return the problem that a recording poses, its penalty, and the fitted values in it."""
+def _posed(fitted: FittedModel, recording: Recording) -> Problem:
+    """Return the problem that a recording poses."""
     require_kind("recording", recording, Recording)
     settings = fitted.settings
     choice = TermChoice(
@@ -128,7 +146,7 @@ def _posed(fitted: FittedModel, recording: Recording) -> tuple[Problem, _core.Pe
     shift = settings.get("shift", {})
     if recording.velocity_derived:
         shift = {name: delay for name, delay in shift.items() if name != "velocity"}
-    problem = Problem(
+    return Problem(
         recordings=tuple(shifted(run, shift) for run in listed(recording)),
         joint=fitted.joint,
         choice=choice,
@@ -137,6 +155,8 @@ def _posed(fitted: FittedModel, recording: Recording) -> tuple[Problem, _core.Pe
         shift=shift,
         min_speed=settings.get("min_speed", 0.0),
     )
-    penalty = problem.penalty(settings["windows"])
-    theta = np.array([shared_value(fitted.values, name) for name in penalty.names])
-    return problem, penalty, theta
+
+
+def _values_in(fitted: FittedModel, penalty: _core.Penalty) -> Array:
+    """Return the fitted values in the order of a penalty's names."""
+    return np.array([shared_value(fitted.values, name) for name in penalty.names])

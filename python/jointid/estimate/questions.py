@@ -58,8 +58,8 @@ class Questions:
 
         Examples
         --------
-        >>> estimate.selftest().lost  # doctest: +SKIP
-        ('sensor_gain', 'sensor_offset')
+        >>> estimate.selftest().lost
+        ()
         """
         trials = whole_number("trials", trials, 1, 1000)
         seed = whole_number("seed", seed, 0, 2**64 - 1)
@@ -92,8 +92,8 @@ class Questions:
 
         Examples
         --------
-        >>> estimate.bootstrap().parameters["coulomb"].ratio  # doctest: +SKIP
-        1.04
+        >>> 0.5 < estimate.bootstrap().parameters["coulomb"].ratio < 2.0
+        True
         """
         n = whole_number("n", n, 20, 1_000_000)
         seed = whole_number("seed", seed, 0, 2**64 - 1)
@@ -124,8 +124,8 @@ class Questions:
 
         Examples
         --------
-        >>> [cause.name for cause in estimate.causes().found]  # doctest: +SKIP
-        ['drift']
+        >>> [cause.name for cause in estimate.causes().found]
+        []
         """
         return self._with_recordings("causes").causes(cast("Estimate", self), signals or {})
 
@@ -164,7 +164,10 @@ class Questions:
 
         Examples
         --------
-        >>> design = estimate.next_motion({"position": (-1.0, 1.0), "velocity": 3.4})  # doctest: +SKIP
+        >>> limits = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
+        >>> search = jid.DesignSearch(evaluations=64, joints=2, rehearsals=10)
+        >>> estimate.next_motion(limits, duration=4.0, search=search).duration
+        4.0
         """
         # The room that designs identifies what it rehearses, and so stands above this one.
         return joined("next_motion")(self, limits, duration, **options)

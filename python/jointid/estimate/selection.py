@@ -47,6 +47,11 @@ class Selection:
         The simplest first.
     blocks : int
         Parts of the recordings that were held out in turn.
+
+    Examples
+    --------
+    >>> jid.identify(recording).selection.model
+    'stribeck'
     """
 
     model: str

@@ -75,6 +75,11 @@ class SelfTest:
     seed : int
     failed : str
         Why a trial could not be identified at all; empty if all could.
+
+    Examples
+    --------
+    >>> isinstance(estimate.selftest(), jid.SelfTest)
+    True
     """
 
     rows: tuple[SelfTestRow, ...]

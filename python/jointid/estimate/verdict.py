@@ -161,8 +161,8 @@ def judged(
 
     Examples
     --------
-    >>> str(jid.identify(recording, joint).verdict)  # doctest: +SKIP
-    'usable with care (coulomb)'
+    >>> str(jid.identify(recording, joint, model="stribeck").verdict)
+    'usable'
     """
     asked = (parameters,) if isinstance(parameters, str) else tuple(parameters)
     for name in asked:  # nothing is ever said against a name that is not there

@@ -10,6 +10,7 @@ from jointid.exports.nearest import Nearest, nearest_friction
 from jointid.exports.provenance import statements
 from jointid.exports.subject import Subject
 from jointid.exports.target import Existing, Order, Target
+from jointid.exports.voltage_actuator import VOLTAGE_NOTES, voltage_motor
 from jointid.exports.xml_patch import (
     Element,
     attribute,
@@ -132,6 +133,8 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
         f"dry friction is a soft constraint: below about {_creep(subject, nearest):.2g} "
         f"{subject.position_unit}/s it fades, and the joint creeps"
     )
+    if joint.voltage is not None:
+        notes += VOLTAGE_NOTES
     slides = joint.kind == "prismatic"
     kind, axis = ("slide", "1 0 0") if slides else ("hinge", "0 -1 0")
     limits = ""
@@ -167,6 +170,8 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
 def _actuator(subject: Subject, name: str) -> str:
     """The drive: its control is the motor's torque, its force the same; the gear makes torque at the joint of it."""
     joint = subject.joint
+    if joint.voltage is not None:
+        return voltage_motor(joint, joint.voltage, name)
     gear = joint.gear_ratio
     limit = torque_limit(joint)
     offset = subject.law.offset

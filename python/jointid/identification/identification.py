@@ -99,6 +99,14 @@ def identify(
         Input that cannot be used: the error names the argument and the reason.
     KeyboardInterrupt
         Ctrl-C; it is raised within 0.1 s.
+
+    Examples
+    --------
+    >>> estimate = jid.identify(jid.load("run.csv"), joint, model="stribeck")
+    >>> round(estimate["coulomb"].value)
+    25
+    >>> windows = jid.WindowOptions(duration=0.02)
+    >>> estimate = jid.identify(recording, joint, windows=windows, parameters={"viscous": {"min": 0.0, "max": 40.0}})
     """
     started = time.perf_counter()
     chosen = Search.of(search)

@@ -130,7 +130,7 @@ class Prepared:
         domain = self.domain
         best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
         values = dict(zip(domain.names, best.tolist(), strict=True))
-        return FittedModel(settings=self._settings(search), joint=self.problem.joint, values=values)
+        return FittedModel(settings=self._choices(search), joint=self.problem.joint, values=values)
 
     def _inferred(
         self, search: Search, outcome: Outcome, started: float, known: tuple[Cause, ...] = ()
@@ -168,11 +168,15 @@ class Prepared:
         return other.estimate(quick, run_search(quick, other.penalty, other.domain), started)
 
     def _settings(self, search: Search) -> dict[str, Any]:
+        runs = [{"name": run.name, "fingerprint": run.fingerprint} for run in self.given]
+        return {**self._choices(search), "recordings": runs}
+
+    def _choices(self, search: Search) -> dict[str, Any]:
+        """The settings without the recordings, whose fingerprints take a look at every byte."""
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
-        runs = self.given
         return {
             "version": _core.__version__,
-            "kind": runs[0].kind,
+            "kind": self.given[0].kind,
             "method": search.method,
             "model": str(choice.model.resolved),
             "terms": list(choice.terms),
@@ -189,7 +193,6 @@ class Prepared:
             "seed": search.seed,
             "ga": None if search.method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
-            "recordings": [{"name": run.name, "fingerprint": run.fingerprint} for run in runs],
         }
 
     def _window_shifts(self, best: Array) -> tuple[Array | None, Array | None]:
@@ -282,7 +285,7 @@ def prepare(
             value=str(merged),
             remedy=Action("call", {"model": "stribeck"}),
         )
-    if joint is not None:
+    if joint is not None and stated.stated():
         # What only this call's recordings have apart does not become a property of the joint.
         joint = joint.replace(model=merged.replace(per_recording=joint.model.per_recording))
     request = Request(model=stated, residual=residual)

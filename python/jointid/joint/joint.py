@@ -83,6 +83,12 @@ class Joint:
     ------
     InputError
         A field that cannot be used, or fields that contradict each other.
+
+    Examples
+    --------
+    >>> elbow = jid.Joint(name="elbow", gear_ratio=101.0, rotor_inertia=2.472e-4, sensor=True, model="stribeck")
+    >>> round(elbow.reflected_inertia, 4)
+    2.5217
     """
 
     name: str = ""
@@ -312,7 +318,9 @@ class Joint:
         if recording.current is None:
             raise InputError(
                 "the recording has no signal torque, motor_torque or current",
-                remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
+                remedy="call identify_servo: the joint's input is a voltage"
+                if self.voltage is not None
+                else Action("call", {"columns": {"torque": ...}}, function="load"),
             )
         if self.torque_constant is None:
             raise InputError(

@@ -13,16 +13,15 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.schema import read_bytes
-from jointid.joint.angles import ANGLE_EXPECTED, in_radians, text_in
 from jointid.joint.checks import check_flag, check_parameter_name, suggestion
+from jointid.joint.file_angles import keep_angles, with_angles
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
 from jointid.joint.model import FIELDS, Model
 from jointid.joint.parameters import Parameter, parameter_table
 from jointid.joint.tolerances import Tolerances
 from jointid.joint.toml_edit import update_table
-from jointid.joint.voltage_drive import KEYS as _INPUT
-from jointid.joint.voltage_drive import drive_keys, voltage_of
+from jointid.joint.voltage_drive import KEYS, drive_keys, voltage_of
 
 SCHEMA = 2
 """Increased when a reader of the earlier format would misread the new one."""
@@ -33,7 +32,7 @@ _DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_h
 _NAME = "friction"
 _MODEL = (_NAME, *FIELDS, "torque_offset")
 _KEYS: dict[str, tuple[str, ...]] = {
-    "drive": (*_DRIVE, *_INPUT),
+    "drive": (*_DRIVE, *KEYS),
     "model": _MODEL,
     "sensor": ("present",),
     "link": tuple(field.name for field in fields(Link)),
@@ -41,8 +40,6 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "limits": tuple(field.name for field in fields(Limits)),
     "tolerances": tuple(field.name for field in fields(Tolerances)),
 }
-# In the file also as "60deg".
-_ANGLES = {"link": ("angle",), "limits": ("position", "velocity")}
 # Tables that are not fields of the joint, and are kept: `estimate` is the origin of values, `session` the
 # settings of the joint's bench, `user` is free.
 _KEPT = ("estimate", "session", "user")
@@ -130,8 +127,7 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
     try:
         voltage = voltage_of(tables["drive"])
     except InputError as error:
-        nested = error.place in ("position_loop", "signals")
-        _refuse(source, f"drive.{error.place}" if nested else "drive", error)
+        _refuse(source, error.place or "drive", error)
     arguments = {
         "voltage": voltage,
         **{key: document[key] for key in _TOP[1:] if key in document},
@@ -228,26 +224,7 @@ def _table(document: Mapping[str, Any], name: str, source: str) -> dict[str, Any
     for key in table:
         if name != "parameters" and key not in _KEYS[name]:
             _refuse_key(source, name, key, _KEYS[name])
-    return _with_angles(dict(table), name, document, source)
-
-
-def _with_angles(
-    table: dict[str, Any], name: str, document: Mapping[str, Any], source: str
-) -> dict[str, Any]:
-    """Return a table with its angles in rad."""
-    for key in _angle_keys(document, name):
-        if key in table:
-            table[key] = in_radians(table[key])
-            if (text := text_in(table[key])) is not None:
-                place = f"{source}: [{name}]"
-                raise InputError(ANGLE_EXPECTED, argument=key, value=text, place=place)
-    return table
-
-
-def _angle_keys(document: Mapping[str, Any], name: str) -> tuple[str, ...]:
-    """Return the keys of a table that are angles; the limits of a joint that slides are none."""
-    slides = document.get("kind", "revolute") != "revolute"
-    return () if slides and name == "limits" else _ANGLES.get(name, ())
+    return with_angles(dict(table), name, document, source)
 
 
 def _sensor(document: Mapping[str, Any], table: dict[str, Any], source: str) -> bool:
@@ -367,7 +344,7 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
             wanted["sensor"] = {} if bare and joint.sensor else {"present": joint.sensor}
         for table in {"parameters", "limits", "tolerances"} & set(editable):
             wanted.setdefault(table, {})
-        _keep_angles(tomllib.loads(before), wanted)
+        keep_angles(tomllib.loads(before), wanted)
         usual = {} if inline else _defaults(new=not before.strip())
         update_table([editable], wanted, usual, kept=_KEPT, inline=inline)
         text = tomlkit.dumps(editable)
@@ -381,15 +358,6 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
     raise InputError(
         "the layout of this file cannot be kept", place=str(path), remedy="save it as a new file"
     )
-
-
-def _keep_angles(before: Mapping[str, Any], wanted: dict[str, Any]) -> None:
-    """Keep the texts of a file's angles that do not change."""
-    for table in _ANGLES:
-        for key in _angle_keys(wanted, table):
-            text = before.get(table, {}).get(key)
-            if key in wanted.get(table, {}) and in_radians(text) == wanted[table][key]:
-                wanted[table][key] = text
 
 
 def _defaults(*, new: bool) -> dict[str, Any]:

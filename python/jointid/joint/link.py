@@ -42,6 +42,12 @@ class Link:
     ------
     InputError
         A value that is not finite, or negative (except the angle).
+
+    Examples
+    --------
+    >>> joint = jid.Joint(link=jid.Link(mass=2.0, centre_of_mass=0.25))
+    >>> round(joint.link_inertia, 3)
+    0.125
     """
 
     mass: float
@@ -71,6 +77,11 @@ class Limits:
     ------
     InputError
         A limit that is not finite or not positive, or a position range that is empty.
+
+    Examples
+    --------
+    >>> jid.Joint(limits=jid.Limits(position=(-1.0, 1.0), velocity=3.0)).limits.velocity
+    3.0
     """
 
     position: tuple[float, float] | None = None

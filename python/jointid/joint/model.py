@@ -187,7 +187,7 @@ class Model:
 
     def stated(self) -> dict[str, Any]:
         """Return the fields that are not None, by name."""
-        values = ((item.name, getattr(self, item.name)) for item in fields(self))
+        values = ((name, getattr(self, name)) for name in FIELDS)
         return {name: value for name, value in values if value is not None}
 
     def replace(self, **changes: Any) -> Self:
@@ -214,8 +214,8 @@ class Model:
     @property
     def resolved(self) -> ResolvedModel:
         """All fields, those that are not stated with their defaults; "auto" has the default name."""
-        stated = self.stated()
-        return ResolvedModel(**(stated if self.named else {**stated, "name": ResolvedModel().name}))
+        # Own terms in another order are equal, but are not the same text.
+        return (_resolved if self.terms is None else _resolved.__wrapped__)(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return functools.partial(Model, **self.stated()), ()
@@ -244,6 +244,12 @@ class ResolvedModel:
 
 FIELDS = tuple(item.name for item in fields(Model))
 """Names of a model's fields."""
+
+
+@functools.lru_cache(maxsize=64)
+def _resolved(model: Model) -> ResolvedModel:
+    stated = model.stated()
+    return ResolvedModel(**(stated if model.named else {**stated, "name": ResolvedModel().name}))
 
 
 def _check_field(key: object) -> None:

@@ -40,6 +40,12 @@ class Parameter:
     InputError
         An unknown name, a number that is not finite, min above max, a value outside the bounds,
         or a fixed parameter without a value.
+
+    Examples
+    --------
+    >>> bounded = joint.replace(parameters={"viscous": jid.Parameter(name="viscous", min=0.0, max=40.0)})
+    >>> bounded.parameters["viscous"].max
+    40.0
     """
 
     name: str

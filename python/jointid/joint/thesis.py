@@ -10,6 +10,11 @@ def thesis_joint() -> Joint:
     """Return the joint of the thesis: a strain-wave drive with a built-in torque sensor.
 
     It has the drive's data and the bounds of the search, but no values of friction or sensor.
+
+    Examples
+    --------
+    >>> jid.thesis_joint().gear_ratio
+    101.0
     """
     domain = {
         "coulomb": (0.0, 50.0),

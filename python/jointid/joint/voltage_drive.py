@@ -49,7 +49,7 @@ class PositionLoop:
     delay: float = 0.0
 
     def __post_init__(self) -> None:
-        place = "position_loop"
+        place = "drive.position_loop"
         set_numbers(self, place, ("gain",), finite_number)
         set_numbers(self, place, ("saturation",), positive_number)
         set_numbers(self, place, ("delay",), not_negative)
@@ -98,7 +98,7 @@ class VoltageDrive:
     signals: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        place = "voltage drive"
+        place = "drive"
         set_numbers(self, place, ("resistance", "supply"), positive_number)
         set_numbers(self, place, ("duty_scale",), finite_number)
         if self.duty_scale == 0.0:
@@ -106,7 +106,7 @@ class VoltageDrive:
                 "a value other than 0 is expected", argument="duty_scale", value=0, place=place
             )
         if isinstance(self.position_loop, Mapping):
-            loop = _checked_keys(self.position_loop, PositionLoop, "position_loop")
+            loop = _checked_keys(self.position_loop)
             object.__setattr__(self, "position_loop", PositionLoop(**loop))
         if not isinstance(self.position_loop, PositionLoop | None):
             raise InputError(
@@ -121,14 +121,14 @@ class VoltageDrive:
                 raise InputError(
                     f"there is no such signal; {suggestion(name, SIGNALS)}",
                     argument=str(name),
-                    place="signals",
+                    place="drive.signals",
                 )
             if not isinstance(column, str) or not column:
                 raise InputError(
                     "the header of a column is expected",
                     argument=name,
                     value=column,
-                    place="signals",
+                    place="drive.signals",
                 )
         object.__setattr__(self, "signals", MappingProxyType(dict(self.signals)))
 
@@ -164,8 +164,8 @@ def voltage_of(table: dict[str, Any]) -> VoltageDrive | None:
         return None
     loop = given.get("position_loop")
     if loop is not None:
-        check_mapping("position_loop", "position_loop", loop)
-        given["position_loop"] = PositionLoop(**_checked_keys(loop, PositionLoop, "position_loop"))
+        check_mapping("drive", "position_loop", loop)
+        given["position_loop"] = PositionLoop(**_checked_keys(loop))
     return VoltageDrive(**given)
 
 
@@ -187,9 +187,10 @@ def drive_keys(voltage: VoltageDrive | None) -> dict[str, Any]:
     return keys
 
 
-def _checked_keys(given: Mapping[str, Any], kind: type[Any], place: str) -> dict[str, Any]:
-    """Return a mapping whose keys are fields of a class; `gain` must be there."""
-    known = [item.name for item in fields(kind)]
+def _checked_keys(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields of a position loop; its gain must be there."""
+    known = [item.name for item in fields(PositionLoop)]
+    place = "drive.position_loop"
     for key in given:
         if key not in known:
             raise InputError(

@@ -89,6 +89,12 @@ class JointEstimates(Mapping[str, Estimate]):
         The recording's.
     seconds : float
         Wall time.
+
+    Examples
+    --------
+    >>> found = jid.identify_joints(jid.load_robot("arm.csv", [1, 2]))
+    >>> sorted(found), found["1"].joint.name
+    (['1', '2'], 'joint 1')
     """
 
     results: Mapping[str, JointResult]

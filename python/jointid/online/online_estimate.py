@@ -39,6 +39,16 @@ class OnlineEstimate:
         Computing time of this update [s].
     dropped : int
         Number of samples that arrived faster than they could be processed and were left out so far.
+
+    Examples
+    --------
+    >>> with jid.OnlineIdentifier(joint, window=5.0) as identifier:
+    ...     for block in recording.split(24):
+    ...         identifier.feed(time=block.time, position=block.position, velocity=block.velocity,
+    ...                         torque=block.torque, sensor=block.sensor)
+    ...     found = identifier.wait()
+    >>> isinstance(found, jid.OnlineEstimate)
+    True
     """
 
     parameters: Mapping[str, ParameterEstimate]

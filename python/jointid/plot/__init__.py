@@ -5,6 +5,7 @@ from jointid.plot.design import designed_motion
 from jointid.plot.estimate import convergence, friction_map, residuals, window_means
 from jointid.plot.friction import friction_curves, sensitivity, torque_over_velocity
 from jointid.plot.motion import signal, tracking_error, trajectory
+from jointid.plot.rollout import rolled_out
 from jointid.plot.search import adaptation
 from jointid.plot.study import sweep
 
@@ -16,6 +17,7 @@ __all__ = [
     "friction_map",
     "line_style",
     "residuals",
+    "rolled_out",
     "sensitivity",
     "signal",
     "style",

@@ -135,7 +135,7 @@ class Problem:
         residual, columns = known
         names = penalty.names[: penalty.coefficients]
         bounds = penalty.windows
-        run = np.asarray(penalty.recording_of, dtype=np.int64)
+        run = np.array(penalty.recording_of)  # its own: a view would keep what it was made in
         start = np.empty(len(run))
         stop = np.empty(len(run))
         travel = np.empty(len(run))

@@ -1,7 +1,7 @@
 """The terms of a joint's torque balance, chosen from the joint, the recordings and the call."""
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from typing import Literal, get_args
 
@@ -129,8 +129,7 @@ def choose_terms(
             remedy="give a joint with a link, or set gravity to free",
         )
     offset, dropped = _offset(base, model, sensor)
-    friction = next(entry for entry in _core.models() if entry.name == model.name)
-    wanted = {"inertia", *_friction(friction.terms, model.asymmetric)}
+    wanted = {"inertia", *_friction(_models()[model.name], model.asymmetric)}
     wanted.update(_GRAVITY if model.gravity != "none" else ())
     wanted.update(_SENSOR if sensor else ())
     wanted.update(
@@ -229,6 +228,12 @@ def _ordered(
         elif row in wanted:
             keys.append(row)
     return tuple(keys)
+
+
+@functools.cache
+def _models() -> Mapping[str, Sequence[str]]:
+    """Keys of each model's friction terms."""
+    return {entry.name: tuple(entry.terms) for entry in _core.models()}
 
 
 @functools.cache

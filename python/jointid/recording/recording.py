@@ -88,6 +88,13 @@ class Recording(Parts):
     InputError
         A signal is not one-dimensional, not finite, of another length or too short; time does not
         strictly increase; an option has no such value.
+
+    Examples
+    --------
+    >>> time = np.arange(1000) / 500
+    >>> run = jid.Recording(time=time, position=np.sin(time), torque=np.cos(time), name="bench")
+    >>> len(run[0.5:1.0]), run.velocity_derived
+    (251, True)
     """
 
     time: FloatArray

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from jointid.commissioning.ring import BenchRun, Commissioning
     from jointid.estimate.estimate import Estimate
 
+_REFERENCE = "true parameters"  # the run with the emulated joint's own values
 _SMALL = 1.2  # a tracking error that fell by less did not get better
 
 
@@ -129,7 +130,15 @@ def _errors(
         error = 1e3 * (recording.position - recording.reference)
         label = f"{run.name}, rms {1e3 * run.tracking_error:.3g} {unit}"
         time = recording.time - recording.time[0]
-        marks.append(Line(look=looks[number % len(looks)], label=label, across=time, up=error))
+        marks.append(
+            Line(
+                look=looks[number % len(looks)],
+                label=label,
+                across=time,
+                up=error,
+                dashed=run.name == _REFERENCE,  # it may lie upon what was identified
+            )
+        )
     marks.append(Level(look="measured", up=0.0))
     across, up = "time [s]", f"tracking error [{unit}]"
     return Panel(marks=tuple(marks), across=across, up=up, height=height)

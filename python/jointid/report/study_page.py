@@ -25,7 +25,7 @@ _LINES = ("fitted", "second", "third", "fourth", "fifth")
 _WIDE_RANGE = 20.0  # of positive values, above which the axis is logarithmic
 _SHOWN_SETTING = 300  # letters
 _FOR_PROGRAMS = ("version", "fingerprint")
-_DEFAULTS = ("None", "False", "Model()", "")
+_DEFAULTS = ("None", "False", "Model", "")
 
 
 def study_report(study: Study) -> str:
@@ -225,5 +225,7 @@ def _setting(value: object) -> str:
         return ", ".join(f"{name.replace('_', ' ')} {each}" for name, each in told.items() if each)
     if isinstance(value, list | tuple):
         return "; ".join(filter(None, map(_setting, value)))
-    text = "yes" if value is True else str(value)
+    text = "yes" if value in (True, "True") else str(value)
+    # Of a joint and of a search, which are kept as Python writes them.
+    text = text.partition(", parameters={")[0].strip("()").replace("'", "")
     return "" if text in _DEFAULTS else text

@@ -17,6 +17,7 @@ pre {{ overflow-x: auto; background: var(--well); padding: .6rem .8rem; font-siz
 th, td {{ padding: .25rem .8rem; border-bottom: 1px solid var(--grid); text-align: left; }}
 td:nth-child(2), td:nth-child(3) {{ text-align: right; }}
 table.facts td:nth-child(2) {{ text-align: left; }}
+table.jointid td:last-child:not(:empty) {{ min-width: 9rem; }}
 table.numbers th {{ text-align: left; font-weight: normal; }} table.numbers td {{ text-align: right; }}
 figure {{ margin: 1rem 0; }} figcaption {{ color: var(--muted); font-size: .9rem; max-width: 46rem; }}
 ul.findings li {{ margin-bottom: .4rem; }} li.blocking b {{ color: var(--alarm); }} li.info {{ color: var(--muted); }}

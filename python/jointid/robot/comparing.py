@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from jointid.robot.attempt import Asked, Attempt, fitted
 from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
 from jointid.robot.held_out import blocks_of, part_of_balance, told_by
 from jointid.robot.identifying import identify_robot
-from jointid.robot.inertia import MODES
+from jointid.robot.inertia import MODES, Inertia
 from jointid.robot.models import PLAIN, STRIBECK, friction_models, name_of
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import Shift, told_shift
@@ -36,7 +37,7 @@ def compare_robot_models(
     robot: Robot,
     *,
     models: Sequence[Model | str] = (PLAIN, STRIBECK),
-    inertia: Sequence[str] = MODES,
+    inertia: Inertia | Sequence[Inertia] = MODES,
     folds: int = 5,
     windows: float | None = None,
     min_speed: float | Sequence[float] | Mapping[str, float] | None = None,
@@ -75,9 +76,10 @@ def compare_robot_models(
 
     Examples
     --------
-    >>> found = jid.compare_robot_models(jid.load_robot("arm.csv"), robot)  # doctest: +SKIP
-    >>> found.winner.inertia, found.models["joint_1"]  # doctest: +SKIP
-    ('scaled', 'stribeck')
+    >>> robot = jid.Robot.from_urdf("arm.urdf")
+    >>> found = jid.compare_robot_models(jid.load_robot("arm.csv"), robot, inertia="urdf")
+    >>> isinstance(found, jid.RobotComparison), found.winner.inertia
+    (True, 'urdf')
     """
     require_kind("robot", robot, Robot)
     given = recordings_of(recordings)
@@ -142,8 +144,8 @@ def compare_robot_models(
     )
 
 
-def _modes(inertia: object) -> tuple[str, ...]:
-    found = (inertia,) if isinstance(inertia, str) else inertia
+def _modes(inertia: object) -> tuple[Inertia, ...]:
+    found: Any = (inertia,) if isinstance(inertia, str) else inertia
     if not isinstance(found, list | tuple) or not found or set(found) - set(MODES):
         raise InputError(
             f"some of {', '.join(MODES)} are expected", argument="inertia", value=inertia
@@ -165,7 +167,7 @@ def _models(models: object, robot: Robot) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _row(attempt: Attempt, mode: str, model: str, blocks: Whole) -> ComparedRobotModel:
+def _row(attempt: Attempt, mode: Inertia, model: str, blocks: Whole) -> ComparedRobotModel:
     robot, balance = attempt.robot, attempt.balance
     models = [model] * robot.n
     whole, _ = fitted(robot, balance, mode, models)

@@ -10,6 +10,7 @@ from typing import Any
 
 from jointid.base.error_text import printable
 from jointid.base.text_table import aligned
+from jointid.robot.inertia import Inertia
 from jointid.robot.result import RobotEstimate
 
 SCHEMA = 1
@@ -40,7 +41,7 @@ class ComparedRobotModel:
         Why it wins or does not win.
     """
 
-    inertia: str
+    inertia: Inertia
     model: str
     parameters: int
     score: float

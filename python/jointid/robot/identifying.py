@@ -18,7 +18,7 @@ from jointid.robot.assumed import assumptions_told
 from jointid.robot.asymmetry import asymmetry_told
 from jointid.robot.attempt import Asked
 from jointid.robot.diagnosis import diagnosed
-from jointid.robot.inertia import FREE, MODES
+from jointid.robot.inertia import FREE, MODES, Inertia
 from jointid.robot.models import friction_models
 from jointid.robot.naming import turned_zeros
 from jointid.robot.physical_inertia import impossible_links, with_possible_bodies
@@ -32,7 +32,7 @@ def identify_robot(
     recordings: RobotRecording | Sequence[RobotRecording],
     robot: Robot,
     *,
-    inertia: str = "urdf",
+    inertia: Inertia = "urdf",
     model: Model | str | Mapping[str, Model | str] | None = None,
     windows: float | None = None,
     min_speed: float | Sequence[float] | Mapping[str, float] | None = None,
@@ -91,10 +91,10 @@ def identify_robot(
 
     Examples
     --------
-    >>> robot = jid.Robot.from_urdf("arm.urdf")  # doctest: +SKIP
-    >>> found = jid.identify_robot(jid.load_robot("arm.csv"), robot, inertia="free")  # doctest: +SKIP
-    >>> found.joints["joint_1"].parameters["coulomb"].value  # doctest: +SKIP
-    7.1
+    >>> robot = jid.Robot.from_urdf("arm.urdf")
+    >>> found = jid.identify_robot(jid.load_robot("arm.csv"), robot, inertia="free")
+    >>> [*found.joints], found.joints["elbow"].parameters["coulomb"].unit
+    (['shoulder', 'elbow'], 'N·m')
     """
     started = time.perf_counter()
     require_kind("robot", robot, Robot)

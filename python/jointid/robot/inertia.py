@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +17,11 @@ from jointid.robot.solving import Known
 
 Array = NDArray[np.float64]
 
-URDF, SCALED, FREE = "urdf", "scaled", "free"
-MODES = (URDF, SCALED, FREE)
+Inertia = Literal["urdf", "scaled", "free"]
+URDF: Inertia = "urdf"
+SCALED: Inertia = "scaled"
+FREE: Inertia = "free"
+MODES: tuple[Inertia, ...] = (URDF, SCALED, FREE)
 
 _STATES = 64  # random ones: far more rows than parameters
 _DEPENDENT = 1e-8  # what is left of a column, of its length, that the others explain

@@ -40,6 +40,12 @@ class SimulatedBatch:
         Control periods in which the torque limit cut the command.
     recordings : tuple of SimulatedRecording
         Empty unless asked for.
+
+    Examples
+    --------
+    >>> law, motion = jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0)
+    >>> jid.simulate_batch([known, known], law, motion).saturations.tolist()
+    [0, 0]
     """
 
     error: FloatArray
@@ -94,6 +100,13 @@ bristle, position, velocity, name
     ------
     InputError
         As in `simulate`, or sequences of different lengths.
+
+    Examples
+    --------
+    >>> motion, law = jid.Trajectory.thesis(duration=2.0), jid.Pd(stiffness=8000.0, damping=400.0)
+    >>> batch = jid.simulate_batch([known, known.with_parameters({"viscous": 30.0})], law, motion)
+    >>> batch.error.shape
+    (2,)
     """
     if not isinstance(trajectory, Trajectory):
         raise InputError("a Trajectory is expected", argument="trajectory", value=trajectory)

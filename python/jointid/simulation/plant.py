@@ -25,6 +25,11 @@ class Bristle:
         sigma_0 [N·m/rad].
     damping : float
         sigma_1 [N·m·s/rad]. Default 0.
+
+    Examples
+    --------
+    >>> Bristle(stiffness=1e5).stiffness
+    100000.0
     """
 
     stiffness: float
@@ -197,6 +202,11 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     InputError
         A value is missing, or the model has friction that no controller compensates: the exponent of
         "stribeck_general", load friction.
+
+    Examples
+    --------
+    >>> jid.control_estimates(known)["coulomb"]
+    25.0
     """
     require_kind("joint", joint, Joint)
     values = Values(joint)

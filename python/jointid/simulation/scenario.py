@@ -37,6 +37,20 @@ class Scenario:
     ------
     InputError
         Joint, controller, trajectory or sensors are something else.
+
+    Examples
+    --------
+    >>> scenario = jid.Scenario(known, jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0))
+    >>> len(scenario.simulate(0).recordings)
+    1
+
+    Other controllers, each with settings of its own:
+
+    >>> laws = [jid.Pid(stiffness=8000.0, integral=2000.0, damping=400.0), jid.OpenLoop(gain=1.0),
+    ...     jid.CompensatedPid(stiffness=8000.0, damping=400.0), jid.LugreObserver(bandwidth=60.0),
+    ...     jid.AdaptiveRobust(bandwidth=80.0, robust_torque=5.05)]
+    >>> jid.Scenario(known, laws[2], jid.Trajectory.thesis(duration=2.0)).believing(known).coulomb
+    25.0
     """
 
     joint: Joint

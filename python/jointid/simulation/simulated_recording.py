@@ -26,6 +26,12 @@ class Truth(Mapping[str, Any]):
         and `motor_torque` [N·m], at the recording's samples. `friction` is what the drive loses to
         friction, `link_torque` what the sensor is in. `control_velocity` [rad/s] is what the
         controller was given.
+
+    Examples
+    --------
+    >>> run = jid.simulate(known, jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0))
+    >>> sorted(run.truth.signals)[:2]
+    ['acceleration', 'control_velocity']
     """
 
     __slots__ = ("_parameters", "signals")
@@ -53,6 +59,12 @@ class SimulatedRecording(Recording):
     """A recording with the true signals of its simulation in `truth.signals`.
 
     A file keeps the true parameters but not the true signals; so does `resample`.
+
+    Examples
+    --------
+    >>> run = jid.simulate(known, jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0))
+    >>> run.truth["coulomb"]
+    25.0
     """
 
     truth: Truth

@@ -80,6 +80,15 @@ def simulate(
         that is not stable.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
+
+    Examples
+    --------
+    >>> run = jid.simulate(known, jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0))
+    >>> len(run), run.truth["viscous"]
+    (2000, 20.0)
+    >>> sensors = jid.Sensors(encoder_counts=8000, velocity="difference", torque_noise=0.5)
+    >>> law, motion = jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0)
+    >>> run = jid.simulate(known, law, motion, sensors=sensors)
     """
     batch = simulate_batch(
         joint,

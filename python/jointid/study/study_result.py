@@ -48,6 +48,12 @@ class Study:
         Recordings or scenario, joint, options and version, as a record.
     seconds : float
         Wall time; of a resumed study, that of the last part.
+
+    Examples
+    --------
+    >>> study = jid.sweep(recording, joint, grid={"windows": [100, 400]}, trials=2)
+    >>> len(study.rows), study.swept
+    (4, ('windows',))
     """
 
     swept: tuple[str, ...]

@@ -41,6 +41,13 @@ class StudyStep:
         Number of trials done so far, and of all trials.
     rows : tuple of Row
         Rows of the trials done since the last call.
+
+    Examples
+    --------
+    >>> done = []
+    >>> study = jid.sweep(recording, joint, grid={"windows": [100, 400]}, trials=1, callback=done.append)
+    >>> isinstance(done[-1], jid.StudyStep)
+    True
     """
 
     number: int
@@ -54,6 +61,13 @@ class StudyInterruptedError(KeyboardInterrupt):
     Parameters
     ----------
     study : Study
+
+    Examples
+    --------
+    >>> try:
+    ...     study = jid.sweep(recording, joint, grid={"windows": [100]}, trials=1)
+    ... except jid.StudyInterruptedError as stop:  # Ctrl-C
+    ...     print(stop)
     """
 
     def __init__(self, study: Study) -> None:
@@ -67,6 +81,13 @@ class StudyBrokenError(RuntimeError):
     Parameters
     ----------
     study : Study
+
+    Examples
+    --------
+    >>> try:
+    ...     study = jid.sweep(recording, joint, grid={"windows": [100]}, trials=1)
+    ... except jid.StudyBrokenError as error:  # a process of `executor` died
+    ...     print(error)
     """
 
     def __init__(self, study: Study) -> None:
@@ -155,6 +176,12 @@ def sweep(
         A worker of the executor ended unexpectedly.
     StudyInterruptedError
         Ctrl-C; raised within 0.1 s, a `KeyboardInterrupt` whose `study` has the rows done so far.
+
+    Examples
+    --------
+    >>> study = jid.sweep(recording, joint, grid={"ga.population": [10, 20]}, trials=2)
+    >>> len(study.rows)
+    4
     """
     began = time.perf_counter()
     common = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 
 import numpy as np
@@ -62,13 +63,29 @@ class Folds:
         ]
         return cls(np.array(products))
 
+    @functools.cached_property
+    def _others(self) -> Array:
+        """The products of all other blocks, for each block."""
+        return np.asarray(self.products.sum(axis=0) - self.products)
+
+    @functools.cached_property
+    def _known(self) -> dict[tuple[int, ...], Array]:
+        """Misfits that were asked for: what is fitted anyway is compared with many candidates."""
+        return {}
+
     def misfit(self, columns: list[int]) -> Array:
         """Sum of squares of the residual in each block, with these columns fitted to the other blocks."""
+        asked = tuple(columns)
+        if asked not in self._known:
+            self._known[asked] = self._misfit(columns)
+        return self._known[asked]
+
+    def _misfit(self, columns: list[int]) -> Array:
         every = self.products
         own = every[:, -1, -1].copy()
         if not columns:
             return own
-        train = every.sum(axis=0) - every
+        train = self._others
         square = np.ix_(range(len(every)), columns, columns)
         matrix = train[square] + _RIDGE * np.eye(len(columns))
         found = np.linalg.solve(matrix, train[:, columns, -1][..., None])[..., 0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -89,9 +90,14 @@ def statistics_of(
     )
 
 
+@functools.cache
+def _shapes() -> Mapping[str, _core.Shape]:
+    return {shape.name: shape for shape in _core.shapes()}
+
+
 def _terms_and_shapes(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Shape]:
     """Return terms and shapes by name; a shape follows the first term that contains it."""
-    shapes = {shape.name: shape for shape in _core.shapes()}
+    shapes = _shapes()
     known: dict[str, _core.Term | _core.Shape] = {}
     for name, term in zip(penalty.names, penalty.terms, strict=False):
         known[name] = term

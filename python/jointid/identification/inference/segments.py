@@ -123,7 +123,7 @@ def _cut(start: Array, stop: Array, travel: Array, length: float) -> Iterator[in
         moved = np.cumsum(stop[first:last] - start[first:last])
         pieces = max(1, int(moved[-1] / length + 0.5))
         inner = first + 1 + np.searchsorted(moved, moved[-1] * np.arange(1, pieces) / pieces)
-        yield from (int(each) for each in distinct(inner) if each < last)
+        yield from (each for each in dict.fromkeys(inner.tolist()) if each < last)
         yield last
 
 

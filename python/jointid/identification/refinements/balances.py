@@ -15,12 +15,14 @@ from jointid.identification.refinements.balance_columns import (
     own_columns,
     stacked,
 )
-from jointid.identification.refinements.shift_fit import Balance, coefficients
+from jointid.identification.refinements.shift_fit import Balance, Shift, coefficients, fit_shift
 from jointid.identification.refinements.smooth_windows import SmoothWindows
 from jointid.identification.refinements.stretches import Piece
 
 Array = NDArray[np.float64]
 
+SMALL = 3e-4  # [s]; a shorter delay of torque or sensor is left alone
+SUSPECT = 0.6  # of what would be long enough: look closer
 REACH = 0.006  # [s] of the search for the least misfit; at slow rates three samples
 _CLEAR = 3  # samples from a reversal, beside half a window
 
@@ -53,9 +55,16 @@ class Motion:
         return self.torque_otherwise()
 
     @functools.cached_property
+    def first_look(self) -> Shift | None:
+        """The torque's delay, not refined where it is clearly short."""
+        return fit_shift(self.torque, least=SUSPECT * SMALL)
+
+    @functools.cached_property
     def inertia(self) -> float:
         """Of drive and link, as the torque says."""
-        return float(coefficients(self.torque)[0])
+        look = self.first_look
+        known = None if look is None else look.unshifted
+        return float((coefficients(self.torque) if known is None else known)[0])
 
     def torque_otherwise(self, *, clear: bool = False, varying: bool = False) -> Balance:
         """The torque's balance without the reversals, or with an inertia that varies with the angle.
@@ -90,8 +99,13 @@ class Motion:
             held=self.pieces[0].held,
         )
 
-    def reading(self, factor: int = 1, *, varying: bool = False) -> Balance:
-        """The sensor's reading by the link's inertia, gravity and a constant.
+    @functools.cached_property
+    def reading(self) -> Balance:
+        """The sensor's reading by the link's inertia, gravity and a constant."""
+        return self.reading_otherwise()
+
+    def reading_otherwise(self, factor: int = 1, *, varying: bool = False) -> Balance:
+        """The reading's balance over longer windows, or with an inertia that varies with the angle.
 
         Parameters
         ----------
@@ -130,4 +144,4 @@ class Motion:
 
     def answer(self) -> float:
         """What the reading changes by where the torque changes by 1: the link's share of the inertia."""
-        return float(coefficients(self.reading())[0]) / self.inertia if self.inertia else 0.0
+        return float(coefficients(self.reading)[0]) / self.inertia if self.inertia else 0.0

@@ -16,7 +16,7 @@ import numpy as np
 from jointid.estimate.delays import Delay
 from jointid.identification.refinements.balance_columns import stacked
 from jointid.identification.refinements.balance_misfit import fits_better
-from jointid.identification.refinements.balances import Motion, margin, reach
+from jointid.identification.refinements.balances import SMALL, SUSPECT, Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
 from jointid.identification.refinements.sample_fit import delay_by_samples
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
@@ -25,14 +25,12 @@ from jointid.identification.refinements.stretches import Piece, few_of, pieces_o
 from jointid.problem.problem import Problem
 from jointid.recording.shifting import shifted
 
-_SMALL = 3e-4  # [s]; a shorter delay of torque or sensor is left alone
 _SURE = 5.0  # standard errors
 _SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity and position
 _VELOCITY = 0.35  # sample periods; a backward difference has 0.5
 _LEAST_IN_COMMAND = 0.3  # sample periods
 _BEYOND_ANSWER = 3.0  # times the joint's answer to noise of the torque
 _WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
-_SUSPECT = 0.6  # of what would be long enough: look closer
 _CLEARLY = 4.0  # standard errors: a first look at parts of the motion is enough
 _ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
 _MOST_LEFT = 0.5  # of a signal's variance unexplained: other torques act
@@ -150,7 +148,7 @@ def _velocity(pieces: Sequence[Piece], glance: bool = False) -> tuple[Shift, boo
     )
     period = pieces[0].stretch.period
     if glance:
-        found = fit_shift(balance, robust=False, least=_SUSPECT * _VELOCITY * period)
+        found = fit_shift(balance, robust=False, least=SUSPECT * _VELOCITY * period)
         return None if found is None else (found, not _is_clearly_none(found, _VELOCITY * period))
     found = _searched(balance, period, _VELOCITY * period)
     if found is None or found.unexplained > _MOST_LEFT_OF_VELOCITY:
@@ -166,31 +164,31 @@ def _sensor(motion: Motion) -> tuple[Shift, bool] | None:
     if len(pieces) < len(motion.pieces):
         motion = Motion(pieces=pieces)
     period = pieces[0].stretch.period
-    found = _searched(motion.reading(), period, _SMALL)
-    if found is None or abs(found.value) + 2.0 * found.stderr > _SMALL:
+    found = _searched(motion.reading, period, SMALL)
+    if found is None or abs(found.value) + 2.0 * found.stderr > SMALL:
         told = delay_in_command(pieces)
-        late = told is not None and told.shift.value > max(_SMALL, _LEAST_IN_COMMAND * period)
+        late = told is not None and told.shift.value > max(SMALL, _LEAST_IN_COMMAND * period)
         if told is not None and late and (found is None or found.agrees(told.shift, _ALIKE)):
             # Noise of the torque that the joint answers comes before the reading, too.
             answer = motion.answer() * told.torque_size / told.reading_size
             if told.share > _BEYOND_ANSWER * abs(answer):
                 return told.shift, True
             told = None
-        possible = found is not None and found.value + found.stderr > _SMALL
+        possible = found is not None and found.value + found.stderr > SMALL
         if told is None and found is not None and possible and found.unexplained <= _MOST_LEFT:
             by_samples = delay_by_samples(pieces, found, reach(period), motion.inertia)
             if by_samples is not None:
                 # Jumps are those of the acceleration alone: neither a varying inertia nor slow motion has them.
-                return by_samples, _is_long(by_samples, _SMALL)
+                return by_samples, _is_long(by_samples, SMALL)
     if found is None or found.unexplained > _MOST_LEFT:
         return None
     # An early reading is one that is not of a control cycle, up to half a sample.
-    least = _SMALL if found.value > 0.0 or not pieces[0].held else _SMALL + 0.6 * period
+    least = SMALL if found.value > 0.0 or not pieces[0].held else SMALL + 0.6 * period
     if not _is_long(found, least):
         return found, False
     # A link whose inertia varies with the pose may look like a late reading.
     for factor, varying in ((3, False), (1, True)):
-        other = _searched(motion.reading(factor, varying=varying), period, 0.0)
+        other = _searched(motion.reading_otherwise(factor, varying=varying), period, 0.0)
         if other is None or not found.agrees(other, _ALIKE) or abs(other.value) < least:
             return found, False
     return found, True
@@ -204,10 +202,11 @@ def _torque(motion: Motion) -> tuple[Shift, bool] | None:
     inertia away from them.
     """
     period = motion.pieces[0].stretch.period
-    found = _searched(motion.torque, period, _SMALL)
+    look = motion.first_look
+    found = look if _is_short(look, SMALL) else fit_shift(motion.torque, reach=reach(period))
     if found is None or found.unexplained > _MOST_LEFT:
         return None
-    if not _is_long(found, _SMALL) or not found.is_of_all(_BARELY_ALIKE):
+    if not _is_long(found, SMALL) or not found.is_of_all(_BARELY_ALIKE):
         return found, False
     others: tuple[tuple[Callable[[], Balance], float], ...] = (
         (lambda: motion.torque_otherwise(varying=True), _ALIKE),
@@ -223,16 +222,21 @@ def _torque(motion: Motion) -> tuple[Shift, bool] | None:
 def _searched(balance: Balance, period: float, least: float) -> Shift | None:
     """The delay: from no shift, and only where that looks long, from the shift of least misfit."""
     if least > 0.0:
-        found = fit_shift(balance, least=_SUSPECT * least)
-        if found is not None and abs(found.value) < max(_SUSPECT * least, 2.0 * found.stderr):
+        found = fit_shift(balance, least=SUSPECT * least)
+        if _is_short(found, least):
             return found
     return fit_shift(balance, reach=reach(period))
+
+
+def _is_short(found: Shift | None, least: float) -> bool:
+    """Whether a first look is enough."""
+    return found is not None and abs(found.value) < max(SUSPECT * least, 2.0 * found.stderr)
 
 
 def _is_clearly_none(found: Shift, least: float) -> bool:
     return (
         found.unexplained < _MOST_LEFT_OF_VELOCITY
-        and abs(found.value) + _CLEARLY * found.stderr < _SUSPECT * least
+        and abs(found.value) + _CLEARLY * found.stderr < SUSPECT * least
     )
 
 

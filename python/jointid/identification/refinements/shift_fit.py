@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,8 @@ class Shift:
         do with friction, and friction. Without friction the first only, twice.
     unexplained : float
         Variance that the columns leave, over that of the signal.
+    unshifted : ndarray or None
+        As `coefficients` returns them, where they were a step on the way.
     """
 
     value: float
@@ -59,6 +62,7 @@ class Shift:
     conservative: tuple[float, float]
     friction: tuple[float, float]
     unexplained: float
+    unshifted: Array | None = field(default=None, compare=False, repr=False)
 
     def agrees(self, other: Shift, share: float) -> bool:
         """Whether another estimate is within three standard errors or a share of this delay."""
@@ -109,6 +113,7 @@ def fit_shift(
         conservative=(found.conservative[0], found.conservative[1]),
         friction=(found.friction[0], found.friction[1]),
         unexplained=found.unexplained,
+        unshifted=np.array(found.unshifted) if len(found.unshifted) else None,
     )
 
 

@@ -60,8 +60,12 @@ class Search:
     --------
     >>> Search("separable").method
     'separable'
-    >>> Search(ga=_core.GaOptions(population=50), seed=3).genetic.population
+    >>> Search(ga=jid.GaOptions(population=50), seed=3).genetic.population
     50
+    >>> seen = []
+    >>> estimate = jid.identify(recording, joint, model="stribeck", search=Search(callback=seen.append))
+    >>> isinstance(seen[-1], jid.Generation), seen[-1].best <= seen[0].best
+    (True, True)
     """
 
     method: Method = "ga"

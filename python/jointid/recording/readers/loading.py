@@ -1,6 +1,5 @@
 """Loading recordings from files."""
 
-import os
 import re
 from collections.abc import Collection, Mapping
 from functools import partial
@@ -15,10 +14,12 @@ from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.copies import without_copies
 from jointid.recording.damaged_rows import NOTE
+from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.registry import reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
+from jointid.recording.signals import Kind, TorqueHold
 from jointid.recording.table import Table
 from jointid.recording.unpacking import allowing
 from jointid.recording.wide.choosing import OneJoint, also_joints, one_joint
@@ -27,8 +28,9 @@ from jointid.recording.wide.sides import at_joint, checked_ratio
 _SURROGATE = "[\ud800-\udfff]"
 
 
+@reads_open_files
 def load(
-    path: str | os.PathLike[str],
+    path: Source,
     *,
     joint: str | int | None = None,
     columns: Mapping[str, str | int | None] | None = None,
@@ -37,8 +39,8 @@ def load(
     extra: Collection[str] | Mapping[str, str | int] | None = None,
     gear_ratio: float | None = None,
     where: Mapping[str, float | str] | None = None,
-    kind: str | None = None,
-    torque_hold: str | None = None,
+    kind: Kind | None = None,
+    torque_hold: TorqueHold | None = None,
     drop_copies: bool = False,
     drop_invalid: bool = False,
     name: str | None = None,
@@ -61,7 +63,9 @@ def load(
 
     Parameters
     ----------
-    path : path-like
+    path : path-like, or open file
+        A file's name, or a file or buffer that is open for reading (``io.StringIO``, ``io.BytesIO``), whose first
+        bytes then tell the format if it has no name.
         A text file (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or a ``.npz`` file, from any
         program or from `Recording.save`; a
         MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
@@ -135,6 +139,7 @@ def load(
     >>> recording = jid.load("run.csv")
     >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
     >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
+    >>> buffered = jid.load(io.StringIO(Path("run.csv").read_text()))
     >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
     >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")  # doctest: +SKIP
     """
@@ -175,8 +180,9 @@ def load(
     return _recording(file, _of_joint(fields, one, ratio), _named(file, fields, name, one))
 
 
+@reads_open_files
 def load_runs(
-    path: str | os.PathLike[str],
+    path: Source,
     *,
     by: str | int,
     joint: str | int | None = None,
@@ -185,8 +191,8 @@ def load_runs(
     scale: Mapping[str, float] | None = None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
     gear_ratio: float | None = None,
-    kind: str | None = None,
-    torque_hold: str | None = None,
+    kind: Kind | None = None,
+    torque_hold: TorqueHold | None = None,
     name: str | None = None,
     topic: str | None = None,
     group: str | None = None,

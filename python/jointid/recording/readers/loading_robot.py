@@ -1,6 +1,5 @@
 """Loading all joints of a file."""
 
-import os
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
@@ -11,7 +10,8 @@ from jointid.base.errors import InputError
 from jointid.recording.contents import read_contents
 from jointid.recording.extra import named_extra
 from jointid.recording.readers.loading import file_name, table_of
-from jointid.recording.signals import FloatArray
+from jointid.recording.readers.open_files import Source, reads_open_files
+from jointid.recording.signals import FloatArray, Kind, TorqueHold
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
     JointTable,
@@ -24,8 +24,9 @@ from jointid.recording.wide.robot_signals import ROBOT_SIGNALS, checked_ratios
 from jointid.recording.wide.sides import JOINT, at_joint
 
 
+@reads_open_files
 def load_robot(
-    path: str | os.PathLike[str],
+    path: Source,
     joints: Sequence[str | int] | str | None = None,
     *,
     columns: Mapping[str, str | int | None] | None = None,
@@ -33,8 +34,8 @@ def load_robot(
     scale: Mapping[str, float] | None = None,
     gear_ratio: Sequence[float] | FloatArray | float | None = None,
     where: Mapping[str, float | str] | None = None,
-    kind: str | None = None,
-    torque_hold: str | None = None,
+    kind: Kind | None = None,
+    torque_hold: TorqueHold | None = None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
     name: str | None = None,
     topic: str | None = None,
@@ -45,7 +46,7 @@ def load_robot(
 
     Parameters
     ----------
-    path : path-like
+    path : path-like, or open file
         A file as `load` reads it, or one that `RobotRecording.save` wrote.
     joints : sequence of str or int, optional
         Names or numbers of the joints, as the headers have them. Default, and "all": all that the headers name.

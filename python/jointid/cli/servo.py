@@ -1,0 +1,165 @@
+"""`jointid identify` of a joint file whose drive's input is a voltage: a servo, from a list or folder of runs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import fixed_values, with_terms
+from jointid.cli.joint_options import joint_of
+from jointid.cli.outputs import check_outputs
+from jointid.cli.reading import as_given, how_to_read
+from jointid.cli.wording import ADVICE, Wording
+
+if TYPE_CHECKING:
+    from jointid.joint.joint import Joint
+    from jointid.joint.voltage_drive import VoltageDrive
+    from jointid.recording.recording import Recording
+
+# Options of a joint whose torque is known.
+_OF_TORQUE = (
+    *("checkpoint", "resume", "selftest", "bootstrap", "causes", "population", "generations"),
+    *("residual", "torque_hold", "shift", "term"),
+)
+
+
+def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
+    """Identify a servo from its runs, and say how far its closed loop ends from them if that is asked.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of `jointid identify`.
+    joint : Joint
+        With a voltage drive.
+    """
+    from jointid.report.servo_page import save_servo_report
+    from jointid.servo.identifying import identify_servo
+    from jointid.servo.rolling_out import rollout
+    from jointid.servo.tables import text_report
+
+    _check(arguments)
+    drive = joint.voltage
+    assert drive is not None
+    values = fixed_values(arguments)
+    runs = _load(arguments, drive)
+    joint = joint_of(arguments, joint, runs) or joint  # with the facts that options state
+    joint = joint.replace(parameters=_fixed(joint, values))
+    options: dict[str, Any] = {}
+    if arguments.windows is not None:
+        options["window"] = _duration(arguments.windows)
+    if arguments.min_speed is not None:
+        options["slowest"] = arguments.min_speed
+    found = identify_servo(
+        runs, joint, model=with_terms(arguments.model, arguments), seed=arguments.seed, **options
+    )
+    wanted = arguments.rollout or arguments.report is not None
+    rolled = rollout(found, runs, threads=arguments.threads) if wanted else None
+    if arguments.report is not None:
+        save_servo_report(found, arguments.report, rolled, action=ADVICE.of_action)
+    if arguments.save is not None:
+        found.save(arguments.save)
+    if arguments.json:
+        document = found.document() | ({} if rolled is None else {"rollout": rolled.document()})
+        print(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
+        return 0
+    print(text_report(found, action=Wording.of(arguments).of_action))
+    if rolled is not None:
+        print(f"\nRollouts of the closed loop, against the logs\n{rolled.report()}")
+    written = [
+        f"{what}: {path}"
+        for what, path in (("report", arguments.report), ("saved", arguments.save))
+        if path is not None
+    ]
+    if written:
+        print("", *written, sep="\n")
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse what a servo without a torque signal does not have, before the work."""
+    for name in _OF_TORQUE:
+        if getattr(arguments, name) not in (None, False, []):
+            raise InputError(
+                "a servo whose drive's input is a voltage has no such option",
+                argument="n" if name == "bootstrap" else "terms" if name == "term" else name,
+            )
+    check_outputs(arguments)
+
+
+def _duration(windows: object) -> float:
+    if not isinstance(windows, float):
+        raise InputError(
+            "a duration such as 0.05s is expected for a servo", argument="windows", value=windows
+        )
+    return windows
+
+
+def _fixed(joint: Joint, values: dict[str, float]) -> dict[str, Any]:
+    return {
+        **{name: replace(p) for name, p in joint.parameters.items()},
+        **{name: _parameter(name, value) for name, value in values.items()},
+    }
+
+
+def _parameter(name: str, value: float) -> Any:
+    from jointid.joint.parameters import Parameter
+
+    return Parameter(name=name, value=value, vary=False)
+
+
+def _load(arguments: argparse.Namespace, drive: VoltageDrive) -> list[Recording]:
+    """Return the runs of files and folders, with the extra signals of a servo."""
+    from jointid.recording.readers.loading import load, load_runs
+
+    paths = _files(arguments.recordings)
+    reading = how_to_read(arguments)
+    try:
+        first = _extra(paths[0], drive, reading.pop("extra") or {}, arguments)
+        if arguments.by is None:
+            drops = {name: getattr(arguments, name) for name in ("drop_copies", "drop_invalid")}
+            return [load(path, extra=first, **drops, **reading) for path in paths]
+        if reading.pop("where"):
+            raise InputError("runs of one file are read whole", argument="where")
+        return [
+            run
+            for path in paths
+            for run in load_runs(path, by=arguments.by, extra=first, **reading)
+        ]
+    except InputError as error:
+        raise as_given(error, arguments) from None
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    """Return the files, and those in folders, in the order of their names."""
+    from jointid.recording.readers.registry import endings
+
+    found: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            found.append(path)
+            continue
+        inside = sorted(each for each in path.iterdir() if each.name.endswith(endings()))
+        if not inside:
+            raise InputError("there is no recording in this folder", place=str(path))
+        found += inside
+    return found
+
+
+def _extra(
+    path: Path, drive: VoltageDrive, given: dict[str, Any], arguments: argparse.Namespace
+) -> dict[str, Any]:
+    """Return which column each extra signal is: as given, as the joint file has it, or of its own name."""
+    from jointid.joint.voltage_drive import SIGNALS
+    from jointid.recording.readers.loading import table_of
+
+    headers = table_of(
+        path, topic=arguments.topic, group=arguments.group, unpacked=arguments.unpacked
+    ).headers
+    own = {name: name for name in SIGNALS if name in headers}
+    return own | dict(drive.signals) | given

@@ -1,0 +1,118 @@
+"""Units that no header states, proposed by which of them makes a joint's motion possible."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from jointid.base.values import dataclass
+from jointid.recording.recording import Recording
+from jointid.recording.signals import FloatArray
+from jointid.recording.units import UNITS
+
+_WIDE = 4.0 * math.pi  # [rad]: two turns away from zero, which few joints reach
+_WIDEST = 3.0 * 360.0  # [deg]
+_FAST = 50.0  # [rad/s] of a joint behind a gear
+_STRONG = 5000.0  # [N·m]
+_ALIKE = (
+    0.03  # of a velocity and the position's rate; 6 degrees a second (1 rpm) and 2π are 5 % apart
+)
+_PAIRS = (
+    *(("rad", "rad_s"), ("deg", "deg_s"), ("rad", "deg_s"), ("rad", "rpm"), ("rad", "rev_s")),
+    *(("deg", "rad_s"), ("deg", "rpm"), ("deg", "rev_s"), ("rev", "rad_s"), ("rev", "rpm")),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ProposedUnit:
+    """A unit that a signal probably has.
+
+    Parameters
+    ----------
+    unit : str
+        As in a header.
+    reason : str
+        Why, in a phrase with the values.
+    """
+
+    unit: str
+    reason: str
+
+
+def proposed_units(recording: Recording) -> dict[str, ProposedUnit]:
+    """Return by signal the units that are likelier than SI, of those that no header and no call states.
+
+    The position's and the velocity's are judged together, by the position's rate; the torque's by its size alone.
+    What is plausible in SI is not in the result, and neither is what no unit makes plausible.
+
+    Parameters
+    ----------
+    recording : Recording
+        Read with SI units where none is stated; ``metadata["assumed_units"]`` says where.
+
+    Examples
+    --------
+    >>> turned = jid.Recording(time=np.arange(100) / 50.0, position=60.0 * np.sin(np.arange(100) / 20.0),
+    ...     torque=np.ones(100), metadata={"assumed_units": ["position"]})
+    >>> proposed_units(turned)["position"].unit
+    'deg'
+    """
+    stated = recording.metadata.get("assumed_units")
+    unstated = set(stated) if isinstance(stated, list | tuple) else set()
+    found: dict[str, ProposedUnit] = {}
+    if recording.kind == "revolute":
+        found |= _of_motion(recording, unstated)
+    if "torque" in unstated and recording.torque is not None and recording.kind == "revolute":
+        largest = float(np.abs(recording.torque).max())
+        if largest > _STRONG:
+            found["torque"] = ProposedUnit(
+                "mNm", f"up to {largest:.4g}: {largest / 1e3:.3g} N·m if these are mN·m"
+            )
+    return found
+
+
+def _of_motion(recording: Recording, unstated: set[str]) -> dict[str, ProposedUnit]:
+    position = recording.position
+    largest = float(np.abs(position).max())
+    wide = largest > _WIDE
+    recorded = not recording.velocity_derived and float(np.abs(recording.velocity).max()) > 0.0
+    if not recorded:
+        if "position" in unstated and wide and largest <= _WIDEST:
+            return {"position": _angle(position, "deg")}
+        return {}
+    slope = _slope(np.gradient(position, recording.time), recording.velocity)
+    fast = float(np.abs(recording.velocity).max()) > _FAST
+    for angle, speed in _PAIRS:
+        if (angle != "rad" and "position" not in unstated) or (
+            speed != "rad_s" and "velocity" not in unstated
+        ):
+            continue
+        if angle == "rad" and "position" in unstated and (wide or (speed == "rad_s" and fast)):
+            continue
+        if abs(slope * UNITS[speed].factor / UNITS[angle].factor - 1.0) < _ALIKE:
+            return _changed(recording, angle, speed, slope)
+    return {}
+
+
+def _changed(recording: Recording, angle: str, speed: str, slope: float) -> dict[str, ProposedUnit]:
+    found = {}
+    if angle != "rad":
+        found["position"] = _angle(recording.position, angle)
+    if speed != "rad_s":
+        reason = (
+            f"{slope:.4g} times the position's rate" if angle == "rad" else "as the position's rate"
+        )
+        found["velocity"] = ProposedUnit(speed, reason)
+    return found
+
+
+def _angle(position: FloatArray, unit: str) -> ProposedUnit:
+    low, high = float(position.min()), float(position.max())
+    turns = (high - low) / (2.0 * math.pi)
+    return ProposedUnit(unit, f"{low:.4g} to {high:.4g}, in rad {turns:.3g} turns")
+
+
+def _slope(rate: FloatArray, velocity: FloatArray) -> float:
+    square = float(rate @ rate)
+    return float(rate @ velocity) / square if square > 0.0 else 0.0

@@ -1,0 +1,63 @@
+"""A servo's estimate as JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
+from jointid.estimate.json import plain
+from jointid.joint.joint_file import joint_document
+from jointid.servo.estimate import ServoEstimate
+
+SCHEMA = 1
+KIND = "jointid servo"
+
+
+def document_of(estimate: ServoEstimate) -> dict[str, Any]:
+    """Return the estimate in JSON types; an infinite number is the text "inf"."""
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "kind": KIND,
+        "joint": joint_document(estimate.joint),
+        "parameters": {name: plain(p) for name, p in estimate.parameters.items()},
+        "findings": plain(estimate.findings),
+        "rms": estimate.rms,
+        "relative_residual": estimate.relative_residual,
+        "settings": {
+            "window": estimate.window,
+            "slowest": estimate.slowest,
+            "windows": estimate.windows,
+            "lead": estimate.lead,
+            "lead_found": estimate.lead_found,
+            "load_friction": estimate.load_friction,
+            "separable": estimate.separable,
+            "runs": list(estimate.runs),
+        },
+        "seconds": estimate.seconds,
+    }
+    for entry, found in zip(document["findings"], estimate.findings, strict=True):
+        entry["message"] = found.message  # for readers that are not ours
+    return document
+
+
+def json_of(estimate: ServoEstimate) -> str:
+    """Return the estimate as JSON text."""
+    return json.dumps(document_of(estimate), indent=1, ensure_ascii=False, allow_nan=False)
+
+
+def save(estimate: ServoEstimate, path: str | Path) -> Path:
+    """Write the estimate: see `ServoEstimate.save`."""
+    target = require_path("path", path)
+    if target.suffix == ".toml":
+        estimate.identified.save(target)
+    elif target.suffix == ".json":
+        write_whole(target, json_of(estimate).encode())
+    else:
+        raise InputError(
+            "a servo's estimate is saved as .json or .toml", argument="path", value=target.name
+        )
+    return target

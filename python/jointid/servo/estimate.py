@@ -1,0 +1,144 @@
+"""The result of `identify_servo`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.errors import InputError
+from jointid.base.values import dataclass
+from jointid.estimate.findings import Finding
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.joint.checks import suggestion
+from jointid.joint.joint import Joint
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ServoEstimate:
+    """A servo as identified.
+
+    Attributes
+    ----------
+    joint : Joint
+        As given.
+    parameters : mapping of str to ParameterEstimate
+        "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), "viscous", "coulomb", "load_friction" (dry friction per
+        torque through the gear: load plus motor), "inertia" (of the drive, at the output), and what follows:
+        "torque_constant" (k_t at the output) and "resistance".
+    findings : tuple of Finding
+    values : ndarray, shape (6,)
+        The first six parameters.
+    draws : ndarray, shape (draws, 6)
+        The same of runs drawn anew.
+    load_friction : bool
+        Whether the model has friction of the load.
+    separable : bool
+        Whether windows with and without drive divide back-EMF from viscous friction.
+    lead : float
+        Time by which a row's position is older than its duty [s].
+    lead_found : bool
+        Whether the lead was estimated.
+    windows : int
+        Windows used.
+    window, slowest : float
+        Duration [s], slowest motion [rad/s].
+    runs : tuple of str
+        Names.
+    moving : tuple of float
+        Share of each run that is used.
+    rms : float
+        Root mean square of what the model leaves, as a mean over a window [N·m].
+    relative_residual : float
+        The same as a share of the load's torque.
+    seconds : float
+        Wall time.
+    """
+
+    joint: Joint
+    parameters: Mapping[str, ParameterEstimate]
+    findings: tuple[Finding, ...]
+    values: Array = field(repr=False)
+    draws: Array = field(repr=False)
+    load_friction: bool
+    separable: bool
+    lead: float
+    lead_found: bool
+    windows: int
+    window: float
+    slowest: float
+    runs: tuple[str, ...]
+    moving: tuple[float, ...] = field(repr=False)
+    rms: float
+    relative_residual: float
+    seconds: float
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """The findings that may bias values or make them unusable."""
+        return tuple(each for each in self.findings if each.severity != "info")
+
+    def __getitem__(self, name: str) -> float:
+        """Return a parameter's value.
+
+        Raises
+        ------
+        InputError
+            No such parameter.
+        """
+        if name not in self.parameters:
+            raise InputError(
+                f"there is no such parameter; {suggestion(name, list(self.parameters))}",
+                argument="name",
+                value=name,
+            )
+        return self.parameters[name].value
+
+    @property
+    def identified(self) -> Joint:
+        """The joint with what was identified: motor, inertia and friction."""
+        from jointid.servo.described import identified_joint
+
+        return identified_joint(self)
+
+    def report(self) -> str:
+        """Return parameters, errors and findings as text."""
+        from jointid.servo.tables import text_report
+
+        return text_report(self)
+
+    def document(self) -> dict[str, Any]:
+        """Return the estimate in JSON types."""
+        from jointid.servo.document import document_of
+
+        return document_of(self)
+
+    def to_json(self) -> str:
+        """Return the estimate as JSON."""
+        from jointid.servo.document import json_of
+
+        return json_of(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the estimate as JSON, or the joint as identified into a joint file (.toml).
+
+        Raises
+        ------
+        InputError
+            Another ending, or a folder that does not exist.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.servo.document import save
+
+        return save(self, path)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{name}={p.value:.4g}" for name, p in self.parameters.items())
+        return f"<ServoEstimate of {len(self.runs)} runs: {shown}>"

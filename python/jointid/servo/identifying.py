@@ -1,0 +1,214 @@
+"""`identify_servo`: a servo without a torque signal, from many runs, in milliseconds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.errors import InputError
+from jointid.joint.checks import finite_number, positive_number
+from jointid.joint.joint import Joint
+from jointid.joint.model import Model, ModelName
+from jointid.recording.recording import Recording
+from jointid.servo.estimate import ServoEstimate
+from jointid.servo.findings import findings_of
+from jointid.servo.resampling import drawn, units_of
+from jointid.servo.row_lead import lead_of
+from jointid.servo.signals import ServoSignals, signals_of
+from jointid.servo.solving import NAMES, Sought, fixed_point
+from jointid.servo.tables import parameters_of
+from jointid.servo.windows import KNOWN, SLOWEST, WINDOW, ServoGrid, grid_of
+
+Array = NDArray[np.float64]
+
+_FEWEST = 20  # windows
+
+
+def identify_servo(
+    recordings: Recording | Sequence[Recording],
+    joint: Joint,
+    *,
+    model: Model | ModelName | Mapping[str, Any] | None = None,
+    window: float = WINDOW,
+    slowest: float = SLOWEST,
+    lead: float | None = None,
+    draws: int = 200,
+    seed: int = 0,
+) -> ServoEstimate:
+    """Identify a servo that logs a duty instead of a torque: motor, friction and inertia, from all runs at once.
+
+    The torque balance is integrated over windows, so no acceleration is needed, and velocity is the slope of the
+    position: the logged one of a servo lags. All is linear in k_t/R, k_t²/R, inertia and friction.
+
+    Parameters
+    ----------
+    recordings : Recording or sequence of Recording
+        With a signal "duty" in `extra`, or a `reference` and a known position loop; see `VoltageDrive`. Back-EMF and
+        viscous friction are divided by stretches in which the motor turns freely: a signal "driven" with zeros.
+    joint : Joint
+        With `voltage`, and with the known load as its `link`. A given `inertia`, `torque_constant` or resistance, and
+        parameters with ``vary=False``, are facts.
+    model : Model, str or mapping, optional
+        "coulomb_viscous", with or without `load_friction`. Default: the joint's; with friction of the load where
+        neither says.
+    window : float
+        Duration of a window [s]. Default 0.05.
+    slowest : float
+        Windows with slower motion are left out [rad/s]. Default 0.1.
+    lead : float, optional
+        Time by which a row's position is older than its duty [s], because a bus reads them one after the other.
+        Default: estimated where the position loop is known and the duty logged, else 0.
+    draws : int
+        Sets of runs that are drawn for errors and intervals. Default 200; 0: none.
+    seed : int
+        Of the drawing. Default 0.
+
+    Returns
+    -------
+    ServoEstimate
+
+    Raises
+    ------
+    InputError
+        A signal that is missing, a model that a servo cannot have, or too little motion.
+
+    Examples
+    --------
+    >>> joint = jid.Joint.load("servo.toml")  # doctest: +SKIP
+    >>> runs = jid.load_runs("runs.csv", by="run", extra=joint.voltage.signals)  # doctest: +SKIP
+    >>> print(jid.identify_servo(runs, joint).report())  # doctest: +SKIP
+    """
+    started = time.perf_counter()
+    runs = signals_of(recordings, joint)
+    load_friction = _load_friction(Model.of(model).over(joint.model))
+    window = positive_number("", "window", window)
+    slowest = positive_number("", "slowest", slowest)
+    if isinstance(draws, bool) or not isinstance(draws, int) or draws < 0:
+        raise InputError("a whole number of at least 0 is expected", argument="draws", value=draws)
+    found_lead = lead_of(runs, joint) if lead is None else None
+    shift = (found_lead or 0.0) if lead is None else finite_number("", "lead", lead)
+    grid = grid_of(runs, joint, window=window, slowest=slowest, lead=shift)
+    if len(grid.start) < _FEWEST:
+        raise InputError(
+            f"only {len(grid.start)} windows of {1e3 * window:g} ms are faster than {slowest:g} rad/s throughout, "
+            f"and at least {_FEWEST} are needed",
+            argument="recordings",
+            remedy="record more motion",
+        )
+    sought = _sought(joint, grid, load_friction=load_friction)
+    units = units_of(grid)
+    table = grid.table()
+
+    def products_of(torque_per_voltage: float, back_emf: float) -> Array:
+        """Products of the columns, one matrix a unit of resampling."""
+        filled = grid.with_load(table, torque_per_voltage, back_emf)
+        return _products(filled, units)
+
+    values = fixed_point(lambda k, b: products_of(k, b).sum(axis=0), sought)
+    each = products_of(values[0], values[1])
+    others = drawn(each, sought, values, draws, seed) if draws else np.empty((0, len(NAMES)))
+    durations = grid.integrals(np.ones(len(grid.velocity)))
+    residual = _left(grid, table, values) / durations
+    measured = table[:, KNOWN] / durations
+    estimate = ServoEstimate(
+        joint=joint,
+        parameters=parameters_of(values, others, sought, len(each)),
+        draws=others,
+        values=values,
+        load_friction=load_friction,
+        separable=sought.separable,
+        lead=shift,
+        lead_found=found_lead is not None,
+        windows=len(grid.start),
+        window=window,
+        slowest=slowest,
+        runs=tuple(run.name for run in runs),
+        moving=_moving(grid, runs),
+        rms=float(np.sqrt(np.mean(residual**2))),
+        relative_residual=float(
+            np.linalg.norm(residual) / max(float(np.linalg.norm(measured)), 1e-300)
+        ),
+        findings=(),
+        seconds=0.0,
+    )
+    found = findings_of(estimate, sought)
+    return replace(estimate, findings=found, seconds=time.perf_counter() - started)
+
+
+def _products(filled: Array, units: NDArray[np.int64]) -> Array:
+    """Return the columns' products of each unit, shape (units, COLUMNS, COLUMNS)."""
+    order = np.argsort(units, kind="stable")
+    bounds = np.searchsorted(units[order], np.arange(int(units.max()) + 2)).tolist()
+    rows = filled[order]
+    return np.stack([rows[a:b].T @ rows[a:b] for a, b in pairwise(bounds)])
+
+
+def _left(grid: ServoGrid, table: Array, values: Array) -> Array:
+    """Return what the model leaves of each window's balance [N·m·s]."""
+    filled = grid.with_load(table, values[0], values[1])
+    k, b, viscous, coulomb, load, inertia = values
+    weights = np.array([k, -b, -viscous, -coulomb, -inertia, -load, -load * k, load * b, -1.0])
+    return np.asarray(-(filled @ weights))
+
+
+def _sought(joint: Joint, grid: ServoGrid, *, load_friction: bool) -> Sought:
+    driven = grid.driven[grid.start]
+    fixed = {
+        name: float(parameter.value)
+        for name, parameter in joint.parameters.items()
+        if name in NAMES and parameter.vary is False and parameter.value is not None
+    }
+    if joint.reflected_inertia is not None:
+        fixed["inertia"] = joint.reflected_inertia
+    k_t = joint.torque_constant
+    assert joint.voltage is not None
+    return Sought(
+        separable=bool(0.0 < driven.mean() < 1.0),
+        load_friction=load_friction and "load_friction" not in fixed,
+        torque_constant=None if k_t is None else abs(k_t * joint.gear_ratio),
+        resistance=joint.voltage.resistance,
+        fixed=fixed,
+    )
+
+
+def _load_friction(model: Model) -> bool:
+    """Return whether friction grows with the gear's torque; refuse what a servo's model cannot have."""
+    stated = dict(model.stated())
+    name = stated.pop("name", "coulomb_viscous")
+    load = stated.pop("load_friction", True)
+    gravity = stated.pop("gravity", "known")
+    if name not in ("coulomb_viscous", "auto"):
+        raise InputError(
+            "a servo without a torque signal is identified with coulomb_viscous, and friction of the load",
+            argument="model",
+            value=name,
+        )
+    if gravity == "free":
+        raise InputError(
+            "the load's gravity is the servo's only known torque", argument="gravity", value=gravity
+        )
+    for key, value in stated.items():
+        if value:
+            raise InputError(
+                "a servo without a torque signal has no such term", argument=key, value=value
+            )
+    return bool(load)
+
+
+def _moving(grid: ServoGrid, runs: Sequence[ServoSignals]) -> tuple[float, ...]:
+    """Return the share of each run that lies in some window."""
+    shares = []
+    for number, run in enumerate(runs):
+        starts, ends = grid.start[grid.run == number], grid.end[grid.run == number]
+        covered = np.zeros(len(grid.velocity) + 1)
+        np.add.at(covered, starts, 1.0)
+        np.add.at(covered, ends, -1.0)
+        inside = np.cumsum(covered)[:-1] > 0.0
+        shares.append(float((inside * grid.step).sum() / float(run.time[-1] - run.time[0])))
+    return tuple(shares)

@@ -1,0 +1,274 @@
+"""`rollout`: a servo's closed loop simulated from the logged initial state, and how far it ends from the log."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.base.text_table import aligned
+from jointid.base.values import dataclass
+from jointid.joint.checks import positive_number
+from jointid.joint.joint import Joint
+from jointid.recording.recording import Recording
+from jointid.servo.estimate import ServoEstimate
+from jointid.servo.signals import ServoSignals, signals_of
+
+Array = NDArray[np.float64]
+
+STEP = 1e-3
+"""Longest integration step by default [s]."""
+
+BISTABLE = math.radians(5.0)
+"""A run is bistable where a small change of the motor's torque moves its rollout farther [rad]."""
+
+_NUDGE = 0.01  # of the motor's torque, to both sides
+_START = 0.03  # s, of the log, for the initial velocity
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RunRollout:
+    """One run, simulated.
+
+    Attributes
+    ----------
+    name : str
+    time, position, velocity : ndarray, shape (n,)
+        At the log's time stamps [s], [rad], [rad/s].
+    measured : ndarray, shape (n,)
+        The logged position [rad].
+    error : float
+        Mean absolute error of the position [rad].
+    spread : float
+        How far the rollout moves at most when the motor's torque changes by 1 % [rad].
+    closed : bool
+        Whether the position loop was closed; else the logged duty drove the motor.
+    """
+
+    name: str
+    time: Array = field(repr=False)
+    position: Array = field(repr=False)
+    velocity: Array = field(repr=False)
+    measured: Array = field(repr=False)
+    error: float
+    spread: float
+    closed: bool
+
+    @property
+    def bistable(self) -> bool:
+        """Whether two motions far apart belong to nearly the same servo, so that its error says little."""
+        return self.spread > BISTABLE
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Rollout:
+    """All runs, simulated.
+
+    Attributes
+    ----------
+    runs : tuple of RunRollout
+    """
+
+    runs: tuple[RunRollout, ...]
+
+    @property
+    def errors(self) -> Array:
+        """Mean absolute error of each run's position [rad]."""
+        return np.array([run.error for run in self.runs])
+
+    @property
+    def median(self) -> float:
+        """Median of the runs' errors [rad]: a bistable run does not decide it."""
+        return float(np.median(self.errors))
+
+    @property
+    def bistable(self) -> tuple[str, ...]:
+        """Names of the bistable runs."""
+        return tuple(run.name for run in self.runs if run.bistable)
+
+    def report(self) -> str:
+        """Return the errors as text."""
+        table = [["run", "error [deg]", "moved by 1 % of torque [deg]", ""]]
+        for run in self.runs:
+            notes = ["bistable"] * run.bistable + ["duty as logged"] * (not run.closed)
+            table.append(
+                [
+                    run.name,
+                    f"{math.degrees(run.error):.2f}",
+                    f"{math.degrees(run.spread):.2f}",
+                    ", ".join(notes),
+                ]
+            )
+        table.append(["median", f"{math.degrees(self.median):.2f}", "", ""])
+        return "\n".join(aligned(table))
+
+    def document(self) -> dict[str, Any]:
+        """Return the errors in JSON types."""
+        return {
+            "median": self.median,
+            "runs": [
+                {
+                    "name": run.name,
+                    "error": run.error,
+                    "spread": run.spread,
+                    "bistable": run.bistable,
+                    "closed": run.closed,
+                }
+                for run in self.runs
+            ],
+        }
+
+
+def rollout(
+    estimate: ServoEstimate | Joint,
+    recordings: Recording | Sequence[Recording],
+    *,
+    step: float = STEP,
+    threads: int = 0,
+) -> Rollout:
+    """Simulate a servo's closed loop along logs, from their initial states, and compare the positions.
+
+    Only the wanted position, the supply and when the motor is driven are taken from the log; where the position loop
+    is not known, the logged duty instead of the wanted position. Dry friction is set-valued: a servo that sticks
+    stands still.
+
+    Parameters
+    ----------
+    estimate : ServoEstimate or Joint
+        A joint needs values of torque constant, resistance, inertia and friction.
+    recordings : Recording or sequence of Recording
+        As for `identify_servo`.
+    step : float
+        Longest integration step [s]. Default 1 ms.
+    threads : int
+        0 (default): all. The results do not depend on it, to the last bit.
+
+    Returns
+    -------
+    Rollout
+
+    Raises
+    ------
+    InputError
+        A value or a signal is missing, or a motion that leaves all bounds.
+
+    Examples
+    --------
+    >>> predicted = jid.rollout(estimate, held_out)  # doctest: +SKIP
+    >>> print(predicted.report())  # doctest: +SKIP
+    """
+    joint = estimate.identified if isinstance(estimate, ServoEstimate) else estimate
+    runs = signals_of(recordings, joint)
+    step = positive_number("", "step", step)
+    loops, logs = [], []
+    for run in runs:
+        loop = servo_loop(joint, run)
+        log = (
+            run.time,
+            run.reference if run.closed and run.reference is not None else run.duty,
+            run.supply,
+            run.driven,
+        )
+        for factor in (1.0, 1.0 - _NUDGE, 1.0 + _NUDGE):
+            loops.append(loop.replace(torque_per_voltage=factor * loop.torque_per_voltage))
+            logs.append(log)
+    motions = _core.roll_out_servos(loops, logs, step=step, threads=threads)
+    return Rollout(runs=tuple(_run(run, motions[3 * k : 3 * k + 3]) for k, run in enumerate(runs)))
+
+
+def servo_loop(joint: Joint, run: ServoSignals) -> _core.ServoLoop:
+    """Return a servo at the beginning of a run, as the core simulates it.
+
+    Parameters
+    ----------
+    joint : Joint
+        With all values.
+    run : ServoSignals
+
+    Raises
+    ------
+    InputError
+        A value is missing.
+    """
+    voltage = joint.voltage
+    assert voltage is not None  # `signals_of` refuses others
+    k_t = abs(_needed(joint, "torque_constant", joint.torque_constant) * joint.gear_ratio)
+    resistance = _needed(joint, "resistance", voltage.resistance)
+    inertia = _needed(joint, "inertia", joint.reflected_inertia)
+    friction = {
+        name: 0.0 if name not in joint.parameters else joint.parameters[name].value or 0.0
+        for name in ("viscous", "coulomb", "load_friction")
+    }
+    weights = []
+    if joint.link is not None:
+        link = joint.link
+        weights = [(link.mass * link.gravity * link.centre_of_mass, link.angle)]
+    plant = _core.SimulatedJoint(
+        inertia=inertia + joint.link_inertia,
+        decay="none",
+        coulomb_positive=friction["coulomb"],
+        coulomb_negative=friction["coulomb"],
+        viscous_positive=friction["viscous"],
+        viscous_negative=friction["viscous"],
+        weights=weights,
+    )
+    loop = voltage.position_loop
+    position, velocity = initial_state(run)
+    return _core.ServoLoop(
+        joint=plant,
+        torque_per_voltage=k_t / resistance,
+        back_emf=k_t * k_t / resistance,
+        load_friction=friction["load_friction"],
+        closed=run.closed,
+        gain=run.gain if run.closed else 1.0,
+        saturation=1.0 if loop is None else loop.saturation,
+        delay=0.0 if loop is None else loop.delay,
+        position=position,
+        velocity=velocity,
+    )
+
+
+def initial_state(run: ServoSignals) -> tuple[float, float]:
+    """Return position and velocity at a log's beginning, by a line through its first samples.
+
+    A log that begins within its position's resolution begins at rest.
+    """
+    count = max(5, int(np.searchsorted(run.time, run.time[0] + _START)))
+    time, position = run.time[:count] - run.time[0], run.position[:count]
+    moved = np.abs(np.diff(run.position))
+    resolution = float(moved[moved > 0.0].min()) if (moved > 0.0).any() else 0.0
+    if np.ptp(position) <= 1.5 * resolution:
+        return float(position[0]), 0.0
+    slope, start = np.polyfit(time, position, 1)
+    return float(start), float(slope)
+
+
+def _needed(joint: Joint, name: str, value: float | None) -> float:
+    if value is None:
+        raise InputError(
+            "a rollout needs its value",
+            argument=name,
+            place=joint.owner,
+            remedy="identify the servo first, or state it in the joint file",
+        )
+    return value
+
+
+def _run(run: ServoSignals, motions: Sequence[tuple[Array, Array]]) -> RunRollout:
+    position, velocity = motions[0]
+    return RunRollout(
+        name=run.name,
+        time=run.time,
+        position=position,
+        velocity=velocity,
+        measured=run.position,
+        error=float(np.mean(np.abs(position - run.position))),
+        spread=max(float(np.abs(other - position).max()) for other, _ in motions[1:]),
+        closed=run.closed,
+    )

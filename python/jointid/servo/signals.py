@@ -1,0 +1,167 @@
+"""What a servo's recording tells: position, duty, supply, and when the motor is driven."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.base.values import dataclass
+from jointid.joint.joint import Joint
+from jointid.joint.voltage_drive import VoltageDrive
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ServoSignals:
+    """One run of a servo, in SI units.
+
+    Attributes
+    ----------
+    name : str
+    time, position : ndarray, shape (n,)
+        [s], [rad]
+    duty : ndarray, shape (n,)
+        As logged, times its scale; of the position loop where none is logged.
+    supply : ndarray, shape (n,)
+        [V]
+    driven : ndarray, shape (n,)
+        1 where the motor is on its voltage, 0 where it turns freely.
+    reference : ndarray or None, shape (n,)
+        Wanted position [rad].
+    gain : float
+        Duty per error of the position loop [1/rad]; 0 where there is none.
+    logged : bool
+        Whether the duty was logged.
+    """
+
+    name: str
+    time: Array
+    position: Array
+    duty: Array
+    supply: Array
+    driven: Array
+    reference: Array | None
+    gain: float
+    logged: bool
+
+    @property
+    def closed(self) -> bool:
+        """Whether the position loop is known, so that a rollout can close it."""
+        return self.reference is not None and self.gain != 0.0
+
+
+def signals_of(recordings: Recording | Sequence[Recording], joint: Joint) -> list[ServoSignals]:
+    """Return the runs of a servo.
+
+    Parameters
+    ----------
+    recordings : Recording or sequence of Recording
+        With the extra signals "duty" (or a `reference` and a known position loop), "supply" (unless the joint has
+        it), "driven" (default: always driven) and "gain".
+    joint : Joint
+        With a `voltage` drive.
+
+    Raises
+    ------
+    InputError
+        No recording, no voltage drive, or a signal that is needed and missing.
+    """
+    require_kind("joint", joint, Joint)
+    drive = voltage_drive(joint)
+    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
+    if not given:
+        raise InputError("at least one recording is expected", argument="recordings", value=[])
+    for each in given:
+        require_kind("recordings", each, Recording)
+    return [_run(recording, drive, number) for number, recording in enumerate(given)]
+
+
+def voltage_drive(joint: Joint) -> VoltageDrive:
+    """Return a joint's voltage drive.
+
+    Raises
+    ------
+    InputError
+        The joint's input is a torque.
+    """
+    if joint.voltage is None:
+        raise InputError(
+            "the joint's input is not a voltage",
+            argument="voltage",
+            place=joint.owner,
+            remedy='write input = "voltage" in the joint file\'s [drive]',
+        )
+    return joint.voltage
+
+
+def _run(recording: Recording, drive: VoltageDrive, number: int) -> ServoSignals:
+    place = f"recording {recording.name or number}"
+    extra, count = recording.extra, len(recording.time)
+    driven = extra.get("driven")
+    on = np.ones(count) if driven is None else np.where(np.asarray(driven) > 0.5, 1.0, 0.0)
+    supply = _supply(recording, drive, place)
+    loop, reference = drive.position_loop, recording.reference
+    gain = 0.0
+    if loop is not None:
+        gain = loop.gain * _constant(extra.get("gain"), place)
+    if "duty" in extra:
+        duty = extra["duty"] * drive.duty_scale
+    elif loop is not None and reference is not None:
+        late = np.interp(
+            recording.time - loop.delay, recording.time, reference - recording.position
+        )
+        duty = np.clip(gain * late, -loop.saturation, loop.saturation) * on
+    else:
+        raise InputError(
+            "there is neither a signal duty, nor a reference with a known position loop",
+            argument="duty",
+            place=place,
+            remedy=(
+                "name the column of the duty in the joint file's [drive.signals]",
+                "give the loop's gain in [drive.position_loop]",
+            ),
+        )
+    return ServoSignals(
+        name=recording.name or str(number),
+        time=recording.time,
+        position=recording.position,
+        duty=duty,
+        supply=supply,
+        driven=on,
+        reference=reference if loop is not None else None,
+        gain=gain,
+        logged="duty" in extra,
+    )
+
+
+def _supply(recording: Recording, drive: VoltageDrive, place: str) -> Array:
+    """Return the supply: what the joint states, else what was logged."""
+    if drive.supply is not None:
+        return np.full(len(recording.time), drive.supply)
+    if "supply" not in recording.extra:
+        raise InputError(
+            "it is neither in the joint's drive nor in the recording",
+            argument="supply",
+            place=place,
+            remedy="give the supply's voltage in the joint file's [drive]",
+        )
+    return np.asarray(recording.extra["supply"])
+
+
+def _constant(gain: Array | None, place: str) -> float:
+    if gain is None:
+        return 1.0
+    if np.ptp(gain) > 1e-9 * np.abs(gain).max():
+        raise InputError(
+            "the position loop's gain changes within a run",
+            argument="gain",
+            place=place,
+            remedy="save one recording for each gain",
+        )
+    return float(gain[0])

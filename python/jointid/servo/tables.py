@@ -1,0 +1,171 @@
+"""A servo's parameters with their errors, and its estimate as text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.advice import Action
+from jointid.base.error_text import printable
+from jointid.base.text_table import aligned
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.wording import two_digits
+from jointid.servo.estimate import ServoEstimate
+from jointid.servo.solving import NAMES, Sought
+
+Array = NDArray[np.float64]
+
+_MEANING = {
+    "torque_per_voltage": ("torque of the motor per voltage, k_t / R", "N·m/V"),
+    "back_emf": ("braking by back-EMF while driven, k_t² / R", "N·m·s/rad"),
+    "viscous": ("viscous friction", "N·m·s/rad"),
+    "coulomb": ("Coulomb friction", "N·m"),
+    "load_friction": ("dry friction per torque through the gear", ""),
+    "inertia": ("inertia of the drive at the output", "kg·m²"),
+    "torque_constant": ("torque constant k_t at the output", "N·m/A"),
+    "resistance": ("resistance of the winding", "Ω"),
+}
+
+
+def parameters_of(
+    values: Array, draws: Array, sought: Sought, units: int
+) -> dict[str, ParameterEstimate]:
+    """Return the parameters with the errors of runs drawn anew.
+
+    Parameters
+    ----------
+    values : ndarray, shape (6,)
+    draws : ndarray, shape (draws, 6)
+    sought : Sought
+    units : int
+        Units of resampling.
+    """
+    known = set(sought.fixed)
+    if sought.torque_constant is not None and sought.resistance is not None:
+        known |= {"torque_per_voltage", "back_emf"}
+    shown = [n for n in NAMES if n != "load_friction" or sought.load_friction or n in known]
+    found = {
+        name: _parameter(name, values[k], draws[:, k], name not in known, units)
+        for k, name in enumerate(NAMES)
+        if name in shown
+    }
+    for name, given in (
+        ("torque_constant", sought.torque_constant),
+        ("resistance", sought.resistance),
+    ):
+        value = given if given is not None else float(_motor(values[None, :], name)[0])
+        found[name] = _parameter(name, value, _motor(draws, name), given is None, units)
+    if not sought.divided:
+        for name in ("back_emf", "viscous", "torque_constant", "resistance"):
+            p = found[name]
+            if p.vary:
+                found[name] = _undetermined(p)
+    return found
+
+
+def _motor(values: Array, name: str) -> Array:
+    """k_t = (k_t²/R) / (k_t/R), and R = k_t / (k_t/R)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        k_t = values[:, 1] / values[:, 0]
+        found = k_t if name == "torque_constant" else k_t / values[:, 0]
+    return np.asarray(np.where(np.isfinite(found), found, np.inf))
+
+
+def _parameter(name: str, value: float, draws: Array, free: bool, units: int) -> ParameterEstimate:
+    meaning, unit = _MEANING[name]
+    at_bound = "min" if free and value <= 0.0 else None
+    stderr, interval = None, None
+    finite = draws[np.isfinite(draws)]
+    if free and len(finite) > 1:
+        # Few units: the spread of the draws is short by this, and the quantile is Student's.
+        spread = float(np.std(finite, ddof=1)) * np.sqrt(units / max(units - 1.0, 1.0))
+        half = spread * _core.student_quantile(0.975, float(max(units - 1, 1)))
+        stderr = None if at_bound else spread
+        interval = (max(0.0, value - half), value + half)
+    return ParameterEstimate(
+        name=name,
+        meaning=meaning,
+        unit=unit,
+        value=float(value),
+        stderr=stderr,
+        interval=interval,
+        min=0.0,
+        max=np.inf,
+        vary=free,
+        at_bound=at_bound,
+        shift_halved=None,
+        shift_doubled=None,
+    )
+
+
+def _undetermined(p: ParameterEstimate) -> ParameterEstimate:
+    return replace(p, stderr=np.inf, interval=(0.0, np.inf))
+
+
+def head() -> list[str]:
+    """The table's head."""
+    return ["parameter", "value", "standard error", "95 % interval", "unit", "meaning"]
+
+
+def rows(estimate: ServoEstimate) -> list[list[str]]:
+    """One row a parameter."""
+    return [
+        [p.name, f"{p.value:.4g}", _error(p), _interval(p), p.unit or "1", p.meaning]
+        for p in estimate.parameters.values()
+    ]
+
+
+def _error(p: ParameterEstimate) -> str:
+    if not p.vary:
+        return "given"
+    if p.at_bound:
+        return "at its bound"
+    if p.stderr is None:
+        return ""
+    return "not known" if np.isinf(p.stderr) else two_digits(p.stderr)
+
+
+def _interval(p: ParameterEstimate) -> str:
+    if p.interval is None or np.isinf(p.interval[1]):
+        return ""
+    return f"{p.interval[0]:.3g} to {p.interval[1]:.3g}"
+
+
+def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) -> str:
+    """Return the report that `ServoEstimate.report` shows.
+
+    Parameters
+    ----------
+    estimate : ServoEstimate
+    action : callable
+        Words an advice. Default: as at a Python prompt.
+    """
+    name = estimate.joint.name or "servo"
+    used = float(np.mean(estimate.moving))
+    lines = [
+        f"{name}: {len(estimate.runs)} run{'s' * (len(estimate.runs) != 1)}, "
+        f"{estimate.windows} windows of {1e3 * estimate.window:g} ms, "
+        f"{100.0 * used:.0f} % of the time used",
+        "",
+        *aligned([head(), *rows(estimate)]),
+        "",
+        f"fit       {1e3 * estimate.rms:.3g} mN·m left, "
+        f"{100.0 * estimate.relative_residual:.1f} % of the load's torque",
+        f"rows      {_lead(estimate)}",
+        f"time      {1e3 * estimate.seconds:.0f} ms",
+    ]
+    if estimate.findings:
+        lines += ["", "Findings"]
+        lines += [f"- {each.code}: {each.worded(action)}" for each in estimate.findings]
+    return printable("\n".join(lines))
+
+
+def _lead(estimate: ServoEstimate) -> str:
+    shown = f"a row's position is {1e3 * estimate.lead:.1f} ms older than its duty"
+    if estimate.lead_found:
+        return f"{shown} (found)"
+    return f"{shown} (given)" if estimate.lead else "position and duty are taken as simultaneous"

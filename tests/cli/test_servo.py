@@ -1,0 +1,102 @@
+"""`jointid identify` of a servo's runs: files, a folder, one file of many, and what is refused."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from simulated_servo import LOOP_GAIN, Truth, bench_runs
+
+import jointid as jid
+from jointid.cli.command_line import main
+
+JOINT = f"""schema = 2
+name = "servo"
+[drive]
+input = "voltage"
+[drive.position_loop]
+gain = {LOOP_GAIN}
+[drive.signals]
+driven = "torque_enabled"
+[link]
+mass = 0.49
+centre_of_mass = 0.1
+angle = "-90deg"
+"""
+HEADERS = "time_s,position_rad,goal_position_rad,duty,supply,torque_enabled,gain"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("servo")
+    (place / "servo.toml").write_text(JOINT, encoding="utf-8")
+    (place / "runs").mkdir()
+    tables = []
+    for number, run in enumerate(bench_runs(Truth(), seed=2, runs=8)):
+        assert run.reference is not None
+        extra = [run.extra[name] for name in ("duty", "supply", "driven", "gain")]
+        rows = np.column_stack([run.time, run.position, run.reference, *extra])
+        tables.append(np.column_stack([rows, np.full(len(rows), number)]))
+        path = place / "runs" / f"run{number}.csv"
+        np.savetxt(path, rows, delimiter=",", header=HEADERS, comments="")
+    whole = np.vstack(tables)
+    np.savetxt(place / "all.csv", whole, delimiter=",", header=f"{HEADERS},run", comments="")
+    return place
+
+
+def answer(capsys: pytest.CaptureFixture[str], *words: str | Path) -> dict[str, object]:
+    assert main(["identify", *map(str, words), "--json", "--quiet"]) in (0, None)
+    found: dict[str, object] = json.loads(capsys.readouterr().out)
+    return found
+
+
+def test_files_a_folder_and_one_file_of_many_are_the_same(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    joint = ("--joint", folder / "servo.toml")
+    files = sorted((folder / "runs").iterdir())
+    one = answer(capsys, *files, *joint)
+    two = answer(capsys, folder / "runs", *joint)
+    three = answer(capsys, folder / "all.csv", "--by", "run", *joint)
+    assert one["parameters"] == two["parameters"] == three["parameters"]
+    assert one["kind"] == "jointid servo"
+    heavier = answer(capsys, folder / "runs", *joint, "--mass", "0.98")
+    assert heavier["joint"]["link"]["mass"] == 0.98  # type: ignore[index]
+
+
+def test_the_report_has_rollouts_and_the_joint_file_the_values(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page, saved = tmp_path / "servo.html", tmp_path / "servo.toml"
+    command = ["identify", folder / "runs", "--joint", folder / "servo.toml", "--rollout"]
+    assert not main([*map(str, command), "--report", str(page), "--save", str(saved)])
+    said = capsys.readouterr().out
+    assert "Rollouts" in said
+    assert "median" in said
+    html = page.read_text(encoding="utf-8")
+    assert html.count("<svg") == 8
+    assert "k_t" in html
+    joint = jid.Joint.load(saved)
+    assert joint.torque_constant == pytest.approx(Truth().torque_constant, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--selftest"], "selftest"),
+        (["--windows", "400"], "0.05s"),
+        (["--model", "stribeck"], "stribeck"),
+        (["--by", "nothing"], "nothing"),
+    ],
+)
+def test_what_a_servo_does_not_have_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
+) -> None:
+    command = ["identify", str(folder / "runs"), "--joint", str(folder / "servo.toml"), *words]
+    assert main(command) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_torque_joint_has_no_rollout(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["identify", str(folder / "runs" / "run0.csv"), "--rollout"]) == 2
+    assert "voltage" in capsys.readouterr().err

@@ -1,0 +1,108 @@
+"""The separable method: by projection where that is certain, else from the compressed penalty."""
+
+import numpy as np
+import pytest
+from simulated_joint import simulate
+
+import jointid as jid
+from jointid.cli.demo import data_folder
+from jointid.identification.search.engine import Engine
+
+
+@pytest.fixture(scope="module")
+def run() -> jid.Recording:
+    return simulate(1, duration=9.0, seed=5)[0]
+
+
+@pytest.fixture(scope="module")
+def well_excited() -> jid.Recording:
+    return jid.load(data_folder() / "well_excited.csv.gz")
+
+
+def values(estimate: jid.Estimate) -> dict[str, float]:
+    return {name: parameter.value for name, parameter in estimate.parameters.items()}
+
+
+@pytest.mark.parametrize("model", ["stribeck", "stribeck_general"])
+@pytest.mark.parametrize("residual", ["instruments", "sensor", "torque"])
+def test_projection_agrees_with_the_genetic_search(
+    well_excited: jid.Recording, model: str, residual: str
+) -> None:
+    projected, genetic = (
+        jid.identify(
+            well_excited,
+            jid.thesis_joint(),
+            model=jid.Model.parse(model),
+            residual=residual,  # type: ignore[arg-type]
+            search=method,
+        )
+        for method in ("separable", "ga")
+    )
+    assert projected.status == "converged"
+    assert projected.message.endswith("shapes, by projection")
+    assert projected.penalty <= genetic.penalty * (1.0 + 1e-12)
+    # The line search of the default knows a shape to about the root of the rounding of a value.
+    assert values(projected) == pytest.approx(values(genetic), rel=1e-7)
+
+
+def test_it_compresses_nothing(
+    well_excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*_: object) -> Engine:
+        raise AssertionError("compressed")
+
+    monkeypatch.setattr(Engine, "of", refused)
+    estimate = jid.identify(well_excited, jid.thesis_joint(), search="separable")
+    assert estimate.status == "converged"
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (
+            {"parameters": {"stribeck": {"min": 1.0, "max": 20.0}}},
+            "near the end of a shape's range",
+        ),
+        ({"parameters": {"stribeck": 100.0}}, "no shape is searched"),
+        ({"parameters": {"static": {"max": 1e-3}}}, "hardly depends on the shapes"),
+        ({"windows": 60}, "few windows"),
+        ({"windows": "cumulative"}, "running sums"),
+        ({"model": "stribeck:load_friction"}, "not linear"),
+    ],
+)
+def test_what_projection_cannot_tell_is_compressed_and_said(
+    well_excited: jid.Recording, options: dict[str, object], reason: str
+) -> None:
+    joint = jid.thesis_joint()
+    estimate = jid.identify(well_excited, joint, search="separable", **options)  # type: ignore[arg-type]
+    assert "not by projection: " in estimate.message
+    assert reason in estimate.message
+    genetic = jid.identify(well_excited, joint, **options)  # type: ignore[arg-type]
+    assert estimate.penalty <= genetic.penalty * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize("model", ["stribeck", "stribeck_general"])
+def test_the_same_bits_for_any_number_of_threads(run: jid.Recording, model: str) -> None:
+    found = [
+        jid.identify(
+            run,
+            jid.thesis_joint(),
+            model=jid.Model.parse(model),
+            search=jid.Search("separable", threads=threads),
+        )
+        for threads in (1, 2, 5)
+    ]
+    assert "by projection" in found[0].message
+    assert values(found[0]) == values(found[1]) == values(found[2])
+
+
+def test_several_recordings_with_offsets_of_their_own(well_excited: jid.Recording) -> None:
+    halves = list(well_excited.split(2))
+    model = jid.Model(per_recording=("sensor_offset",))
+    projected, genetic = (
+        jid.identify(halves, jid.thesis_joint(), model=model, search=method)
+        for method in ("separable", "ga")
+    )
+    assert "by projection" in projected.message
+    assert values(projected) == pytest.approx(values(genetic), rel=1e-6)
+    assert np.isfinite(projected.penalty)

@@ -1,0 +1,177 @@
+"""The mutants' tool: CI kills those that are marked, survivors are told, and a place that is gone is an error."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+TOOLS = Path(__file__).resolve().parents[2] / "tools"
+sys.path.insert(0, str(TOOLS))
+
+from mutants.catalogue import Mutant, MutantError, check_places, read  # noqa: E402
+from mutants.page import complaints, summary, written  # noqa: E402
+from mutants.running import Verdict  # noqa: E402
+from mutants.switched_sources import SWITCH, switched  # noqa: E402
+
+_UNITS = "python/jointid/recording/units.py"
+_TESTS = "tests/recording/test_units.py"
+
+
+def tried(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    path = os.pathsep.join((str(TOOLS), os.environ.get("PYTHONPATH", "")))
+    return subprocess.run(
+        [sys.executable, "-m", "mutants", "--python", "--folder", folder / "built", *arguments],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"PYTHONPATH": path},
+        timeout=600,
+        check=False,
+    )
+
+
+def listed(folder: Path, *mutants: str, tests: str = _TESTS) -> Path:
+    """A folder with one list."""
+    lists = folder / "lists"
+    lists.mkdir()
+    rows = ",\n".join(mutants)
+    text = f"[[file]]\npath = '{_UNITS}'\ntests = ['{tests}']\nmutants = [\n{rows}\n]\n"
+    (lists / "room.toml").write_text(text)
+    return lists
+
+
+def mutant(number: int, line: str, was: str, becomes: str, justified: str = "") -> Mutant:
+    return Mutant(
+        number=number,
+        room="core",
+        path="cpp/toy.cpp",
+        line=line,
+        was=was,
+        becomes=becomes,
+        checks=("",),
+        justified=justified,
+    )
+
+
+def test_ci_kills_twenty(tmp_path: Path) -> None:
+    done = tried(tmp_path, "--ci", "--jobs", "2")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "20 mutants: 20 killed, 0 justified, 0 survived" in done.stdout
+
+
+def test_every_mutant_has_its_place() -> None:
+    mutants = read()
+    check_places(mutants)
+    assert len(mutants) >= 200
+    assert {each.room for each in mutants} == {
+        *("core", "findings", "inference", "units", "codec", "guard", "recorder"),
+    }
+
+
+def test_a_survivor_is_told(tmp_path: Path) -> None:
+    lists = listed(
+        tmp_path,
+        "{ was = 'if parts > 1 and', becomes = 'if parts > 0 and' }",
+        "{ was = '_TURN = 2.0', becomes = '_TURN = 3.0' }",
+        "{ was = '_POUND = 0.45359237', becomes = '_POUND = 0.5', justified = 'no reason' }",
+    )
+    page = tmp_path / "page.md"
+    done = tried(tmp_path, "--lists", str(lists), "--output", str(page), "--jobs", "1")
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "3 mutants: 2 killed, 0 justified, 1 survived" in done.stdout
+    assert f"survived: {_UNITS}: `if parts > 1 and` becomes `if parts > 0 and`" in done.stdout
+    assert "justified, and yet it dies" in done.stdout
+    assert "66.7% of the mutants die, 90% are asked" in done.stdout
+    assert "becomes `if parts > 0 and` | **not justified** |" in page.read_text()
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("{ was = 'no such text', becomes = '' }", "the line `no such text` is no longer there"),
+        ("{ was = 'factor', becomes = '' }", "the line `factor` stands there"),
+        (
+            "{ line = '_TURN = 2.0', was = '3.0', becomes = '' }",
+            "the part `3.0` is no longer there",
+        ),
+        ("{ was = '_TURN = 2.0' }", "has no becomes"),
+        ("{ was = '_TURN = 2.0', becomes = '', killed = true }", "unknown field 'killed'"),
+        ("{ was = '_TURN = 2.0', becomes = '_TURN = 2.0' }", "changes one line"),
+    ],
+)
+def test_a_wrong_list_is_told(row: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(MutantError, match=said.replace("(", r"\(")):
+        check_places(read(listed(tmp_path, row)))
+
+
+def test_tests_that_fail_by_themselves_kill_nothing(tmp_path: Path) -> None:
+    failing = tmp_path / "test_failing.py"
+    failing.write_text("def test_it() -> None:\n    assert False\n")
+    row = "{ was = '_TURN = 2.0', becomes = '_TURN = 3.0' }"
+    done = tried(tmp_path, "--lists", str(listed(tmp_path, row, tests=str(failing))))
+    assert done.returncode == 2
+    assert "without a mutant, this does not pass" in done.stderr
+
+
+def test_a_justified_survivor_passes_and_stands_in_the_page() -> None:
+    texts = [f"x = {k};" for k in range(11)]
+    verdicts = [
+        Verdict(
+            mutant=mutant(k, text, str(k), "y", "the same" if k == 10 else ""),
+            killed=k < 10,
+            by="test",
+            seconds=1.0,
+        )
+        for k, text in enumerate(texts)
+    ]
+    assert complaints(verdicts) == []
+    assert summary(verdicts) == "11 mutants: 10 killed, 1 justified, 0 survived"
+    page = written(verdicts, 3.0, 1.0)
+    assert "| core | 11 | 10 | 0 | 1 | 0 |" in page
+    assert "cpp/toy.cpp: `10` becomes `y` | the same |" in page
+
+
+TOY = """#include <cstdio>
+constexpr double kLimit = 2.0;
+int answer(double x) {
+  int count = 0;
+  count += 5;
+  for (int i = 0; i < 3; ++i) count += x > kLimit ? 10 * (i + 1) : 1;
+  return count;
+}
+int main() { std::printf("%d %d\\n", answer(1.0), answer(3.0)); }
+"""
+_LOOP = "count += x > kLimit ? 10 * (i + 1) : 1;"
+
+
+@pytest.mark.skipif(shutil.which("g++") is None, reason="needs a C++ compiler")
+def test_all_mutants_of_a_source_are_in_one_program(tmp_path: Path) -> None:
+    mutants = [
+        mutant(1, "constexpr double kLimit = 2.0;", "2.0", "0.5"),
+        mutant(2, "constexpr double kLimit = 2.0;", "2.0", "5.0"),
+        mutant(3, "count += 5;", "count += 5;", ""),
+        mutant(4, "i < 3", "i < 3", "i < 2"),
+        mutant(5, _LOOP, "10 * (i + 1)", "0"),
+        mutant(6, _LOOP, "i + 1", "i"),  # within another
+    ]
+    text = switched(TOY, mutants)
+    assert text.splitlines()[1] == "#line 1"
+    (tmp_path / "toy.cpp").write_text(text)
+    (tmp_path / "switch.cpp").write_text(SWITCH)
+    program = tmp_path / "toy"
+    sources = [tmp_path / "toy.cpp", tmp_path / "switch.cpp"]
+    subprocess.run(["g++", "-std=c++20", "-Wall", "-Werror", "-o", program, *sources], check=True)
+    said = []
+    for number in range(7):
+        inside = os.environ | {"JOINTID_MUTANT": str(number)}
+        done = subprocess.run([program], capture_output=True, text=True, env=inside, check=True)
+        said.append(done.stdout.strip())
+    assert said == ["8 65", "65 65", "8 8", "3 60", "7 35", "8 5", "8 35"]
+
+
+def test_mutants_that_overlap_are_refused() -> None:
+    crossing = [mutant(1, _LOOP, "x > kLimit ? 10", "x"), mutant(2, _LOOP, "10 * (i + 1)", "1")]
+    with pytest.raises(MutantError, match="overlap"):
+        switched(TOY, crossing)

@@ -1,0 +1,85 @@
+"""Try the mutants of the lists: `python -m mutants`, with `tools` on Python's path."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from pathlib import Path
+
+from mutants import page, tree
+from mutants.catalogue import LISTS, REPOSITORY, Mutant, MutantError, check_places, read
+from mutants.running import Trials
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit code 0: at least 90 % die, and each of the others is justified; 1: not so; 2: a list is wrong."""
+    options = _parser().parse_args(arguments)
+    try:
+        return _tried(options)
+    except MutantError as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="mutants", description=__doc__)
+    parser.add_argument("--lists", type=Path, default=LISTS, help="folder of the lists")
+    parser.add_argument("--only", default="", metavar="TEXT", help="in the name of list or file")
+    parser.add_argument("--python", action="store_true", help="Python alone: nothing is compiled")
+    parser.add_argument("--ci", action="store_true", help="those marked `ci`")
+    parser.add_argument("--check", action="store_true", help="that each text is there, no trial")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes at a time")
+    parser.add_argument("--folder", type=Path, default=REPOSITORY / "build" / "mutants")
+    parser.add_argument("--output", type=Path, help="write the page there")
+    return parser
+
+
+def _tried(options: argparse.Namespace) -> int:
+    everything = read(options.lists)
+    check_places(everything)
+    mutants = [each for each in everything if _chosen(each, options)]
+    print(f"{len(everything)} mutants in the lists, {len(mutants)} chosen", flush=True)
+    if options.check:
+        return 0
+    began = time.monotonic()
+    folder = options.folder.resolve()
+    extension, core_check = tree.installed_core(), None
+    if not all(each.is_python for each in mutants):
+        # All of them, so that another choice needs no compiler.
+        print("building the core with all mutants in it", flush=True)
+        inside = [each for each in everything if not each.is_python]
+        extension, core_check = tree.built_core(folder, inside)
+    building = time.monotonic() - began
+    packages = [
+        tree.package(folder / f"package_{number}", extension) for number in range(options.jobs)
+    ]
+    verdicts = Trials(packages, core_check, folder / "logs").all_of(mutants, _told)
+    minutes = (time.monotonic() - began) / 60.0
+    print(f"{page.summary(verdicts)}; {minutes:.1f} minutes")
+    for each in verdicts:
+        if not each.killed and each.mutant.justified:
+            print(f"justified: {each.mutant}: {each.mutant.justified}")
+    if options.output is not None:
+        text = page.written(verdicts, minutes, building / 60.0)
+        options.output.write_text(text, encoding="utf-8")
+    wrong = page.complaints(verdicts)
+    print("\n".join(wrong), end="\n" if wrong else "")
+    return 1 if wrong else 0
+
+
+def _chosen(mutant: Mutant, options: argparse.Namespace) -> bool:
+    if options.python and not mutant.is_python:
+        return False
+    if options.ci and not mutant.ci:
+        return False
+    return options.only in f"{mutant.room}: {mutant.path}"
+
+
+def _told(line: str) -> None:
+    print(line, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
