@@ -167,8 +167,10 @@ def _frozen(values: object) -> TypeGuard[FloatArray]:
 
 def _check_numbers(name: str, array: npt.NDArray[np.object_], place: str) -> None:
     for index, value in enumerate(array.flat):
+        # Older NumPys take a list of one number for the number.
+        other = isinstance(value, str | bytes) or (isinstance(value, np.ndarray) and value.ndim > 0)
         try:
-            number = not isinstance(value, str | bytes) and float(value) is not None
+            number = not other and float(value) is not None
         except (TypeError, ValueError, OverflowError):
             number = False
         if not number:
