@@ -155,16 +155,15 @@ def _logged(
     stamps = stamps[stamps < fine[-1] - 0.01]
     later = stamps + ROW
     at = np.interp(stamps, fine, position)
-    duty = np.clip(
-        gain * (np.interp(later, fine, wanted) - np.interp(later, fine, position)), -1.0, 1.0
-    )
+    held = wanted[np.searchsorted(fine, later, side="right") - 1]  # as the loop has it
+    duty = np.clip(gain * (held - np.interp(later, fine, position)), -1.0, 1.0)
     on = driven[np.searchsorted(fine, stamps)]
     volts = np.interp(later, fine, supply) + generator.normal(0.0, 0.1, len(stamps))
     return jid.Recording(
         time=stamps,
         position=np.round(at / COUNT) * COUNT,
         velocity=np.round(np.interp(stamps - LAG, fine, velocity) / 0.024) * 0.024,
-        reference=np.interp(later, fine, wanted),
+        reference=held,
         extra={
             "duty": np.round(duty * 885.0) / 885.0 * on,
             "supply": np.round(volts, 1),

@@ -28,6 +28,7 @@ from jointid.servo.windows import KNOWN, SLOWEST, WINDOW, ServoGrid, grid_of
 Array = NDArray[np.float64]
 
 _FEWEST = 20  # windows
+_LEAD_ERROR = 2e-4  # s
 
 
 def identify_servo(
@@ -93,32 +94,30 @@ def identify_servo(
         raise InputError("a whole number of at least 0 is expected", argument="draws", value=draws)
     found_lead = lead_of(runs, joint) if lead is None else None
     shift = (found_lead or 0.0) if lead is None else finite_number("", "lead", lead)
-    grid = grid_of(runs, joint, window=window, slowest=slowest, lead=shift)
-    if len(grid.start) < _FEWEST:
-        raise InputError(
-            f"only {len(grid.start)} windows of {1e3 * window:g} ms are faster than {slowest:g} rad/s throughout, "
-            f"and at least {_FEWEST} are needed",
-            argument="recordings",
-            remedy="record more motion",
-        )
-    sought = _sought(joint, grid, load_friction=load_friction)
-    units = units_of(grid)
-    table = grid.table()
-
-    def products_of(torque_per_voltage: float, back_emf: float) -> Array:
-        """Products of the columns, one matrix a unit of resampling."""
-        filled = grid.with_load(table, torque_per_voltage, back_emf)
-        return _products(filled, units)
-
-    values = fixed_point(lambda k, b: products_of(k, b).sum(axis=0), sought)
-    each = products_of(values[0], values[1])
+    fit = _fitted(
+        runs, joint, load_friction=load_friction, window=window, slowest=slowest, lead=shift
+    )
+    grid, table, sought, values, each = fit
     others = drawn(each, sought, values, draws, seed) if draws else np.empty((0, len(NAMES)))
+    moved: dict[str, Array] = {}
+    if draws:
+        # What runs drawn anew cannot show, because all of them have it: the windows' length, and the rows' lead.
+        for name, longer, later in (("windows", 2.0, 0.0), ("lag", 1.0, _LEAD_ERROR)):
+            other = _fitted(
+                runs,
+                joint,
+                load_friction=load_friction,
+                window=longer * window,
+                slowest=slowest,
+                lead=shift + later,
+            )
+            moved[name] = other[3]
     durations = grid.integrals(np.ones(len(grid.velocity)))
     residual = _left(grid, table, values) / durations
     measured = table[:, KNOWN] / durations
     estimate = ServoEstimate(
         joint=joint,
-        parameters=parameters_of(values, others, sought, len(each)),
+        parameters=parameters_of(values, others, sought, len(each), moved),
         draws=others,
         values=values,
         load_friction=load_friction,
@@ -139,6 +138,35 @@ def identify_servo(
     )
     found = findings_of(estimate, sought)
     return replace(estimate, findings=found, seconds=time.perf_counter() - started)
+
+
+def _fitted(
+    runs: Sequence[ServoSignals],
+    joint: Joint,
+    *,
+    load_friction: bool,
+    window: float,
+    slowest: float,
+    lead: float,
+) -> tuple[ServoGrid, Array, Sought, Array, Array]:
+    """Return grid, table, what is sought, the parameters, and the columns' products of each unit of resampling."""
+    grid = grid_of(runs, joint, window=window, slowest=slowest, lead=lead)
+    if len(grid.start) < _FEWEST:
+        raise InputError(
+            f"only {len(grid.start)} windows of {1e3 * window:g} ms are faster than {slowest:g} rad/s throughout, "
+            f"and at least {_FEWEST} are needed",
+            argument="recordings",
+            remedy="record more motion",
+        )
+    sought = _sought(joint, grid, load_friction=load_friction)
+    units = units_of(grid)
+    table = grid.table()
+
+    def products_of(torque_per_voltage: float, back_emf: float) -> Array:
+        return _products(grid.with_load(table, torque_per_voltage, back_emf), units)
+
+    values = fixed_point(lambda k, b: products_of(k, b).sum(axis=0), sought)
+    return grid, table, sought, values, products_of(values[0], values[1])
 
 
 def _products(filled: Array, units: NDArray[np.int64]) -> Array:

@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.servo.solving import NAMES, Sought, solved
-from jointid.servo.windows import ServoGrid
+from jointid.servo.windows import DRIVEN, TURNED, ServoGrid
 
 Array = NDArray[np.float64]
 
 _ENOUGH = 8  # runs, to draw whole ones
-_PASSES = 2  # of a set, which starts next to its solution
+_PASSES = 4  # of a set, which starts next to its solution
+_SOME = 1e-9
 _STRETCH = 1.0  # s; of a run, where runs are few
 
 
@@ -26,7 +27,7 @@ def units_of(grid: ServoGrid) -> NDArray[np.int64]:
 
 
 def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int) -> Array:
-    """Return the parameters of sets of units that are drawn with replacement, shape (draws, 6).
+    """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, 6).
 
     Parameters
     ----------
@@ -39,8 +40,15 @@ def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int)
     count = len(products)
     generator = np.random.default_rng(seed)
     times = generator.multinomial(count, np.full(count, 1.0 / count), size=draws).astype(float)
+    if sought.separable and sought.torque_constant is None and sought.resistance is None:
+        # Without a unit that turns freely, or without one that is driven, a set divides nothing.
+        driven, turned = products[:, DRIVEN, DRIVEN], products[:, TURNED, TURNED]
+        free = turned - driven > _SOME * turned
+        times = times[
+            (times[:, free].sum(axis=1) > 0.0) & (times[:, driven > 0.0].sum(axis=1) > 0.0)
+        ]
     sums = np.tensordot(times, products, axes=1)
-    found = np.empty((draws, len(NAMES)))
-    for k in range(draws):
+    found = np.empty((len(times), len(NAMES)))
+    for k in range(len(times)):
         found[k] = solved(sums[k], sought, values, passes=_PASSES)
     return found

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -32,7 +33,11 @@ _MEANING = {
 
 
 def parameters_of(
-    values: Array, draws: Array, sought: Sought, units: int
+    values: Array,
+    draws: Array,
+    sought: Sought,
+    units: int,
+    moved: Mapping[str, Array],
 ) -> dict[str, ParameterEstimate]:
     """Return the parameters with the errors of runs drawn anew.
 
@@ -43,13 +48,20 @@ def parameters_of(
     sought : Sought
     units : int
         Units of resampling.
+    moved : mapping of str to ndarray, each of shape (6,)
+        The parameters by other windows and another lead.
     """
+
+    def systematic(name: str) -> dict[str, float]:
+        own = _named(values, name)
+        return {part: abs(_named(other, name) - own) for part, other in moved.items()}
+
     known = set(sought.fixed)
     if sought.torque_constant is not None and sought.resistance is not None:
         known |= {"torque_per_voltage", "back_emf"}
     shown = [n for n in NAMES if n != "load_friction" or sought.load_friction or n in known]
     found = {
-        name: _parameter(name, values[k], draws[:, k], name not in known, units)
+        name: _parameter(name, values[k], draws[:, k], name not in known, units, systematic(name))
         for k, name in enumerate(NAMES)
         if name in shown
     }
@@ -58,13 +70,21 @@ def parameters_of(
         ("resistance", sought.resistance),
     ):
         value = given if given is not None else float(_motor(values[None, :], name)[0])
-        found[name] = _parameter(name, value, _motor(draws, name), given is None, units)
+        found[name] = _parameter(
+            name, value, _motor(draws, name), given is None, units, systematic(name)
+        )
     if not sought.divided:
         for name in ("back_emf", "viscous", "torque_constant", "resistance"):
             p = found[name]
             if p.vary:
                 found[name] = _undetermined(p)
     return found
+
+
+def _named(values: Array, name: str) -> float:
+    """Return a parameter of a solution, or what follows from it."""
+    found = values[NAMES.index(name)] if name in NAMES else _motor(values[None, :], name)[0]
+    return float(found)
 
 
 def _motor(values: Array, name: str) -> Array:
@@ -75,7 +95,14 @@ def _motor(values: Array, name: str) -> Array:
     return np.asarray(np.where(np.isfinite(found), found, np.inf))
 
 
-def _parameter(name: str, value: float, draws: Array, free: bool, units: int) -> ParameterEstimate:
+def _parameter(
+    name: str,
+    value: float,
+    draws: Array,
+    free: bool,
+    units: int,
+    systematic: Mapping[str, float],
+) -> ParameterEstimate:
     meaning, unit = _MEANING[name]
     at_bound = "min" if free and value <= 0.0 else None
     stderr, interval = None, None
@@ -83,7 +110,8 @@ def _parameter(name: str, value: float, draws: Array, free: bool, units: int) ->
     if free and len(finite) > 1:
         # Few units: the spread of the draws is short by this, and the quantile is Student's.
         spread = float(np.std(finite, ddof=1)) * np.sqrt(units / max(units - 1.0, 1.0))
-        half = spread * _core.student_quantile(0.975, float(max(units - 1, 1)))
+        total = math.hypot(spread, *systematic.values())
+        half = total * _core.student_quantile(0.975, float(max(units - 1, 1)))
         stderr = None if at_bound else spread
         interval = (max(0.0, value - half), value + half)
     return ParameterEstimate(
@@ -99,6 +127,7 @@ def _parameter(name: str, value: float, draws: Array, free: bool, units: int) ->
         at_bound=at_bound,
         shift_halved=None,
         shift_doubled=None,
+        systematic=systematic if free else {},
     )
 
 
