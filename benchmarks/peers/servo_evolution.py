@@ -59,7 +59,10 @@ def evolved(
         values[free] = np.exp(low + (high - low) * x)
         return values
 
-    logs = [(run.time, run.reference, run.supply, run.driven) for run in runs]
+    logs = [
+        (run.time, run.duty if run.reference is None else run.reference, run.supply, run.driven)
+        for run in runs
+    ]
 
     def costs(points: Array) -> Array:
         loops = [servo_loop(described(joint, values_of(x)), run) for x in points for run in runs]
@@ -68,7 +71,8 @@ def evolved(
             np.mean(np.abs(position - runs[k % len(runs)].position))
             for k, (position, _) in enumerate(motions)
         ]
-        return np.reshape(errors, (len(points), -1)).mean(axis=1)
+        means: Array = np.reshape(errors, (len(points), -1)).mean(axis=1)
+        return means
 
     strategy = cma.CMAEvolutionStrategy(
         np.full(len(free), 0.5),

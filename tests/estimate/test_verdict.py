@@ -100,8 +100,9 @@ class Case(NamedTuple):
 
 
 GOOD, CARE, BAD = "usable", "usable with care", "not usable"
-# Written down before any of them was computed, but for the two of a push, which were set after they had been. Monitoring compares recordings of the same motion: what is wrong in
-# the same way in all of them does not matter to it, what differs from one to the next does.
+# Written down before any of them was computed, but for the two of a push, which were set after they had been.
+# Monitoring compares recordings of the same motion: what is wrong in the same way in all of them does not matter to it,
+# what differs from one to the next does.
 EXPECTED = (
     Case(as_it_is, GOOD, GOOD, GOOD, "good: motion at all speeds, and the joint's own model"),
     Case(defects.gap, GOOD, GOOD, GOOD, "no window crosses the gap"),

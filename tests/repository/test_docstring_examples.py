@@ -20,6 +20,7 @@ import matplotlib
 import numpy as np
 import pandas as pd
 import pytest
+import simulated_servo
 import small_arm
 
 import jointid as jid
@@ -117,6 +118,8 @@ def prepared(repo: Path) -> dict[str, Any]:
         "bench": bench,
         "before": before,
         "after": after,
+        "servo": simulated_servo.servo_joint(),
+        "servo_runs": simulated_servo.bench_runs(simulated_servo.Truth(), seed=1),
         "study": jid.sweep(recording, joint, grid=sizes, trials=2),
     }
 

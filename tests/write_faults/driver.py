@@ -21,7 +21,7 @@ from closed_loop import TRUTH
 
 import jointid as jid
 from jointid.hardware.session.recorder import COLUMNS, Recorder
-from jointid.report.html import save_report
+from jointid.report.saving import save_report
 from jointid.study.row import Row
 from jointid.study.study_file import StudyFile
 from write_faults import commands

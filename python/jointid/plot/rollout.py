@@ -42,7 +42,7 @@ def rolled_out(
 
     Examples
     --------
-    >>> jid.plot.rolled_out(jid.rollout(estimate, runs), run=3)  # doctest: +SKIP
+    >>> axes = jid.plot.rolled_out(jid.rollout(jid.identify_servo(servo_runs, servo), servo_runs), run=3)
     """
     require_kind("result", result, Rollout)
     chosen = _run(result, run)

@@ -105,8 +105,8 @@ def save_report(result: Result, path: str | Path, action: Callable[[Action], str
 
     Examples
     --------
-    >>> jid.save_report(jid.identify(recording, joint), "report.html")  # doctest: +SKIP
-    PosixPath('report.html')
+    >>> jid.save_report(jid.identify(recording, joint), "report.html").name
+    'report.html'
     """
     target = require_path("path", path)
     write_whole(target, report_page(result, action).encode())

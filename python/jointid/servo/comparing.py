@@ -118,7 +118,9 @@ def compare_servo_models(
 
     Examples
     --------
-    >>> print(jid.compare_servo_models(runs, joint).report())  # doctest: +SKIP
+    >>> compared = jid.compare_servo_models(servo_runs, servo)
+    >>> isinstance(compared, jid.ServoComparison)
+    True
     """
     runs = list(recordings)
     chosen = MODELS if models is None else tuple(Model.of(each) for each in models)

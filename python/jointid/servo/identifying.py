@@ -81,9 +81,13 @@ def identify_servo(
 
     Examples
     --------
-    >>> joint = jid.Joint.load("servo.toml")  # doctest: +SKIP
-    >>> runs = jid.load_runs("runs.csv", by="run", extra=joint.voltage.signals)  # doctest: +SKIP
-    >>> print(jid.identify_servo(runs, joint).report())  # doctest: +SKIP
+    >>> loop = jid.PositionLoop(gain=0.0028774)
+    >>> drive = jid.VoltageDrive(supply=7.4, position_loop=loop)
+    >>> link = jid.Link(mass=0.49, centre_of_mass=0.1, angle=-np.pi / 2)
+    >>> servo = jid.Joint(link=link, voltage=drive)
+    >>> found = jid.identify_servo(servo_runs, servo)
+    >>> found["torque_per_voltage"] > 0.0
+    True
     """
     started = time.perf_counter()
     runs = signals_of(recordings, joint)

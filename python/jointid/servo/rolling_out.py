@@ -160,8 +160,10 @@ def rollout(
 
     Examples
     --------
-    >>> predicted = jid.rollout(estimate, held_out)  # doctest: +SKIP
-    >>> print(predicted.report())  # doctest: +SKIP
+    >>> found: jid.ServoEstimate = jid.identify_servo(servo_runs[1:], servo)
+    >>> predicted: jid.Rollout = jid.rollout(found, servo_runs[:1])
+    >>> len(predicted.runs)
+    1
     """
     joint = estimate.identified if isinstance(estimate, ServoEstimate) else estimate
     runs = signals_of(recordings, joint)
