@@ -48,7 +48,7 @@ class BootstrapParameter:
     near_bound: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Bootstrap:
     """A block bootstrap of an estimate.
 
@@ -76,6 +76,10 @@ class Bootstrap:
     block: float
     blocks: int
     seed: int
+
+    def __repr__(self) -> str:
+        errors = ", ".join(f"{name}=±{p.stderr:.2g}" for name, p in self.parameters.items())
+        return f"Bootstrap({errors}; {len(self.samples)} draws of {self.blocks} blocks)"
 
     def document(self) -> dict[str, Any]:
         """Return what `report` shows, in JSON's types; without the samples."""

@@ -28,7 +28,7 @@ class Measured:
     unit: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Finding:
     """What the data or the fit show.
 
@@ -59,6 +59,9 @@ class Finding:
         if self.severity not in get_args(Severity):
             raise ValueError(f"a severity is one of {', '.join(get_args(Severity))}")
         object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
+
+    def __repr__(self) -> str:
+        return f"<Finding {self.code} ({self.severity}): {_shortened(self.cause)}>"
 
     def worded(self, action: Callable[[Action], str] = str) -> str:
         """The finding in a sentence: its cause, and its advice as an interface words it.
@@ -94,3 +97,7 @@ class Finding:
 
 def _rebuilt(values: dict[str, Any]) -> Finding:
     return Finding(**values)
+
+
+def _shortened(text: str, most: int = 100) -> str:
+    return text if len(text) <= most else f"{text[:most].rsplit(' ', 1)[0]} …"

@@ -63,7 +63,7 @@ class SelfTestRow:
         return f"{sign}{two_digits(abs(self.error))} {self.unit}"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class SelfTest:
     """The result of `Estimate.selftest`.
 
@@ -86,6 +86,9 @@ class SelfTest:
     trials: int
     seed: int
     failed: str = ""
+
+    def __repr__(self) -> str:
+        return f"<SelfTest of {self.trials} trials: {self.verdict}>"
 
     @property
     def parameters(self) -> tuple[str, ...]:

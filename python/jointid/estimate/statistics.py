@@ -25,7 +25,7 @@ SYSTEMATIC_PARTS = (
 """What moves a value however long the recording is."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ParameterEstimate:
     """One parameter of an estimate.
 
@@ -72,6 +72,12 @@ class ParameterEstimate:
     shift_halved: float | None
     shift_doubled: float | None
     systematic: Mapping[str, float] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        error = "" if self.stderr is None else f" ± {self.stderr:.2g}"
+        bound = f", at its {self.at_bound} bound" if self.at_bound else ""
+        fixed = "" if self.vary else ", fixed"
+        return f"<ParameterEstimate {self.name}: {self.value:.6g}{error} {self.unit}{bound}{fixed}>"
 
     @property
     def systematic_total(self) -> float:
@@ -156,7 +162,7 @@ class Convergence:
     evaluations: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FrictionCurve:
     """The estimated friction map; `numpy.asarray` of it is `torque`.
 
@@ -174,6 +180,9 @@ class FrictionCurve:
     torque: Array
     lower: Array
     upper: Array
+
+    def __repr__(self) -> str:
+        return f"<FrictionCurve: {np.size(self.torque)} velocities, with a 95 % band>"
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
         """The torque."""

@@ -11,7 +11,7 @@ from jointid.problem.inner_products import size
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class WindowTable:
     """One row per window: integrals of the compared signal, and means for pictures.
 
@@ -41,13 +41,16 @@ class WindowTable:
     velocity: Array
     friction: Array
 
+    def __repr__(self) -> str:
+        return f"<WindowTable: {len(self.duration)} windows, {self.duration.sum():.4g} s in all>"
+
     @property
     def residual(self) -> Array:
         """Measured minus fitted integrals."""
         return self.measured - self.fitted
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Prediction:
     """An estimate's prediction of a recording, which need not be one that it was fitted to.
 
@@ -62,6 +65,10 @@ class Prediction:
     windows: WindowTable
     relative: float
     r_squared: float
+
+    def __repr__(self) -> str:
+        share = f"R² {self.r_squared:.5g}, relative residual {self.relative:.3g}"
+        return f"<Prediction: {len(self.windows.duration)} windows, {share}>"
 
 
 def r_squared(table: WindowTable) -> float:
