@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import socket
+import threading
+import time
 from collections.abc import Callable
 from contextlib import closing
 
@@ -11,6 +13,8 @@ from jointid.base.errors import InputError
 LARGEST = 200_000_000
 """Bytes of an upload, unless stated."""
 _GONE = 3.0  # [s] without its page after which a page's work ends
+_STARTS = 60.0  # [s] within which the server listens, also on a loaded machine
+_POLL = 0.02  # [s]
 
 
 def serve(told: Callable[[str], object], *, port: int = 0, largest: int = LARGEST) -> None:
@@ -45,9 +49,8 @@ def serve(told: Callable[[str], object], *, port: int = 0, largest: int = LARGES
     token = new_token()
     address = f"http://127.0.0.1:{port}/?token={token}"
 
-    @app.on_startup
-    def started() -> None:
-        told(address)
+    # The server calls `on_startup` before it listens.
+    threading.Thread(target=_when_open, args=(port, lambda: told(address)), daemon=True).start()
 
     def root() -> None:
         build(largest)
@@ -66,6 +69,19 @@ def serve(told: Callable[[str], object], *, port: int = 0, largest: int = LARGES
         show=False,
         show_welcome_message=False,
     )
+
+
+def _when_open(port: int, tell: Callable[[], object]) -> None:
+    """Tell as soon as the port accepts a connection."""
+    end = time.monotonic() + _STARTS
+    while time.monotonic() < end:
+        try:
+            socket.create_connection(("127.0.0.1", port), timeout=1.0).close()
+        except OSError:
+            time.sleep(_POLL)
+        else:
+            tell()
+            return
 
 
 def _free(port: int) -> int:
