@@ -68,8 +68,14 @@ def check(
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_a_real_log(name: str, shared_data: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    check(shared_data / name, FILES[name], capsys)
+def test_a_real_log(
+    name: str, request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if name.startswith("emps/"):
+        path = request.getfixturevalue("emps") / name.removeprefix("emps/")
+    else:
+        path = request.getfixturevalue("shared_data") / name
+    check(path, FILES[name], capsys)
 
 
 @pytest.mark.parametrize("name", COPIES)

@@ -17,6 +17,7 @@ from closed_loop import TRUTH, thesis_joint, well_excited, wrong_controller
 from cycler import cycler
 from matplotlib import pyplot
 from matplotlib.axes import Axes
+from simulated_servo import Truth, bench_runs, servo_joint, with_truth
 
 import jointid as jid
 from jointid.joint.units import parameter_unit
@@ -231,6 +232,7 @@ def _drawn(name: str, ax: Any, **style: Any) -> Any:
         "convergence": lambda **k: jid.plot.convergence(estimate, **k),
         "friction_curves": lambda **k: jid.plot.friction_curves({"found": estimate}, **k),
         "friction_map": lambda **k: jid.plot.friction_map(run, estimate, **k),
+        "rolled_out": lambda **k: jid.plot.rolled_out(_rolled(), **k),
         "residuals": lambda **k: jid.plot.residuals(estimate, **k),
         "sensitivity": lambda **k: jid.plot.sensitivity(TRUE, "viscous", **k),
         "signal": lambda **k: jid.plot.signal(run, "torque", **k),
@@ -240,6 +242,11 @@ def _drawn(name: str, ax: Any, **style: Any) -> Any:
         "window_means": lambda **k: jid.plot.window_means(estimate, **k),
     }
     return drawn[name](ax=ax, **style)
+
+
+@functools.cache
+def _rolled() -> jid.Rollout:
+    return jid.rollout(with_truth(Truth(), servo_joint()), bench_runs(Truth(), seed=1)[:1])
 
 
 @functools.cache

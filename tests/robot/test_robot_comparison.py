@@ -147,7 +147,7 @@ def test_one_command(path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[s
     line = ["compare", str(log), "--robot", str(path), "--inertia", "urdf", "--folds", "3"]
     assert main([*line, "--report", str(page), "--save", str(saved)]) == 0
     assert "winner: inertia urdf, coulomb_viscous" in capsys.readouterr().out
-    assert "Compared on held-out torque" in page.read_text(encoding="utf-8")
+    assert "torque that the candidate was not fitted to" in page.read_text(encoding="utf-8")
     assert jid.RobotEstimate.load(saved).inertia == "urdf"
     assert main([*line, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["kind"] == "jointid robot comparison"

@@ -55,6 +55,7 @@ _ESTIMATE = {"report": "--report", "save": "--save"}
 
 OPTIONS: Mapping[str, Mapping[str, str]] = {
     "demo": {"output": "--output"},
+    "app": {"port": "--port", "largest": "--largest"},
     "new": {
         **_READING,
         **_FACTS,
