@@ -12,9 +12,13 @@ export PATH="$PWD/.venv/bin:$PATH"
 # Plain: as shipped, warnings are errors. Under a sanitizer: with Eigen's own assertions (no NDEBUG),
 # and no -Werror, because instrumented code makes the compiler warn about what is not there.
 options=(-DCMAKE_BUILD_TYPE=Debug)
+undefined=undefined
+# Alignment, null and object sizes take half of the compiler's time; in CI what AddressSanitizer or the processor
+# notices as well is left out. By hand everything is checked.
+[ "${CI:-}" = true ] && undefined=shift,integer-divide-by-zero,unreachable,vla-bound,return,signed-integer-overflow,bounds,bool,enum
 case "$name" in
   plain) options=(-DCMAKE_BUILD_TYPE=Release -DJOINTID_WARNINGS_AS_ERRORS=ON) ;;
-  address) options+=(-DJOINTID_SANITIZE=address,undefined) ;;
+  address) options+=("-DJOINTID_SANITIZE=address,$undefined") ;;
   thread) options+=(-DJOINTID_SANITIZE=thread) ;;
   *) echo "core_checks.sh: NAME must be plain, address or thread, got '$name'" >&2; exit 2 ;;
 esac
