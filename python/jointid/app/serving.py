@@ -17,12 +17,12 @@ _STARTS = 60.0  # [s] within which the server listens, also on a loaded machine
 _POLL = 0.02  # [s]
 
 
-def serve(told: Callable[[str], object], *, port: int = 0, largest: int = LARGEST) -> None:
+def serve(opened: Callable[[str], object], *, port: int = 0, largest: int = LARGEST) -> None:
     """Serve the page until Ctrl-C.
 
     Parameters
     ----------
-    told : callable
+    opened : callable
         Called with the page's address when it can be opened.
     port : int
         0 (default): a free one.
@@ -50,7 +50,7 @@ def serve(told: Callable[[str], object], *, port: int = 0, largest: int = LARGES
     address = f"http://127.0.0.1:{port}/?token={token}"
 
     # The server calls `on_startup` before it listens.
-    threading.Thread(target=_when_open, args=(port, lambda: told(address)), daemon=True).start()
+    threading.Thread(target=_when_open, args=(port, lambda: opened(address)), daemon=True).start()
 
     def root() -> None:
         build(largest)

@@ -66,20 +66,20 @@ class Worker:
                 if generation != self._generation:
                     raise CancelledWork
                 try:
-                    kind, told = connection.recv()
+                    kind, content = connection.recv()
                 except EOFError:
                     self.cancel()
                     raise RuntimeError(
                         "the computation ended: no memory was left, or it was killed"
                     ) from None
                 if kind == "progress":
-                    report(*told)
+                    report(*content)
                 elif kind == "done":
-                    return told
+                    return content
                 elif kind == "refused":
-                    raise told
+                    raise content
                 else:
-                    raise RuntimeError(told)
+                    raise RuntimeError(content)
 
     def cancel(self) -> None:
         """End the process and what it computes; the next call starts another one."""

@@ -43,13 +43,13 @@ def serve_page(arguments: argparse.Namespace) -> None:
             "a number of megabytes above 0 is expected", argument="largest", value=arguments.largest
         )
 
-    def told(address: str) -> None:
+    def opened(address: str) -> None:
         print(f"jointid is served to this machine at\n{address}\nCtrl-C ends it.", flush=True)
         if not arguments.no_browser:
             webbrowser.open(address)
 
     serve(
-        told,
+        opened,
         port=arguments.port,
         largest=int(1e6 * arguments.largest),
     )
