@@ -127,6 +127,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *("base", "joint", "estimate", "joints", "robot", "servo", "identification/warnings"),
             *("report/drawing", "recording", "commissioning", "comparison", "study", "design"),
+            "problem",
         },
         packages={"numpy"},
     ),

@@ -33,6 +33,12 @@ def of_a_joint() -> str:
     return report_page(jid.identify(jid.load(data_folder() / "kr300_joint1.csv.gz"), joint))
 
 
+def of_recordings() -> str:
+    """With their signals, what was left out of them, and names that a page must escape."""
+    named = [defects.changed(part, name=HOSTILE) for part in (good()[:5.0], good()[6.0:])]
+    return report_page(jid.identify(named, jid.thesis_joint()), recordings=named)
+
+
 def of_a_search() -> str:
     """With a convergence picture, and its joint named by somebody hostile."""
     rough = jid.GaOptions(population=20, generations=3, polish=False)
@@ -130,7 +136,14 @@ def of_a_stopped_session() -> str:
 
 
 PAGES: tuple[Callable[[], str], ...] = (
-    *(of_a_joint, of_a_search, of_several_joints, of_a_comparison, of_a_named_comparison),
+    *(
+        of_a_joint,
+        of_recordings,
+        of_a_search,
+        of_several_joints,
+        of_a_comparison,
+        of_a_named_comparison,
+    ),
     *(of_a_study, of_a_study_of_rows, of_a_design, of_a_refused_design),
     *(of_a_robot, of_a_robot_comparison),
     *(of_a_session, of_a_stopped_session),

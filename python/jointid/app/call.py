@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -85,17 +85,19 @@ class Call:
             )
         return pieces
 
-    def run(self, **more: Any) -> Estimate:
+    def run(self, recordings: Sequence[Recording] | None = None, **more: Any) -> Estimate:
         """Return the estimate.
 
         Parameters
         ----------
+        recordings : sequence of Recording, optional
+            As `recordings` returned them. Default: they are read.
         **more
             Further arguments of `identify`; they replace those of the call.
         """
         from jointid.identification.identification import identify
 
-        return identify(self.recordings(), self.joint, **{**self.identify, **more})
+        return identify(recordings or self.recordings(), self.joint, **{**self.identify, **more})
 
     def _kept_of(self, whole: Recording) -> list[tuple[float | None, float | None]]:
         """The stretches that are left, without those of a few samples."""

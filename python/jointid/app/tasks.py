@@ -56,8 +56,9 @@ def identify(report: Report, call: Call) -> tuple[Estimate, str]:
     search = Search.of(call.identify.get("search"))
     if search.method == "ga":
         search = replace(search, callback=shown)
-    estimate = call.run(search=search)
-    return estimate, html_report(estimate)
+    recordings = call.recordings()
+    estimate = call.run(recordings, search=search)
+    return estimate, html_report(estimate, recordings=recordings)
 
 
 def compare(report: Report, call: Call, models: Sequence[str]) -> Comparison:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
@@ -37,7 +37,12 @@ def demo(arguments: argparse.Namespace) -> None:
         demonstration = demonstrate(callback=progress)
     estimate = demonstration.estimate
     arguments.output.mkdir(exist_ok=True)
-    page = save_report(estimate, arguments.output / "report.html", action=ADVICE.of_action)
+    page = save_report(
+        estimate,
+        arguments.output / "report.html",
+        action=ADVICE.of_action,
+        recordings=demonstration.recording,
+    )
     estimate.save(arguments.output / "estimate.json")
     if arguments.json:
         print(estimate.to_json())
@@ -113,7 +118,7 @@ def identify(arguments: argparse.Namespace) -> int:
     draws = arguments.bootstrap
     drawn = estimate.bootstrap(draws, arguments.seed) if draws is not None else None
     causes = estimate.causes() if arguments.causes else None
-    refused = _write(estimate, arguments)
+    refused = _write(estimate, arguments, recordings=recordings)
     if arguments.json:
         print(_with_checks(estimate, {"selftest": tested, "bootstrap": drawn, "causes": causes}))
     else:
@@ -271,7 +276,10 @@ def _unrecognised(arguments: argparse.Namespace) -> str:
 
 
 def _write(
-    estimate: Estimate, arguments: argparse.Namespace, comparison: Comparison | None = None
+    estimate: Estimate,
+    arguments: argparse.Namespace,
+    comparison: Comparison | None = None,
+    recordings: Sequence[Recording] | None = None,
 ) -> str:
     """Write what was asked for, of a comparison its own page; returns the code of a finding that refuses a joint file.
 
@@ -280,7 +288,12 @@ def _write(
     if arguments.report is not None:
         from jointid.report.saving import save_report
 
-        save_report(comparison or estimate, arguments.report, action=ADVICE.of_action)
+        save_report(
+            comparison or estimate,
+            arguments.report,
+            action=ADVICE.of_action,
+            recordings=recordings,
+        )
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
     if arguments.save is None:
         return ""

@@ -11,6 +11,7 @@ from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.recording.readers.loading import load
+from jointid.recording.recording import Recording
 
 # Published beside the log by its authors (Weigand et al.).
 NOMINAL = {"viscous": 2050.0, "coulomb": 355.0}
@@ -21,9 +22,10 @@ TERMS = {"coriolis": "known", "pose": "inertia"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Demonstration:
-    """Result of the demonstration: the estimate, and the values published by the authors."""
+    """Result of the demonstration: the estimate, its recording, and the values published by the authors."""
 
     estimate: Estimate
+    recording: Recording
     nominal: dict[str, float]
 
 
@@ -41,4 +43,4 @@ def demonstrate(callback: Callable[[Generation], bool | None] | None = None) -> 
     recording = load(folder / "kr300_joint1.csv.gz", extra=COLUMNS)
     joint = Joint.load(folder / "kr300_joint1.toml")
     estimate = identify(recording, joint, terms=TERMS, search=Search(callback=callback))
-    return Demonstration(estimate=estimate, nominal=dict(NOMINAL))
+    return Demonstration(estimate=estimate, recording=recording, nominal=dict(NOMINAL))

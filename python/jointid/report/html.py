@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, page
@@ -16,12 +16,19 @@ from jointid.estimate.html_tables import (
     html_windows,
 )
 from jointid.identification.warnings.registry import finding_types
+from jointid.recording.recording import Recording
 from jointid.report.answering import verdict_lines
 from jointid.report.estimate_pictures import convergence_section, picture_sections
+from jointid.report.recorded_signals import recorded_sections
 from jointid.report.style import STYLE
+from jointid.report.values_to_copy import values_sections
 
 
-def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
+def html_report(
+    estimate: Estimate,
+    action: Callable[[Action], str] = str,
+    recordings: Sequence[Recording] = (),
+) -> str:
     """The report as one HTML page that needs no other file.
 
     Parameters
@@ -29,6 +36,8 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     estimate : Estimate
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
+    recordings : sequence of Recording
+        That the estimate was made from, for pictures of their signals. Default: without these.
     """
     title = f"{estimate.joint.name or 'joint'}: friction identified by jointid"
     return page(
@@ -36,12 +45,16 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
         STYLE,
         element("h1", title),
         *verdict_lines(estimate.verdict, estimate.findings, shown_by(estimate), action),
-        *sections(estimate, action),
+        *sections(estimate, action, recordings),
         footer(estimate),
     )
 
 
-def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[Html]:
+def sections(
+    estimate: Estimate,
+    action: Callable[[Action], str] = str,
+    recordings: Sequence[Recording] = (),
+) -> list[Html]:
     """All that is told of an estimate, under its headings."""
     return [
         element("h2", "Parameters"),
@@ -51,6 +64,7 @@ def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[
         element("h2", "Recording", id="recording"),
         html_windows(estimate),
         *picture_sections(estimate),
+        *(recorded_sections(estimate, recordings) if recordings else []),
         element("h2", "Uncertainty"),
         element(
             "p",
@@ -66,23 +80,8 @@ def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[
         element("h2", "Fit and search"),
         html_quality(estimate),
         *convergence_section(estimate),
-        element("h2", "Values to copy", id="values"),
-        element("p", "As a joint file has them, with all digits:"),
-        element("pre", joint_file_lines(estimate)),
+        *values_sections(estimate),
     ]
-
-
-def joint_file_lines(estimate: Estimate) -> str:
-    """Return the values as the table [parameters] of a joint file."""
-    lines = (
-        f"{_key(p.name)} = {{ value = {float(p.value)!r} }}" for p in estimate.parameters.values()
-    )
-    return "\n".join(["[parameters]", *lines])
-
-
-def _key(name: str) -> str:
-    """A name as a key of TOML: bare where that is allowed."""
-    return name if name.replace("_", "").isalnum() and name.isascii() else f'"{name}"'
 
 
 def shown_by(estimate: Estimate) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -11,6 +11,7 @@ from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
+from jointid.problem.recordings import listed
 
 if TYPE_CHECKING:
     from jointid.commissioning.ring import Commissioning
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from jointid.design.design import Design
     from jointid.estimate.estimate import Estimate
     from jointid.joints.result import JointEstimates
+    from jointid.recording.recording import Recording
     from jointid.robot.comparison_result import RobotComparison
     from jointid.robot.result import RobotEstimate
     from jointid.study.study_result import Study
@@ -45,7 +47,11 @@ _PAGES = {
 _WITHOUT_FINDINGS = {"Study": "study_page:study_report", "Design": "design_page:design_report"}
 
 
-def report_page(result: Result, action: Callable[[Action], str] = str) -> str:
+def report_page(
+    result: Result,
+    action: Callable[[Action], str] = str,
+    recordings: Recording | Sequence[Recording] | None = None,
+) -> str:
     """Return the report of a result as one HTML page that needs no other file.
 
     Parameters
@@ -53,6 +59,8 @@ def report_page(result: Result, action: Callable[[Action], str] = str) -> str:
     result : Estimate, JointEstimates, RobotEstimate, Comparison, RobotComparison, Study, Design or Commissioning
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
+    recordings : Recording or sequence of Recording, optional
+        See `save_report`.
 
     Returns
     -------
@@ -61,7 +69,7 @@ def report_page(result: Result, action: Callable[[Action], str] = str) -> str:
     Raises
     ------
     InputError
-        Anything else, of which there is no report.
+        Anything else, of which there is no report; recordings that the result was not made from.
     """
     kind: Any = type(result)
     pages = {**_PAGES, **_WITHOUT_FINDINGS}
@@ -73,11 +81,23 @@ def report_page(result: Result, action: Callable[[Action], str] = str) -> str:
         )
     module, _, function = pages[kind.__name__].partition(":")
     maker = getattr(import_module(f"jointid.report.{module}"), function)
+    if recordings is not None:
+        if kind.__name__ != "Estimate":
+            raise InputError(
+                "only the report of one joint's estimate shows its recordings",
+                argument="recordings",
+            )
+        return str(maker(result, action, listed(recordings)))
     made: str = maker(result) if kind.__name__ in _WITHOUT_FINDINGS else maker(result, action)
     return made
 
 
-def save_report(result: Result, path: str | Path, action: Callable[[Action], str] = str) -> Path:
+def save_report(
+    result: Result,
+    path: str | Path,
+    action: Callable[[Action], str] = str,
+    recordings: Recording | Sequence[Recording] | None = None,
+) -> Path:
     """Write the report of a result as one HTML page that needs no other file, whole or not at all.
 
     The page begins with the verdict or the answer; pictures are inside; a phone shows it, and a dark screen.
@@ -91,6 +111,9 @@ def save_report(result: Result, path: str | Path, action: Callable[[Action], str
         Replaced when it exists.
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
+    recordings : Recording or sequence of Recording, optional
+        That an `Estimate` was made from, in this order: the page then shows their signals, with what was left out
+        shaded, and the residual over the position. Default: a page without these.
 
     Returns
     -------
@@ -99,15 +122,16 @@ def save_report(result: Result, path: str | Path, action: Callable[[Action], str
     Raises
     ------
     InputError
-        Of this there is no report; the path is no file name, or its folder does not exist.
+        Of this there is no report; the estimate was made from other recordings; the path is no file name, or its
+        folder does not exist.
     OSError
         The file cannot be written; an existing one is untouched.
 
     Examples
     --------
-    >>> jid.save_report(jid.identify(recording, joint), "report.html").name
+    >>> jid.save_report(jid.identify(recording, joint), "report.html", recordings=recording).name
     'report.html'
     """
     target = require_path("path", path)
-    write_whole(target, report_page(result, action).encode())
+    write_whole(target, report_page(result, action, recordings).encode())
     return target

@@ -16,7 +16,7 @@ td:not(:first-child):not(:last-child) {{ white-space: nowrap; }}
 pre {{ overflow-x: auto; background: var(--well); padding: .6rem .8rem; font-size: .85rem; line-height: 1.4; }}
 th, td {{ padding: .25rem .8rem; border-bottom: 1px solid var(--grid); text-align: left; }}
 td:nth-child(2), td:nth-child(3) {{ text-align: right; }}
-table.facts td:nth-child(2) {{ text-align: left; }}
+table.facts td:nth-child(2) {{ text-align: left; overflow-wrap: anywhere; }}
 table.jointid td:last-child:not(:empty) {{ min-width: 9rem; }}
 table.numbers th {{ text-align: left; font-weight: normal; }} table.numbers td {{ text-align: right; }}
 figure {{ margin: 1rem 0; }} figcaption {{ color: var(--muted); font-size: .9rem; max-width: 46rem; }}

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from jointid.base.html import Html, element
 from jointid.report.drawing.decimation import distinct, outline
-from jointid.report.drawing.marks import Band, Bars, Level, Line, Mark, Points, numbers
+from jointid.report.drawing.marks import Band, Bars, Level, Line, Mark, Points, Shade, numbers
 from jointid.report.drawing.paths import area_path, bars_path, line_path, points_path, runs
 from jointid.report.drawing.scale import Places, Scale, drawable
 
@@ -29,6 +29,7 @@ def legend_sample(mark: Mark, across: int, up: int) -> Html:
         "points": f"M{across + 20} {up}h0M{across + 90} {up}h0M{across + 160} {up}h0",
         "band": f"M{across} {up - 50}h180v100h-180z",
         "bars": f"M{across} {up - 50}h180v100h-180z",
+        "shade": f"M{across} {up - 50}h180v100h-180z",
     }
     path = paths.get(kind, f"M{across} {up}h180")
     return element("path", class_=f"{kind} {mark.look}", d=path)
@@ -38,7 +39,7 @@ def mark_kind(mark: Mark) -> str:
     """Return the class that a mark has in the style sheet."""
     if isinstance(mark, Level) or (isinstance(mark, Line) and mark.dashed):
         return "dashed"
-    return {Points: "points", Band: "band", Bars: "bars"}.get(type(mark), "line")
+    return {Points: "points", Band: "band", Bars: "bars", Shade: "shade"}.get(type(mark), "line")
 
 
 def _kind_and_path(mark: Mark, across: Scale, up: Scale) -> tuple[str, str]:
@@ -49,6 +50,8 @@ def _kind_and_path(mark: Mark, across: Scale, up: Scale) -> tuple[str, str]:
         return kind, f"M{across.start} {int(up.places(mark.up))}H{across.stop}"
     if isinstance(mark, Band):
         return kind, _band(mark, across, up)
+    if isinstance(mark, Shade):
+        return kind, _shades(mark, across, up)
     if isinstance(mark, Bars):
         edges, values = across.places(mark.edges), numbers(mark.up)
         shown = drawable(values)
@@ -95,6 +98,19 @@ def _band(mark: Band, across: Scale, up: Scale) -> str:
             places, under, over = places[kept], under[kept], over[kept]
         paths.append(area_path(places, up.places(under), up.places(over)))
     return "".join(paths)
+
+
+def _shades(mark: Shade, across: Scale, up: Scale) -> str:
+    start, stop = across.places(mark.start), across.places(mark.stop)
+    # Each at least a pixel wide; what then touches is one.
+    stop = np.maximum(stop, start + UNIT)
+    apart = np.flatnonzero(start[1:] > np.maximum.accumulate(stop)[:-1] + UNIT) + 1
+    if len(start) == 0:
+        return ""
+    left = start[np.concatenate([[0], apart])]
+    right = np.maximum.accumulate(stop)[np.concatenate([apart - 1, [len(stop) - 1]])]
+    top = np.full(len(left), up.stop, dtype=np.int64)
+    return bars_path(left, np.minimum(right, across.stop), top, up.start)
 
 
 def _is_dense(places: Places, across: Scale) -> bool:

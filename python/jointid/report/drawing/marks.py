@@ -1,4 +1,4 @@
-"""What a picture is made of: lines, points, bands, bars and levels, on panels."""
+"""What a picture is made of: lines, points, bands, bars, levels and shades, on panels."""
 
 from __future__ import annotations
 
@@ -135,6 +135,25 @@ class Level(Mark):
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
         """What the two axes must have room for."""
         return (), (numbers([self.up]),)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Shade(Mark):
+    """Stretches of the axis across, shaded all over the panel's height.
+
+    Attributes
+    ----------
+    start, stop : array_like, shape (n,)
+    """
+
+    start: ArrayLike
+    stop: ArrayLike
+    look: str = "measured"
+    label: str = ""
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (numbers(self.start), numbers(self.stop)), ()
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

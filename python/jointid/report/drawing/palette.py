@@ -7,7 +7,6 @@ Each has a contrast of at least 3:1 against its ground, also where a band lies b
 from __future__ import annotations
 
 BAND = 0.15  # opacity of a filled area; more would take the contrast from the curves on it
-
 LIGHT = {
     "ground": "#ffffff",
     "ink": "#222222",
@@ -59,6 +58,9 @@ svg path {{ fill: none; vector-effect: non-scaling-stroke; stroke-width: 1.6px; 
 svg .grid {{ stroke: var(--grid); stroke-width: 1px; }} svg .axes {{ stroke: var(--muted); stroke-width: 1px; }}
 svg .points {{ stroke-width: 3.2px; }} svg .dashed {{ stroke-dasharray: 7 5; stroke-linecap: butt; }}
 svg .band {{ stroke-width: .6px; fill-opacity: {BAND}; }} svg .bars {{ stroke: none; fill-opacity: .75; }}
+svg .shade.measured {{ stroke: none; fill: var(--measured); fill-opacity: {BAND}; }}
+svg .readout {{ stroke: none; fill: transparent; pointer-events: all; }}
+svg .readout:hover {{ fill: var(--measured); fill-opacity: .35; }}
 {" ".join(f"svg .{look} {{ stroke: var(--{look}); }}" for look in LOOKS)}
 {" ".join(f"svg .band.{look}, svg .bars.{look} {{ fill: var(--{look}); }}" for look in LOOKS)}
 @media (max-width: 640px) {{ svg text {{ font-size: 170px; }} svg .points {{ stroke-width: 2.6px; }} }}

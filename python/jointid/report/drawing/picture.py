@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from jointid.base.html import Html, element
 from jointid.report.drawing.mark_paths import UNIT, legend_sample, mark_kind, mark_path
 from jointid.report.drawing.marks import Mark, Panel, numbers
+from jointid.report.drawing.pointed_values import readouts
 from jointid.report.drawing.scale import Scale, drawable, limits
 from jointid.report.drawing.ticks import Ticks, superscript
 
@@ -54,13 +55,14 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
     left = 80 + _LETTER * max(len(text) for each in ticks for text in (*each.texts, "0"))
     across = Scale(low, high, left, WIDTH * UNIT - _RIGHT)
     parts: list[Html | str] = []
-    below = 0
+    below = begin = 0
     for number, (panel, up, each) in enumerate(zip(panels, ranges, ticks, strict=True)):
         legend, below = _legend(panel, below)
         top = below + _LINE + 90
         named = _axis_title(panel.up, each.exponent)
         title_place = element("text", named, x="40", y=str(top - 110))
         foot = top + panel.height * UNIT
+        begin = begin or top
         upright = Scale(*up, foot, top, panel.logarithmic)
         last = number == len(panels) - 1
         parts += [*legend, title_place, *_axes(across, upright, each, panel.across if last else "")]
@@ -73,6 +75,7 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
                 element("text", "no values", class_="across", x=middle, y=str((top + foot) // 2))
             )
         below = foot + (2 * _LINE + 60 if last else 60)
+    parts += readouts(panels, across, begin, foot)
     said = f"{_summary(panels, ranges, (low, high))} {description}".strip()
     return element(
         "svg",

@@ -1,0 +1,117 @@
+"""Values under the pointer, without a program: strips over a picture, each with the values there as its title."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.html import Html, element
+from jointid.report.drawing.marks import Bars, Line, Mark, Panel, Points, numbers
+from jointid.report.drawing.paths import area_path
+from jointid.report.drawing.scale import Scale, drawable
+
+Array = NDArray[np.float64]
+
+_STRIPS = 80
+
+
+def readouts(panels: Sequence[Panel], across: Scale, top: int, foot: int) -> list[Html]:
+    """Return strips that cover panels with one axis across, each with what is drawn there.
+
+    A line is read in the middle of a strip, of points the nearest one in it, of bars the one that stands there.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+        Those with named rows have no numbers to read.
+    across : Scale
+    top, foot : int
+        Where the panels begin and end [tenths of a unit].
+
+    Returns
+    -------
+    list of Html
+        None where nothing is drawn.
+    """
+    edges = np.linspace(across.low, across.high, _STRIPS + 1)
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    read = [
+        (mark.label, panel.up, _values(mark, middles, float(edges[1] - edges[0])))
+        for panel in panels
+        if not panel.names
+        for mark in panel.marks
+    ]
+    columns = [(*_named(label, up), values) for label, up, values in read if values is not None]
+    name, unit = _named("", panels[-1].across)
+    places = across.places(edges)
+    strips = []
+    for number, middle in enumerate(middles.tolist()):
+        said = [
+            f"{label}: {_shown(float(values[number]))}{unit}"
+            for label, unit, values in columns
+            if np.isfinite(values[number])
+        ]
+        if not said:
+            continue
+        title = "\n".join([f"{name}: {_shown(middle)}{unit}", *said])
+        ends, there = places[number : number + 2], np.ones(2, dtype=np.int64)
+        path = area_path(ends, foot * there, top * there)
+        strips.append(element("path", element("title", title), class_="readout", d=path))
+    return strips
+
+
+def _values(mark: Mark, middles: Array, width: float) -> Array | None:
+    """A mark's value in each strip; NaN where it has none, None for what shows none."""
+    if isinstance(mark, Bars):
+        edges, up = numbers(mark.edges), numbers(mark.up)
+        if len(up) == 0:
+            return None
+        place = np.searchsorted(edges, middles, side="right") - 1
+        inside = (place >= 0) & (place < len(up))
+        return np.where(inside, up[np.clip(place, 0, len(up) - 1)], np.nan)
+    if not isinstance(mark, Line | Points):
+        return None
+    x, y = numbers(mark.across), numbers(mark.up)
+    if isinstance(mark, Line):
+        return _on_a_line(x, y, middles)
+    known = drawable(x) & drawable(y)
+    order = np.argsort(x[known], kind="stable")
+    return _nearest(x[known][order], y[known][order], middles, width)
+
+
+def _on_a_line(x: Array, y: Array, middles: Array) -> Array | None:
+    """Values of a line between its points; NaN in its gaps, None where it passes a place more than once."""
+    known = drawable(x) & drawable(y)
+    if not known.any() or (np.diff(x[known]) < 0.0).any():
+        return None
+    values = np.interp(middles, x[known], y[known], left=np.nan, right=np.nan)
+    # A gap has no place of its own: what lies between its neighbours is in it.
+    inside = np.flatnonzero(known)
+    after = np.minimum(np.searchsorted(x[inside], middles), len(inside) - 1)
+    before = np.maximum(after - 1, 0)
+    return np.where(inside[after] - inside[before] > 1, np.nan, values)
+
+
+def _nearest(x: Array, y: Array, middles: Array, width: float) -> Array | None:
+    """Values of the points that are nearest, in the strip itself; x increases."""
+    if len(x) == 0:
+        return None
+    after = np.minimum(np.searchsorted(x, middles), len(x) - 1)
+    before = np.maximum(after - 1, 0)
+    closer = np.abs(x[after] - middles) < np.abs(x[before] - middles)
+    nearest = np.where(closer, after, before)
+    near = np.abs(x[nearest] - middles) <= 0.5 * width
+    return np.where(near, y[nearest], np.nan)
+
+
+def _named(label: str, title: str) -> tuple[str, str]:
+    """A mark's name and unit: its label or what the axis shows."""
+    shown, _, unit = title.partition(" [")
+    unit = unit.removesuffix("]")
+    return label or shown, f" {unit}" if unit and unit != "1" else ""
+
+
+def _shown(value: float) -> str:
+    return f"{value:.4g}".replace("-", "\u2212")

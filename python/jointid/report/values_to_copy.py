@@ -1,0 +1,98 @@
+"""What a reader takes away: the values as a joint file and as a table, and the call that finds them again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from jointid._core import GaOptions
+from jointid.base.html import Html, element
+from jointid.estimate.estimate import Estimate
+
+
+def values_sections(estimate: Estimate) -> list[Html]:
+    """The blocks with their headings."""
+    return [
+        element("h2", "Values to copy", id="values"),
+        element("p", "As a joint file has them, with all digits:"),
+        element("pre", joint_file_lines(estimate)),
+        element("p", "As a table, for spreadsheets:"),
+        element("pre", table_lines(estimate)),
+        element("p", "The same values again, with what was chosen by itself:"),
+        element("pre", program(estimate)),
+    ]
+
+
+def joint_file_lines(estimate: Estimate) -> str:
+    """Return the values as the table [parameters] of a joint file."""
+    lines = (
+        f"{_key(p.name)} = {{ value = {float(p.value)!r} }}" for p in estimate.parameters.values()
+    )
+    return "\n".join(["[parameters]", *lines])
+
+
+def table_lines(estimate: Estimate) -> str:
+    """Return values, standard errors and 95 % intervals as comma-separated lines; empty: there is none."""
+    lines = ["name,value,stderr,lower,upper,unit"]
+    for p in estimate.parameters.values():
+        numbers = (p.value, p.stderr, *(p.interval or (None, None)))
+        shown = ("" if each is None else repr(float(each)) for each in numbers)
+        name = f'"{p.name}"' if "," in p.name else p.name
+        lines.append(",".join([name, *shown, p.unit]))
+    return "\n".join(lines)
+
+
+def program(estimate: Estimate) -> str:
+    """Return the lines of Python that find the same values in the same recordings.
+
+    Parameters
+    ----------
+    estimate : Estimate
+
+    Returns
+    -------
+    str
+        With the settings that were chosen by themselves; the joint is the one that `identify` was given.
+    """
+    settings = estimate.settings
+    windows = "cumulative" if settings["cumulative"] else settings["windows"]
+    runs = settings["recordings"]
+    what = "recording" if len(runs) == 1 else "recordings"
+    named = ", ".join(f"{run['name'] or 'unnamed'} ({run['fingerprint']})" for run in runs)
+    stated = {
+        "model": settings["model"],
+        "residual": settings["residual"],
+        "windows": windows,
+        "torque_hold": settings["torque_hold"],
+        "mask_standstill": settings["mask_standstill"],
+        "shift": settings["shift"],
+        "min_speed": settings["min_speed"],
+    }
+    arguments = [f"    {name}={value!r}," for name, value in stated.items() if value is not None]
+    genetic = ""
+    if settings["ga"] is not None and (changed := _changed(settings["ga"])):
+        genetic = f", ga=jid.GaOptions({changed})"
+    return "\n".join(
+        [
+            "import jointid as jid",
+            "",
+            f"# {what}: {named}",
+            "# joint: as it was given, or None; so are parameters that the call fixed or limited",
+            "estimate = jid.identify(",
+            f"    {what},",
+            "    joint,",
+            *arguments,
+            f"    search=jid.Search({settings['method']!r}{genetic}, seed={settings['seed']}),",
+            ")",
+        ]
+    )
+
+
+def _changed(genetic: Mapping[str, Any]) -> str:
+    usual = GaOptions().asdict()
+    return ", ".join(f"{k}={v!r}" for k, v in genetic.items() if usual.get(k) != v)
+
+
+def _key(name: str) -> str:
+    """A name as a key of TOML: bare where that is allowed."""
+    return name if name.replace("_", "").isalnum() and name.isascii() else f'"{name}"'
