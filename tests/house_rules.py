@@ -191,6 +191,7 @@ FOLDERS: dict[str, Folder] = {
                 "plot",
                 "report",
                 "exports",
+                "identification/warnings",
             ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
             *("hardware/emulated", "hardware/proof", "commissioning", "app", ""),

@@ -42,7 +42,7 @@ def test_demo_writes_a_report_with_its_pictures(tmp_path: Path) -> None:
     result = _run("demo", "--output", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     page = (tmp_path / "out" / "report.html").read_text()
-    assert page.count("<svg ") == 4
+    assert page.count("<svg ") == 6
     assert "http" not in page.replace("http://www.w3.org", "")
     assert "viscous" in result.stdout
     estimate = jid.Estimate.from_json((tmp_path / "out" / "estimate.json").read_text())
@@ -76,7 +76,7 @@ def test_identify_saves_into_the_joint_file(tmp_path: Path) -> None:
     kept = jid.Joint.load(joint)
     assert kept.parameters["viscous"].value == pytest.approx(2050.0, rel=0.15)
     assert "vertical axis" in joint.read_text()
-    assert report.read_text().count("<svg ") == 3
+    assert report.read_text().count("<svg ") == 5
 
 
 def test_info_shows_the_contents_of_a_recording(capsys: pytest.CaptureFixture[str]) -> None:

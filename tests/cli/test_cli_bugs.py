@@ -88,7 +88,7 @@ def test_what_is_no_bug(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr("jointid.cli.commands.load_all", raising(error))
+    monkeypatch.setattr("jointid.cli.contents.load_all", raising(error))
     assert main(["info", WELL]) == code
     written = capsys.readouterr().err
     assert written.startswith(text)
@@ -99,16 +99,16 @@ def test_a_full_disk_is_not_a_bug(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     full = OSError(errno.ENOSPC, "No space left on device")
-    monkeypatch.setattr("jointid.cli.commands.load_all", raising(full))
+    monkeypatch.setattr("jointid.cli.contents.load_all", raising(full))
     assert main(["info", WELL]) == 2
     assert capsys.readouterr().err == "jointid info: the output: No space left on device\n"
 
 
 def test_a_broken_pipe_that_is_not_our_output_is_not_passed_over() -> None:
     program = (
-        "import sys\nfrom jointid.cli import commands, main\n"
+        "import sys\nfrom jointid.cli import contents, main\n"
         "def broken(_):\n    raise BrokenPipeError\n"
-        "commands.info = broken\nsys.exit(main(['info', 'x.csv']))"
+        "contents.info = broken\nsys.exit(main(['info', 'x.csv']))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 70
@@ -120,7 +120,7 @@ def test_notes_of_a_bug_are_repeated_at_the_end(
 ) -> None:
     error = KeyError("injected")
     error.add_note("the motor is off")
-    monkeypatch.setattr("jointid.cli.commands.load_all", raising(error))
+    monkeypatch.setattr("jointid.cli.contents.load_all", raising(error))
     assert main(["info", WELL]) == 70
     assert capsys.readouterr().err.splitlines()[-1].endswith("(the motor is off)")
 
@@ -136,7 +136,7 @@ def test_the_end_of_the_input_is_a_no(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_an_error_of_the_system_without_a_file_is_a_bug(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("jointid.cli.commands.load_all", raising(OSError("injected")))
+    monkeypatch.setattr("jointid.cli.contents.load_all", raising(OSError("injected")))
     assert main(["info", WELL]) == 70
     assert "injected" in capsys.readouterr().err
 

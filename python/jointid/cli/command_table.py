@@ -78,7 +78,7 @@ _TABLE = {
     "info": (
         "show what a recording holds",
         "jointid.cli.grammar:add_info",
-        "jointid.cli.commands:info",
+        "jointid.cli.contents:info",
     ),
 }
 HELP = {command: row[0] for command, row in _TABLE.items()}

@@ -1,13 +1,12 @@
-"""The commands `demo`, `identify`, `compare`, `report` and `info`; heavy imports stay inside the functions."""
+"""The commands `demo`, `identify`, `compare` and `report`; heavy imports stay inside the functions."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
@@ -230,51 +229,6 @@ def report(arguments: argparse.Namespace) -> None:
         print(f"report: {page}")
 
 
-def info(arguments: argparse.Namespace) -> None:
-    """Show what a recording holds."""
-    import json
-
-    (recording,) = load_all([arguments.recording], arguments)
-    contents = _contents(recording, Wording.of(arguments))
-    if names := _unrecognised(arguments):
-        contents["columns not recognised"] = names
-    if arguments.json:
-        print(json.dumps(contents, indent=1, ensure_ascii=False))
-        return
-    for label, value in contents.items():
-        if isinstance(value, dict):
-            print(f"{label}:")
-            for signal, entry in value.items():
-                print(
-                    f"  {signal:14s} {entry['min']:12.6g} … {entry['max']:<12.6g} {entry['unit']}"
-                )
-        else:
-            print(f"{label}: {value}")
-
-
-def _unrecognised(arguments: argparse.Namespace) -> str:
-    """The columns that no option names and whose headers name no signal, the first twelve of them."""
-    from jointid.recording.headers import understood
-    from jointid.recording.readers.loading import table_of
-
-    table = table_of(
-        arguments.recording,
-        topic=arguments.topic,
-        group=arguments.group,
-        unpacked=arguments.unpacked,
-    )
-    if table.saved is not None:
-        return ""
-    named = {header for _, header in (*arguments.column, *arguments.extra)}
-    names = [
-        header
-        for k, header in enumerate(table.headers)
-        if understood(header).meaning is None and not named & {header, str(k)}
-    ]
-    more = f" and {len(names) - 12} more" if len(names) > 12 else ""
-    return ", ".join(names[:12]) + more
-
-
 def _write(
     estimate: Estimate,
     arguments: argparse.Namespace,
@@ -323,60 +277,3 @@ def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
         file=sys.stderr,
     )
     return BAD_INPUT
-
-
-def _contents(recording: Recording, wording: Wording) -> dict[str, Any]:
-    from jointid.recording.file_remarks import remarks
-    from jointid.recording.plausibility import slow_stamps
-
-    contents = _facts(recording)
-    if (slow := slow_stamps(recording.sample_period)) is not None:
-        cause, unit = slow
-        advice = wording.of_action(Action("call", {"units": {"time": unit}}, function="load"))
-        contents["warning"] = f"{cause}; {advice}"
-    assumed, left_out = (recording.metadata.get(key) for key in ("assumed_units", "left_out"))
-    if assumed and isinstance(assumed, list | tuple):
-        contents["SI units assumed"] = ", ".join(map(str, assumed))
-    recognised = recording.metadata.get("recognised_units")
-    if recognised and isinstance(recognised, Mapping):
-        contents["units recognised"] = ", ".join(f"{k} in {v}" for k, v in recognised.items())
-    if left_out and isinstance(left_out, list | tuple):
-        columns = [each for each in left_out if isinstance(each, Mapping)]
-        contents["not read"] = "; ".join(f"{x.get('column')} ({x.get('reason')})" for x in columns)
-    interpolated = recording.metadata.get("interpolated")
-    if interpolated and isinstance(interpolated, Mapping):
-        contents["interpolated"] = ", ".join(f"{k} (every {v})" for k, v in interpolated.items())
-    if recording.metadata.get("topic"):
-        contents["topic"] = recording.metadata["topic"]
-    if said := remarks(recording.metadata):
-        contents["read"] = "; ".join(said)
-    return contents
-
-
-def _facts(recording: Recording) -> dict[str, Any]:
-    return {
-        "name": recording.name,
-        "kind": recording.kind,
-        "samples": len(recording),
-        "duration [s]": round(recording.duration, 9),
-        "sample period [s]": round(recording.sample_period, 9),
-        "gaps": len(recording.gaps),
-        "velocity": "derived from the position" if recording.velocity_derived else "recorded",
-        "fingerprint": recording.fingerprint,
-        "signals": {
-            signal: {
-                "min": float(getattr(recording, signal).min()),
-                "max": float(getattr(recording, signal).max()),
-                "unit": recording.unit(signal),
-            }
-            for signal in recording.signals
-        }
-        | {
-            name: {
-                "min": float(values.min()),
-                "max": float(values.max()),
-                "unit": recording.unit(name),
-            }
-            for name, values in recording.extra.items()
-        },
-    }
