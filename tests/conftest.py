@@ -7,7 +7,12 @@ from pathlib import Path
 
 import pytest
 from emps_files import TABLE, WITHOUT_EMPS, folder_of_emps, with_table
+from hypothesis import HealthCheck, settings
 from slowest_files import phases, place_of, slowest_files
+
+# How long an example takes says how busy the machine is.
+settings.register_profile("jointid", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("jointid")
 
 # What a shell starts in the background ignores Ctrl-C, and its children do. Tests that interrupt a long simulation
 # would then wait until memory is full.

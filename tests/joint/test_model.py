@@ -3,6 +3,7 @@
 import pickle
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -95,7 +96,7 @@ def test_a_resolved_model_leaves_nothing_open(model: Model) -> None:
         ({"gravity": "yes"}, "gravity"),
         ({"asymmetric": 1}, "asymmetric"),
         ({"load_friction": "no"}, "load_friction"),
-        ({"ripple": 2}, "ripple"),
+        ({"ripple": True}, "ripple"),
         ({"ripple": "2"}, "ripple"),
         ({"ripple": {2: 1}}, "ripple"),
         ({"ripple": [0]}, "ripple"),
@@ -144,3 +145,17 @@ def test_models_with_own_terms_in_another_order_keep_their_texts() -> None:
     other = Model("stribeck", terms={"q6": "viscous", "q5": "viscous"})
     assert str(one.resolved) == str(one)
     assert str(other.resolved) == str(other)
+
+
+@pytest.mark.parametrize("field", ["ripple", "harmonics"])
+def test_a_single_order_may_be_a_number(field: str) -> None:
+    def made(value: Any) -> Model:
+        given: dict[str, Any] = {field: value}
+        assert Model.of({"name": "stribeck", **given}) == Model("stribeck", **given)
+        return Model("stribeck", **given)
+
+    for order in (2, 2.0, np.float64(2.0), np.int64(2)):
+        assert made(order) == made((2.0,))
+    for wrong in (True, 0, -1.0, float("nan"), "2"):
+        with pytest.raises(InputError, match=field):
+            made(wrong)

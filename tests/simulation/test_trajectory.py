@@ -183,3 +183,14 @@ def test_a_trajectory_of_many_samples_shows_one_short_line() -> None:
     assert len(repr(motion)) < 120
     assert "2 s" in repr(motion)
     assert "rad/s" in motion._repr_html_()
+
+
+def test_sines_take_a_number_for_all() -> None:
+    single = Trajectory.sines(amplitude=0.3, frequency=2.0, phase=0.0, duration=4.0)
+    assert single == Trajectory.sines(amplitude=[0.3], frequency=[2.0], phase=[0.0], duration=4.0)
+    two = Trajectory.sines(amplitude=0.3, frequency=[2.0, 5.0], phase=0.0, duration=4.0)
+    assert two == Trajectory.sines(
+        amplitude=[0.3, 0.3], frequency=[2.0, 5.0], phase=[0.0, 0.0], duration=4.0
+    )
+    with pytest.raises(InputError):
+        Trajectory.sines(amplitude=[0.3, 0.1], frequency=[2.0] * 3, phase=0.0, duration=4.0)

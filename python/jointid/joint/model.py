@@ -6,6 +6,7 @@ import functools
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import KW_ONLY, fields, replace
+from numbers import Real
 from typing import Any, Literal, Self, get_args
 
 from jointid import _core
@@ -50,7 +51,7 @@ class Model:
         Whether friction differs between the two directions. Default False.
     ripple : collection of float, optional
         Orders of a torque that is periodic in the motor's angle, e.g. (2,) for a strain-wave gear; each
-        has a sine and a cosine coefficient [N·m]. Default none.
+        has a sine and a cosine coefficient [N·m]; a single order may be a number. Default none.
     harmonics : collection of float, optional
         Orders of a torque that is periodic in the joint's angle. Default none.
     load_friction : bool or {"drive", "link"}, optional
@@ -262,16 +263,17 @@ def _check_field(key: object) -> None:
 
 def _orders(field: str, value: Any) -> tuple[float, ...]:
     """Return the orders of a harmonic as a tuple of different positive numbers."""
-    values = _listed(field, value, "a list of orders like [2] is expected")
+    single = isinstance(value, Real) and not isinstance(value, bool)
+    values = (value,) if single else _listed(field, value, "orders like [2] or 2 are expected")
     try:
         orders = tuple(finite_number("", field, order) for order in values)
     except InputError:
-        raise _refused(field, value, "different orders above 0 are expected, like [2]") from None
+        raise _refused(field, values, "different orders above 0 are expected, like [2]") from None
     if any(order <= 0.0 for order in orders) or len(set(orders)) < len(orders):
-        raise _refused(field, value, "different orders above 0 are expected, like [2]")
+        raise _refused(field, values, "different orders above 0 are expected, like [2]")
     # An order is part of its parameter's name, with six digits.
     if any(not _core.is_parameter(f"ripple_cos_{o:g}") or float(f"{o:g}") != o for o in orders):
-        raise _refused(field, value, "orders have at most six digits")
+        raise _refused(field, values, "orders have at most six digits")
     return orders
 
 

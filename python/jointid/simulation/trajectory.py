@@ -145,9 +145,9 @@ class Trajectory:
     def sines(
         cls,
         *,
-        amplitude: Sequence[float],
-        frequency: Sequence[float],
-        phase: Sequence[float],
+        amplitude: float | Sequence[float],
+        frequency: float | Sequence[float],
+        phase: float | Sequence[float],
         offset: float = 0.0,
         fade: float = 0.0,
         duration: float,
@@ -156,11 +156,11 @@ class Trajectory:
 
         Parameters
         ----------
-        amplitude : sequence of float
-            Of each sine [rad].
-        frequency : sequence of float
+        amplitude : float or sequence of float
+            Of each sine [rad]; a single number here or below holds for all of them.
+        frequency : float or sequence of float
             [rad/s]
-        phase : sequence of float
+        phase : float or sequence of float
             [rad]
         offset : float
             [rad]. Default 0.
@@ -179,7 +179,12 @@ class Trajectory:
         [0.0, 0.0, 0.0]
         """
         groups = {"amplitude": amplitude, "frequency": frequency, "phase": phase}
-        given = {name: _samples(name, values) for name, values in groups.items()}
+        sizes = {np.size(values) for values in groups.values() if np.ndim(values)}
+        count = sizes.pop() if len(sizes) == 1 else 1
+        given = {
+            name: _samples(name, values if np.ndim(values) else np.full(count, values))
+            for name, values in groups.items()
+        }
         for value in given["amplitude"]:
             _extent("amplitude", value)
         return cls._made("multisine", **given, offset=offset, duration=duration, fade=fade)
