@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from jointid.recording.recording import Recording
     from jointid.robot.comparison_result import RobotComparison
     from jointid.robot.result import RobotEstimate
+    from jointid.servo.estimate import ServoEstimate
     from jointid.study.study_result import Study
 
     Result: TypeAlias = (
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
         | JointEstimates
         | RobotEstimate
         | RobotComparison
+        | ServoEstimate
         | Comparison
         | Study
         | Design
@@ -42,6 +44,7 @@ _PAGES = {
     "RobotEstimate": "robot_page:robot_report",
     "RobotComparison": "robot_page:robot_comparison_report",
     "Comparison": "comparison_page:comparison_report",
+    "ServoEstimate": "servo_page:servo_report",
     "Commissioning": "session_page:session_report",
 }
 _WITHOUT_FINDINGS = {"Study": "study_page:study_report", "Design": "design_page:design_report"}
@@ -56,7 +59,7 @@ def report_page(
 
     Parameters
     ----------
-    result : Estimate, JointEstimates, RobotEstimate, Comparison, RobotComparison, Study, Design or Commissioning
+    result : Estimate, JointEstimates, RobotEstimate, ServoEstimate, Comparison, RobotComparison, Study, Design, ...
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
     recordings : Recording or sequence of Recording, optional
@@ -104,9 +107,9 @@ def save_report(
 
     Parameters
     ----------
-    result : Estimate, JointEstimates, RobotEstimate, Comparison, RobotComparison, Study, Design or Commissioning
-        What `identify`, `identify_joints`, `identify_robot`, `compare_models`, `compare_robot_models`, `sweep`,
-        `design_excitation` and `commission` return.
+    result : Estimate, JointEstimates, RobotEstimate, ServoEstimate, Comparison, RobotComparison, Study, Design, ...
+        What `identify`, `identify_joints`, `identify_robot`, `identify_servo`, `compare_models`,
+        `compare_robot_models`, `sweep`, `design_excitation` and `commission` return.
     path : path
         Replaced when it exists.
     action : callable

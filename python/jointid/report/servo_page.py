@@ -23,18 +23,18 @@ _MOST = 40  # runs with a picture
 
 def servo_report(
     estimate: ServoEstimate,
-    rollout: Rollout | None = None,
     action: Callable[[Action], str] = str,
+    rollout: Rollout | None = None,
 ) -> str:
     """The report as one HTML page: parameters, findings, and each run's closed loop beside its log.
 
     Parameters
     ----------
     estimate : ServoEstimate
-    rollout : Rollout, optional
-        Of runs. Default: no such section.
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
+    rollout : Rollout, optional
+        Of runs. Default: no such section.
     """
     title = f"{estimate.joint.name or 'servo'}: motor and friction, identified by jointid"
     body: list[Html | str] = [
@@ -66,7 +66,7 @@ def save_servo_report(
 ) -> Path:
     """Write the report, whole or not at all; see `save_report`."""
     target = require_path("path", path)
-    write_whole(target, servo_report(estimate, rollout, action).encode())
+    write_whole(target, servo_report(estimate, action, rollout).encode())
     return target
 
 
