@@ -12,12 +12,14 @@ import defects
 import moving_joints
 import small_arm
 from designs import designed
+from simulated_servo import Truth, bench_runs, servo_joint
 
 import jointid as jid
 from jointid.cli.demo import data_folder
 from jointid.commissioning import Commissioning, commission
 from jointid.hardware.bench.bench import Bench
 from jointid.report.saving import report_page
+from jointid.report.servo_page import servo_report
 
 HOSTILE = "</title></svg><script>document.title = 'run'</script><img src=x onerror=\"document.title = 'run'\">'&"
 _EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "hardware" / "joint.toml"
@@ -76,6 +78,13 @@ def study() -> jid.Study:
         search="separable",
         truth={name: p.value for name, p in joint.parameters.items() if p.value is not None},
     )
+
+
+def of_a_servo() -> str:
+    """With rollouts; the joint is named by somebody hostile."""
+    runs = bench_runs(Truth(), seed=2)
+    found = jid.identify_servo(runs, replace(servo_joint(), name=HOSTILE))
+    return servo_report(found, rollout=jid.rollout(found, runs[:3]))
 
 
 def of_a_study() -> str:
@@ -145,7 +154,7 @@ PAGES: tuple[Callable[[], str], ...] = (
         of_a_named_comparison,
     ),
     *(of_a_study, of_a_study_of_rows, of_a_design, of_a_refused_design),
-    *(of_a_robot, of_a_robot_comparison),
+    *(of_a_robot, of_a_robot_comparison, of_a_servo),
     *(of_a_session, of_a_stopped_session),
 )
 

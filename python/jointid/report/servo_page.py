@@ -11,6 +11,7 @@ from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
 from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
+from jointid.report.answering import verdict_lines
 from jointid.report.drawing.marks import Line, Panel
 from jointid.report.figure import captioned
 from jointid.report.style import STYLE, WIDE
@@ -39,6 +40,7 @@ def servo_report(
     title = f"{estimate.joint.name or 'servo'}: motor and friction, identified by jointid"
     body: list[Html | str] = [
         element("h1", title),
+        *verdict_lines(estimate.verdict, estimate.findings, action=action),
         element(
             "p",
             f"From {len(estimate.runs)} runs without a torque signal, by integrals of the torque balance over "

@@ -25,6 +25,7 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
         "joint": joint_document(estimate.joint),
         "parameters": {name: plain(p) for name, p in estimate.parameters.items()},
         "findings": plain(estimate.findings),
+        "verdict": estimate.verdict.document(),
         "rms": estimate.rms,
         "relative_residual": estimate.relative_residual,
         "settings": {

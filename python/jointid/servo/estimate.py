@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
+
+if TYPE_CHECKING:
+    from jointid.estimate.verdict import Verdict
 
 Array = NDArray[np.float64]
 
@@ -83,6 +86,13 @@ class ServoEstimate:
     def warnings(self) -> tuple[Finding, ...]:
         """The findings that may bias values or make them unusable."""
         return tuple(each for each in self.findings if each.severity != "info")
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the values may be used, for compensation, for simulation and for monitoring."""
+        from jointid.servo.verdict import judged_servo
+
+        return judged_servo(self)
 
     def __getitem__(self, name: str) -> float:
         """Return a parameter's value.

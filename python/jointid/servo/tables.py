@@ -180,6 +180,8 @@ def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) 
         f"{estimate.windows} windows of {1e3 * estimate.window:g} ms, "
         f"{100.0 * used:.0f} % of the time used",
         "",
+        *estimate.verdict.lines(),
+        "",
         *aligned([head(), *rows(estimate)]),
         "",
         f"fit       {1e3 * estimate.rms:.3g} mN·m left, "

@@ -1,0 +1,66 @@
+"""Whether the numbers of a servo's estimate may be used, and for what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from jointid.estimate.verdict import (
+    EXPLAINED,
+    Objection,
+    Verdict,
+    concluded,
+    explained_text,
+    to_changes,
+    use_by,
+)
+from jointid.servo.estimate import ServoEstimate
+
+_COMPENSATED = frozenset(("torque_per_voltage", "viscous", "coulomb", "load_friction"))
+
+
+def judged_servo(estimate: ServoEstimate) -> Verdict:
+    """Judge a servo's estimate by its findings.
+
+    Not usable: a blocking finding, or less than 90 % of the load's squared torque explained. Usable with care: a
+    warning. Usable: else. Compensation needs friction and what turns a torque into a duty, simulation all values.
+
+    Parameters
+    ----------
+    estimate : ServoEstimate
+
+    Returns
+    -------
+    Verdict
+
+    Examples
+    --------
+    >>> found = jid.identify_servo(servo_runs, servo)
+    >>> found.verdict.level in ("usable", "usable with care", "not usable")
+    True
+    """
+    objections = [*_objections(estimate)]
+    asked = tuple(estimate.parameters)
+    uses = {
+        "compensation": use_by(objections, asked, _COMPENSATED.__contains__),
+        "simulation": use_by(objections, asked, lambda _: True),
+        "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
+    }
+    return concluded(uses, objections)
+
+
+def _objections(estimate: ServoEstimate) -> Iterable[Objection]:
+    for found in estimate.warnings:
+        yield Objection(
+            code=found.code,
+            reason=found.cause,
+            blocking=found.severity == "blocking",
+            parameters=tuple(name for name in found.parameters if name in estimate.parameters),
+        )
+    explained = 1.0 - estimate.relative_residual**2
+    if not explained >= EXPLAINED:
+        yield Objection(
+            code="explained",
+            reason=explained_text(explained, "the load's torque"),
+            blocking=True,
+            parameters=(),
+        )
