@@ -214,6 +214,33 @@ def test_a_simulation_needs_an_inertia_that_is_known() -> None:
     assert replace(free, parameters=known).verdict.level == "usable with care"
 
 
+def test_an_inertia_on_its_bound_simulates_nothing() -> None:
+    bounded = {**estimate().parameters}
+    bounded["inertia"] = replace(bounded["inertia"], vary=True, at_bound="min", interval=None)
+    found = replace(
+        estimate(), parameters=bounded, free=tuple(n for n in estimate().free if n != "inertia")
+    )
+    assert found.verdict.uses["simulation"].level == "not usable"
+    assert found.verdict.uses["compensation"].level == "usable"
+    assert any("inertia" in reason and "bound" in reason for reason in found.verdict.reasons)
+
+
+def test_no_name_excuses_values_that_miss_everything() -> None:
+    """An inertia ten times too large: the cause has a name, and no value is worth anything."""
+    bare = jid.Recording(
+        time=good().time,
+        position=good().position,
+        velocity=good().velocity,
+        torque=good().torque,
+    )
+    found = jid.identify(bare, jid.Joint(inertia=30.0))
+    assert found.residuals.r_squared < 0.0
+    assert found.verdict.level == "not usable"
+    assert {use.level for use in found.verdict.uses.values()} == {"not usable"}
+    wrong = next(each for each in found.findings if each.code == "wrong_scale")
+    assert wrong.severity == "blocking"
+
+
 def test_an_info_does_not_matter_and_a_blocking_finding_always() -> None:
     told = Finding(code="gaps", severity="info", cause="samples are missing")
     assert with_findings(told).verdict.level == "usable"

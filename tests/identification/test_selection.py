@@ -92,6 +92,29 @@ def test_what_is_stated_stays() -> None:
     )
 
 
+def test_a_described_link_has_its_weight_where_the_log_shows_it() -> None:
+    weight = jid.Link(mass=1.0, centre_of_mass=4.0 / 9.80665, angle=-np.pi / 2.0)
+    hanging = chosen(recording(static=5.0, gravity=4.0), jid.Joint(link=weight))
+    assert hanging.model == "stribeck:gravity=known"
+    upright = chosen(recording(static=5.0), jid.Joint(link=weight))
+    assert upright.model == "stribeck"
+    stated = jid.Joint(link=weight, model=jid.Model(gravity="none"))
+    assert chosen(recording(static=5.0, gravity=4.0), stated).model == "stribeck"
+
+
+def test_a_link_that_is_described_wrongly_does_not_win_and_is_named() -> None:
+    for mass, angle in ((10.0, -np.pi / 2.0), (1.0, 0.0)):
+        link = jid.Link(mass=mass, centre_of_mass=4.0 / 9.80665, angle=angle)
+        loaded, joint = recording(gravity=4.0), jid.Joint(link=link)
+        found = jid.identify(loaded, joint, search="separable")
+        assert found.settings["model"] == "coulomb_viscous:gravity=free"
+        assert found["coulomb"].value == pytest.approx(8.0, rel=0.02)
+        known = jid.identify(
+            loaded, joint, model=jid.Model("coulomb_viscous", gravity="known"), search="separable"
+        )
+        assert "gravity" in {each.code for each in known.warnings}
+
+
 def test_a_parameter_of_the_call_has_its_model() -> None:
     plain = recording()
     found = jid.identify(plain, parameters={"static": 0.5}, search="separable")

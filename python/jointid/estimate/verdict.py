@@ -136,10 +136,11 @@ def judged(
 ) -> Verdict:
     """Judge an estimate by its findings.
 
-    Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
-    variance explained by the model and a cause that a finding names (of held-out torque where the model was chosen by
-    it, unless the windows are explained worse than by their mean and more than 10 % of their squares are left); for
-    simulation also an undetermined inertia whose 95 % interval reaches zero. Usable with care: a warning, or a
+    Not usable: a blocking finding, a parameter asked for whose self-test fails, or less
+    than 90 % of the windows' variance explained by the model and a cause that a finding names (of held-out torque
+    where the model was chosen by it; neither counts where the windows are explained worse than by their mean and more
+    than 10 % of their squares are left); for simulation also an inertia on its bound, or an undetermined one whose
+    95 % interval reaches zero. Usable with care: a warning, or a
     tolerance of the given facts of more than 5 % that is larger than everything else together. Usable: else.
 
     Parameters
@@ -238,7 +239,8 @@ def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Obje
                 parameters=_free(estimate, found),
             )
     explained, of_what = _explained(estimate)
-    explained = 1.0 - (1.0 - explained) * (1.0 - _named_share(estimate))
+    if not _missed(estimate):
+        explained = 1.0 - (1.0 - explained) * (1.0 - _named_share(estimate))
     if not explained >= EXPLAINED:
         yield Objection(
             code="explained",
@@ -274,11 +276,17 @@ def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Obje
         if found.code == "undetermined"
         for name in _free(estimate, found)
     }
-    for name in asked:
-        p = estimate.parameters.get(name)
-        if p is None or name not in doubted or name.partition("[")[0] != "inertia":
+    for name, p in estimate.parameters.items():
+        if name.partition("[")[0] != "inertia":
             continue
-        if p.interval is not None and p.interval[0] <= 0.0:
+        if p.at_bound is not None:  # such a one is not among the free ones
+            yield Objection(
+                code="at_bound",
+                reason=f"a simulation needs {name}, and it ended on its bound",
+                blocking=True,
+                parameters=(name,),
+            )
+        elif name in asked and name in doubted and p.interval is not None and p.interval[0] <= 0.0:
             yield Objection(
                 code="undetermined",
                 reason=f"a simulation needs {name}, and its 95 % interval reaches zero",
@@ -308,12 +316,17 @@ def _explained(estimate: Estimate) -> tuple[float, str]:
     them is late. A reading that hardly varies may be explained worse than by its mean, but little of it is left.
     """
     left = estimate.residuals
-    apart = left.r_squared < 0.0 and left.relative**2 > 1.0 - EXPLAINED
-    if estimate.selection is not None and not apart:
+    if estimate.selection is not None and not _missed(estimate):
         chosen = estimate.selection[estimate.selection.model]
         if math.isfinite(chosen.score):
             return 1.0 - chosen.score**2, "the held-out torque"
     return left.r_squared, "the windows"
+
+
+def _missed(estimate: Estimate) -> bool:
+    """Whether what was measured is missed altogether: a cause's name excuses no such values."""
+    left = estimate.residuals
+    return left.r_squared < 0.0 and left.relative**2 > 1.0 - EXPLAINED
 
 
 def _rests_on_given(p: ParameterEstimate) -> bool:

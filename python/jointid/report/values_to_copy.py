@@ -8,6 +8,7 @@ from typing import Any
 from jointid._core import GaOptions
 from jointid.base.html import Html, element
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.settings import model_of
 
 
 def values_sections(estimate: Estimate) -> list[Html]:
@@ -55,18 +56,18 @@ def program(estimate: Estimate) -> str:
         With the settings that were chosen by themselves; the joint is the one that `identify` was given.
     """
     settings = estimate.settings
-    windows = "cumulative" if settings["cumulative"] else settings["windows"]
+    windows = "cumulative" if settings.get("cumulative") else settings["windows"]
     runs = settings["recordings"]
     what = "recording" if len(runs) == 1 else "recordings"
     named = ", ".join(f"{run['name'] or 'unnamed'} ({run['fingerprint']})" for run in runs)
     stated = {
-        "model": settings["model"],
+        "model": str(model_of(settings)),
         "residual": settings["residual"],
         "windows": windows,
         "torque_hold": settings["torque_hold"],
         "mask_standstill": settings["mask_standstill"],
-        "shift": settings["shift"],
-        "min_speed": settings["min_speed"],
+        "shift": settings.get("shift"),
+        "min_speed": settings.get("min_speed"),
     }
     arguments = [f"    {name}={value!r}," for name, value in stated.items() if value is not None]
     genetic = ""
@@ -90,7 +91,7 @@ def program(estimate: Estimate) -> str:
 
 def _changed(genetic: Mapping[str, Any]) -> str:
     usual = GaOptions().asdict()
-    return ", ".join(f"{k}={v!r}" for k, v in genetic.items() if usual.get(k) != v)
+    return ", ".join(f"{k}={v!r}" for k, v in genetic.items() if k in usual and usual[k] != v)
 
 
 def _key(name: str) -> str:

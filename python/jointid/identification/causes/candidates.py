@@ -59,9 +59,13 @@ def listed_candidates(fit: Fitted, only: str = "") -> list[Candidate]:
 
 
 def _gravity(fit: Fitted) -> Iterator[Candidate]:
-    """Without a sensor, which feels the link's: beside one it would take the place of a wrong gain."""
-    known = {"gravity_cos", "sensor_gain"} & set(fit.names)
-    if _revolute(fit) and not known and not _has_order(fit, "position", 1.0):
+    """Without a sensor, which feels the link's: beside one it would take the place of a wrong gain.
+
+    Also beside the weight of a link as described, which may be described wrongly.
+    """
+    free = {fit.names[index] for index in fit.free}
+    there = "sensor_gain" in fit.names or {"gravity_cos", "gravity_sin"} & free
+    if _revolute(fit) and not there and not _has_order(fit, "position", 1.0):
         yield Candidate(name="gravity", columns=_angle(fit, 1.0))
 
 

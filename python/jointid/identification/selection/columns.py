@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,6 +110,10 @@ class ShapedColumns:
             shaped=shaped,
             known=tuple(known[:count]),
         )
+
+    def stated(self, known: Sequence[Parameter]) -> ShapedColumns:
+        """Return the same columns where other coefficients are known; shapes stay."""
+        return replace(self, known=tuple(known[: len(self.keys)]))
 
     def free(self, choice: TermChoice | None) -> list[int]:
         """Return the free coefficients of a model; of all terms if None."""

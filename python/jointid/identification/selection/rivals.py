@@ -42,8 +42,8 @@ def candidates(
     """Return the models that compete, the simplest first; the last one has the terms of all.
 
     Gravity competes where it is not stated and where only the drive's torque shows it: on a revolute
-    joint without a torque sensor, whose link is not described, without a harmonic of order 1, and without an own
-    term that is a torque: who states a model's torque has stated its gravity.
+    joint without a torque sensor, without a harmonic of order 1, and without an own term that is a torque: who
+    states a model's torque has stated its gravity. Of a described link the weight competes as it is described, too.
 
     Parameters
     ----------
@@ -66,21 +66,20 @@ def candidates(
 
     gravities: tuple[Gravity | None, ...] = (stated.gravity,)
     simplest = candidate(NAMES[0], stated.gravity)
-    if stated.gravity is None and _may_load(runs, joint, stated, simplest.choice):
-        gravities = ("none", "free")
+    if stated.gravity is None and _may_load(runs, stated, simplest.choice):
+        # Who describes a link need not have thought of its weight; on an upright axis it has none.
+        described = joint is not None and joint.link is not None
+        gravities = ("none", "known", "free") if described else ("none", "free")
     made = tuple(candidate(name, gravity) for gravity in gravities for name in NAMES)
     wanted = {name.partition("[")[0] for name in _named(parameters)}
     fitting = tuple(each for each in made if wanted <= _parameters(each.choice))
     return fitting or made
 
 
-def _may_load(
-    runs: Sequence[Recording], joint: Joint | None, stated: Model, choice: TermChoice
-) -> bool:
+def _may_load(runs: Sequence[Recording], stated: Model, choice: TermChoice) -> bool:
     return (
         runs[0].kind == "revolute"
         and not choice.sensor
-        and (joint is None or joint.link is None)
         and _GRAVITY_ORDER not in (stated.harmonics or ())
         and not any(
             own.kind in TORQUES and not own.rate for own in OwnTerms.of(stated.terms or {}).each

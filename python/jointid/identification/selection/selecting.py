@@ -75,10 +75,16 @@ def select_model(
         else:
             blocks = held_out(penalty.window_count)
             if len(blocks) > 1:
-                known = known_parameters(tuple(penalty.names), problem.joint, parameters)
+                names = tuple(penalty.names)
+                known = known_parameters(names, problem.joint, parameters)
                 columns = ShapedColumns.of(penalty, known, problem.peak_speed, problem.threads)
                 sums = BlockSums.of(columns.matrix, blocks, problem.threads)
-                entries = [_unless(unfit or {}, entry_of(rival, columns, sums)) for rival in rivals]
+                for rival in rivals:
+                    own = columns
+                    if _weighs(rival) and problem.joint is not None:
+                        joint = problem.joint.replace(model=rival.model)
+                        own = columns.stated(known_parameters(names, joint, parameters))
+                    entries.append(_unless(unfit or {}, entry_of(rival, own, sums)))
                 energy = float(sums.products[:, -1, -1].sum())
     winner, selection = _judged(entries, energy) if entries else _alone(rivals[0])
     return _with(problem, winner), selection
@@ -102,6 +108,11 @@ def _with(problem: Problem, candidate: Candidate) -> Problem:
 def _unless(unfit: Mapping[str, str], entry: Entry) -> Entry:
     reason = unfit.get(str(entry.candidate.choice.model.resolved))
     return replace(entry, refused=reason) if reason else entry
+
+
+def _weighs(candidate: Candidate) -> bool:
+    """Whether a candidate has the weight of the joint's link as described."""
+    return candidate.model.gravity == "known"
 
 
 def _alone(candidate: Candidate) -> tuple[Candidate, Selection]:

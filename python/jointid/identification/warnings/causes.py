@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from jointid.estimate.causes import MEANINGS, Cause
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.ripple import RIPPLE
@@ -28,6 +28,7 @@ _REMEDIES = {
     "offset": "let the joint have a torque_offset",
 }
 
+_LITTLE = 0.1  # of the squares
 _NOTED = (
     0.3  # share of the misfit that a harmless cause explains; of less `estimate.causes()` speaks
 )
@@ -53,7 +54,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     for number, cause in enumerate(causes):
         # The misfit makes values uncertain beside those that a shift of first order shows.
         names = (*cause.relative, *(uncertain if number == 0 else ()))
-        yield _finding(cause, with_partners(evidence, names))
+        yield _finding(cause, with_partners(evidence, names), missed=_missed(evidence))
     for cause in evidence.causes.harmless:
         if cause.share > _NOTED and not _is_known_delay(cause, evidence):
             yield _note(cause)
@@ -64,12 +65,19 @@ def _is_known_delay(cause: Cause, evidence: Evidence) -> bool:
     return delay is not None and delay.certain
 
 
-def _finding(cause: Cause, concerned: tuple[str, ...]) -> Finding:
+def _missed(evidence: Evidence) -> bool:
+    """Whether the mean of what was measured explains more of it than the model does, by far."""
+    left = evidence.residuals
+    return left.r_squared < 0.0 and left.relative**2 > _LITTLE
+
+
+def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Finding:
     measured = _measured(cause, cause.relative)
     beside = [name for name in concerned if name not in cause.relative]
     text = f"{cause}; it also makes {listed(beside)} uncertain" if beside else str(cause)
+    severity: Severity = "blocking" if missed and cause.name == "wrong_scale" else "warning"
     return TYPES[cause.name].finding(
-        text, *cause.advice, evidence=measured, parameters=tuple(concerned), severity="warning"
+        text, *cause.advice, evidence=measured, parameters=tuple(concerned), severity=severity
     )
 
 

@@ -23,6 +23,7 @@ _NOTHING = 0.05
 def _find(evidence: Evidence) -> Iterator[Finding]:
     explained = evidence.residuals.r_squared
     actions = (
+        *_of_the_weight(evidence),
         Action("inspect", text="units, signs and gear ratio"),
         Action("inspect", text="the residuals over time and over velocity"),
     )
@@ -44,6 +45,17 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             *actions,
             evidence=measured | excluded_number(evidence),
         )
+
+
+def _of_the_weight(evidence: Evidence) -> tuple[Action, ...]:
+    """A link whose weight is stated wrongly spoils everything."""
+    model = evidence.problem.choice.model
+    if model.resolved.gravity != "known":
+        return ()
+    return (
+        Action("inspect", text="mass, centre of mass and angle of the link"),
+        Action("call", {"model": str(model.replace(gravity="free"))}),
+    )
 
 
 CHECK = Check(_find, (POOR_FIT,))
