@@ -21,7 +21,7 @@ from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model, ModelName
+from jointid.joint.model import Gravity, Model, ModelName
 from jointid.joint.parameters import Parameter
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Residual
@@ -77,6 +77,26 @@ def compared_models(models: object) -> tuple[Model, ...]:
     return entries
 
 
+def shown_gravity(runs: Sequence[Recording], joint: Joint | None, **options: Any) -> Gravity | None:
+    """Return the gravity that a model without a name gets from the recordings; None where it has none, or it is stated.
+
+    Parameters
+    ----------
+    runs : sequence of Recording
+    joint : Joint or None
+    **options
+        As for `prepare`.
+    """
+    if joint is not None and joint.model.gravity is not None:
+        return None
+    try:
+        model = prepare(runs, joint, model=None, choose=True, **options).problem.choice.model
+    except InputError:  # each fit says what it cannot do
+        return None
+    found = model.resolved.gravity
+    return None if found == "none" else found
+
+
 def compare_models(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None = None,
@@ -107,8 +127,9 @@ def compare_models(
     joint : Joint, optional
         As in `identify`, except that its model's name and `asymmetric` are not used.
     models : sequence of Model, str or mapping, optional
-        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, without
-        those that cannot be used with these data; they are listed in `settings["left_out"]`.
+        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, all with the gravity
+        that `identify` would choose, without those that cannot be used with these data; they are listed in
+        `settings["left_out"]`.
     folds : int
         Number of blocks of one recording, or largest number of groups of several. Default 5.
     parameters : mapping, optional
@@ -144,7 +165,19 @@ def compare_models(
     ('stribeck', 'stribeck')
     """
     runs = listed(recordings)
-    specs = default_models() if models is None else compared_models(models)
+    specs = compared_models(models) if models is not None else default_models()
+    if models is None:
+        gravity = shown_gravity(
+            runs,
+            joint,
+            parameters=parameters,
+            residual=residual,
+            windows=windows,
+            torque_hold=torque_hold,
+            mask_standstill=mask_standstill,
+            shift=shift,
+        )
+        specs = tuple(spec.replace(gravity=gravity) for spec in specs)
     if isinstance(folds, bool) or not isinstance(folds, int | np.integer) or folds < 2:
         raise InputError("a whole number of 2 or more is expected", argument="folds", value=folds)
     parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
