@@ -205,3 +205,14 @@ def test_sweep_knows_own_terms(tmp_path: Path, capsys: Printed) -> None:
     assert main([*words, "--trials", "1", "--json", "--quiet"]) == 0
     (cell,) = json.loads(capsys.readouterr().out)["cells"]
     assert "scale_of_other" in json.dumps(cell)
+
+
+def test_a_sweep_whose_model_nobody_named_says_which_it_has(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    call = ["sweep", str(data_folder() / "well_excited.csv.gz"), "--grid", "windows=50,100"]
+    call += ["--trials", "1", "--method", "separable", "--quiet"]
+    assert main(call) == 0
+    assert "model: coulomb_viscous, since none is named" in capsys.readouterr().out
+    assert main([*call, "--model", "stribeck"]) == 0
+    assert "since none is named" not in capsys.readouterr().out

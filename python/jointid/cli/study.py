@@ -140,6 +140,7 @@ def sweep(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) is not None
     } | refinements(arguments)
     subject: Any
+    unnamed = False
     model = with_terms(arguments.model, arguments)
     if arguments.term:
         if arguments.simulate is not None:
@@ -152,6 +153,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     else:
         known = [] if arguments.joint is None else [Joint.load(arguments.joint).model]
         subject = load_all(arguments.recordings, arguments, [model, *known])
+        unnamed = not any(each.named for each in (model, *known))
     with (
         _continuation(arguments),
         _workers(arguments.workers) as executor,
@@ -178,6 +180,10 @@ def sweep(arguments: argparse.Namespace) -> None:
             parameters=fixed or None,
         )
     _write(study, arguments)
+    if unnamed and "model" not in study.swept and not arguments.json:
+        print(
+            "\nmodel: coulomb_viscous, since none is named; jointid compare says which one predicts"
+        )
 
 
 @contextmanager
