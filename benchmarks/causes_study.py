@@ -400,6 +400,11 @@ joint file is what states it; the intervals then contain it. Without a sensor, b
 link behind the motor: the torque then seems early against the position, which is reported as such (`signal_lag`, never
 applied), with the gear as one of its possible reasons."""
 
+_MILDER = """
+## Milder mismatches
+
+{joints} joints of each plant, seed {seed}, with {size:g} of each mismatch (`--size {size:g}`): most move no value."""
+
 
 def main() -> None:
     """Print or write the tables, with a sensor and without one."""
@@ -418,11 +423,13 @@ def main() -> None:
     given = parser.parse_args()
     began = time.perf_counter()
     words = given.only.split() or [""]
-    lines = [_TEXT.format(joints=given.joints, seed=given.seed)]
+    milder = given.size != 1.0
+    text = _MILDER if milder else _TEXT
+    lines = [text.format(joints=given.joints, seed=given.seed, size=given.size)]
     for title, sensor in (("With a torque sensor", True), ("Without one", False)):
         cases: tuple[Case, ...] = WITH_SENSOR if sensor else WITHOUT
         cases = tuple(case for case in cases if any(word in case.name for word in words))
-        lines += [f"\n## {title}\n", HEAD]
+        lines += [f"\n##{'#' * milder} {title}\n", HEAD]
         lines += table(cases, given.joints, sensor, given.seed, given.verbose, given.size)
     text = "\n".join(lines) + "\n"
     if given.output is None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
+from jointid.identification.refinements.instant_by_samples import by_samples
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
@@ -24,6 +25,7 @@ Array = NDArray[np.float64]
 _SURE = 3.0  # standard errors
 _KNOWN = 0.3  # standard error of a share that is worth taking away
 _LEAST = 0.25  # standard error: the friction, too, changes within a sample
+_LOG_ODDS = 3.0  # of one instant against another, where neither is measured sharply: 20 to 1
 _FEWEST = 50  # windows
 _RESTING = 1e-3  # share of the samples
 _MOVING = 0.02  # of the peak speed
@@ -49,7 +51,7 @@ class SensorInstant:
     @property
     def unknown(self) -> float:
         """Standard error of what is left, as a part of half a step; 1 where nothing is known."""
-        if self.stderr > _KNOWN:
+        if self.stderr > _KNOWN and not self.applied:
             return 1.0
         return min(1.0, float(np.hypot(self.share - self.applied, max(self.stderr, _LEAST))))
 
@@ -117,12 +119,28 @@ def _measured(
     # A reading that lacks half a step over its window rises by less.
     share = -float(of_reading[_STEPS] / size[_STEPS]) / half
     stderr = float(np.sqrt(variance * spread[_STEPS, _STEPS])) / size[_STEPS] / abs(half)
+    if not _settled(share, stderr) and "velocity" not in problem.shift:
+        finer = by_samples(problem, half)
+        if finer is not None and finer[1] < stderr:
+            return _by_odds(*finer), half
     least = _SURE * max(stderr, _LEAST)
-    certain = stderr < _KNOWN and _SURE * stderr < abs(share) < 1.0 + least
+    certain = _settled(share, stderr)
     # A controller reads just before it commands: that, unless it is refuted.
     whole = abs(share) + least > 1.0
     applied = (float(np.sign(share)) if whole else share) if certain else 0.0
     return SensorInstant(share=share, stderr=stderr, applied=applied), half
+
+
+def _by_odds(share: float, stderr: float) -> SensorInstant:
+    """Before the step, if that is likelier by far than in its middle, and not refuted."""
+    odds = (2.0 * share - 1.0) / (2.0 * stderr**2)
+    before = odds > _LOG_ODDS and share < 1.0 + _SURE * max(stderr, _LEAST)
+    return SensorInstant(share=share, stderr=stderr, applied=float(before))
+
+
+def _settled(share: float, stderr: float) -> bool:
+    """Whether a share is certain, and one that a reading can lack."""
+    return stderr < _KNOWN and _SURE * stderr < abs(share) < 1.0 + _SURE * max(stderr, _LEAST)
 
 
 _STEPS = 4  # column of the torque's steps

@@ -36,7 +36,7 @@ _DERIVED = Action(
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    moved = _moved(evidence)
+    moved = moved_by_noise(evidence)
     # Running integrals have no edges whose noise would count.
     limited = evidence.penalty.noise_limited and not evidence.penalty.cumulative
     if not (limited or moved):
@@ -78,7 +78,7 @@ def _are_stamps_right(inspected: Inspected) -> bool:
     return inspected.found.timing_errors[0] < _JITTER * inspected.recording.sample_period
 
 
-def _moved(evidence: Evidence) -> dict[str, float]:
+def moved_by_noise(evidence: Evidence) -> dict[str, float]:
     """Return how far, relative to its value, the velocity's noise moves each parameter; only the large ones."""
     effect = evidence.velocity_effect
     if effect is None:

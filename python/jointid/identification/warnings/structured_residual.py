@@ -8,6 +8,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.noisy_velocity import moved_by_noise
 from jointid.identification.warnings.undetermined import listed, wide, with_partners
 
 STRUCTURED_RESIDUAL = FindingType(
@@ -26,7 +27,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.penalty.cumulative or named(evidence):
         return
     correlation = evidence.residuals.autocorrelation
-    uncertain = with_partners(evidence, wide(evidence)) if evidence.causes is not None else ()
+    uncertain = _unexplained(evidence) if evidence.causes is not None else ()
     if not uncertain and (correlation <= _CORRELATED or harmless(evidence)):
         return
     makes = f"; uncertain: {listed(uncertain)}" if uncertain else ""
@@ -39,6 +40,13 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         parameters=uncertain,
         severity=None if uncertain else "info",
     )
+
+
+def _unexplained(evidence: Evidence) -> tuple[str, ...]:
+    """Uncertain values; none where noise of the velocity, which has its own finding, moves them all."""
+    found = with_partners(evidence, wide(evidence))
+    noisy = with_partners(evidence, moved_by_noise(evidence))
+    return () if set(found) <= set(noisy) else found
 
 
 def named(evidence: Evidence) -> bool:

@@ -1,0 +1,104 @@
+"""When a coarsely sampled sensor is read, by its single samples.
+
+Sums over windows see a step of the torque only at their two ends. Sample by sample the reading is the link's inertia
+times the acceleration about the sample, gravity, an offset, and a share of the step that the torque takes at that
+sample. A controller that feeds the reading back lets the reading's noise into this step and into the acceleration
+behind it: both are replaced by what the samples before tell of them, which know nothing of that noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.problem.problem import Problem
+
+Array = NDArray[np.float64]
+
+_COARSE = 1.5e-3  # [s]: half of a shorter step moves a gain by little
+_BEFORE = 3  # steps and accelerations that tell of the next ones
+_SLOW = 0.02  # of the peak speed: slower motion may stick within a sample
+_FEWEST = 200  # samples
+_REFUTED = 4.0  # deviations of the test below from its mean
+
+
+def by_samples(problem: Problem, half: float) -> tuple[float, float] | None:
+    """Return the share of half a step that the reading lacks, and its standard error.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of which recordings with a held torque, a recorded velocity and coarse samples are used.
+    half : float
+        What half a step of 1 N·m changes the reading by; the link's inertia is in it.
+
+    Returns
+    -------
+    tuple of float, or None
+        None where there are too few samples, or where the samples before tell more of the reading than
+        they can through acceleration and step: then the equation does not hold (Sargan 1958).
+    """
+    rows = list(_rows(problem))
+    count = sum(map(len, rows))
+    if count < _FEWEST:
+        return None
+    table = np.concatenate(rows)
+    triangle = np.asarray(_core.triangle(np.asfortranarray(table)))
+    size = np.linalg.norm(triangle, axis=0)
+    if not np.all(size > 0.0):
+        return None
+    triangle = triangle / size
+    instruments = triangle[:, [*range(_KNOWN), *range(_KNOWN + 2, triangle.shape[1] - 1)]]
+    regressors, reading = triangle[:, : _KNOWN + 2], triangle[:, -1]
+    basis = np.linalg.qr(instruments)[0]
+    projected = basis.T @ regressors
+    found = np.linalg.lstsq(projected, basis.T @ reading, rcond=1e-10)[0]
+    missed = reading - regressors @ found
+    variance = float(missed @ missed) / count
+    told = float(np.sum((basis.T @ missed) ** 2))
+    more = instruments.shape[1] - regressors.shape[1]
+    if variance == 0.0 or told / variance > more + _REFUTED * np.sqrt(2.0 * more):
+        return None
+    spread = np.linalg.pinv(projected.T @ projected)[-1, -1]
+    scale = float(size[-1] / size[_KNOWN + 1]) / half
+    return -float(found[-1]) * scale, float(np.sqrt(variance * spread)) * abs(scale)
+
+
+_KNOWN = 3  # columns that no noise of the reading is in: an offset and gravity
+
+
+def _rows(problem: Problem) -> Iterator[Array]:
+    """Known columns, acceleration and step, what tells of both, and the reading; a row a sample."""
+    for number, recording in enumerate(problem.recordings):
+        coarse = recording.sample_period > _COARSE and not recording.velocity_derived
+        if not coarse or problem.hold(number) != "zoh":
+            continue
+        velocity, time = recording.velocity, recording.time
+        usable = np.asarray(
+            _core.usable_intervals(problem.in_core[number], problem.mask_standstill)
+        )
+        at = np.arange(_BEFORE + 1, len(time) - 1)
+        kept = np.abs(velocity[at]) > _SLOW * problem.peak_speed
+        for near in range(-_BEFORE - 1, 1):
+            kept &= usable[at + near] > 0
+        for near in range(-_BEFORE - 1, 2):
+            kept &= velocity[at + near] * velocity[at] > 0.0
+        at = at[kept]
+        if not at.size:
+            continue
+        faster = np.diff(velocity) / np.diff(time)
+        step = np.diff(problem.output_torque(number), prepend=0.0)
+        angle = recording.position[at]
+        yield np.column_stack(
+            [
+                *(np.ones(at.size), np.cos(angle), np.sin(angle)),
+                *(0.5 * (faster[at - 1] + faster[at]), step[at]),
+                *(faster[at - 1 - near] for near in range(_BEFORE + 1)),
+                *(step[at - 1 - near] for near in range(_BEFORE)),
+                *(velocity[at], np.sign(velocity[at])),
+                np.asarray(recording.sensor)[at],
+            ]
+        )
