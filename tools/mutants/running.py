@@ -208,7 +208,9 @@ def _change(mutant: Mutant, package: Path) -> None:
 
 def _in_the_child(task: _Task, package: Path, core_check: Path | None, log: Path) -> int:
     try:
-        os.setsid()
+        os.setpgid(
+            0, 0
+        )  # no session of its own: that would leave the scheduling group of a background job
         with log.open("w") as stream:
             os.dup2(stream.fileno(), 1)
             os.dup2(stream.fileno(), 2)
