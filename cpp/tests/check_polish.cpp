@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "base/random.hpp"
@@ -60,6 +61,45 @@ CHECK_CASE("polish: bounded linear least squares, from inside, from bounds and f
       CHECK((result.best.array() <= domain.upper.array()).all());
     }
   }
+}
+
+CHECK_CASE("polish: the first step of a linear problem is all but the whole") {
+  base::Pool pool(1);
+  base::Random random(8, 0, 0, 0);
+  const Eigen::MatrixXd a = drawn(random, 12, 3);
+  const Eigen::VectorXd answer = drawn(random, 3, 1);
+  const Eigen::VectorXd b = a * answer;
+  const ResidualFunction linear = [&](const Eigen::VectorXd& x, Eigen::VectorXd& residual,
+                                      Eigen::MatrixXd* jacobian) {
+    residual = a * x - b;
+    if (jacobian != nullptr) *jacobian = a;
+  };
+  const Domain wide = box({-50.0, -50.0, -50.0}, {50.0, 50.0, 50.0});
+  const auto once = polish(linear, wide, Eigen::VectorXd::Constant(3, 3.0), pool, 1);
+  CHECK_CLOSE((once.best - answer).norm(), 0.0, 1e-4);
+  CHECK(!once.converged);
+  // One step without gain may be rounding; the second ends it.
+  CHECK(polish(linear, wide, answer, pool, 100).iterations == 2);
+}
+
+CHECK_CASE("polish: ends where no step gains") {
+  base::Pool pool(1);
+  const Domain wide = box({-50.0}, {50.0});
+  double level = 1.0;
+  double growth = 1.0 + 1e-15;  // by rounding alone
+  const ResidualFunction rising = [&](const Eigen::VectorXd&, Eigen::VectorXd& residual,
+                                      Eigen::MatrixXd* jacobian) {
+    residual = Eigen::VectorXd::Constant(1, level);
+    if (jacobian != nullptr) *jacobian = Eigen::MatrixXd::Constant(1, 1, 1.0);
+    level *= growth;
+  };
+  const auto rounded = polish(rising, wide, Eigen::VectorXd::Zero(1), pool, 100);
+  CHECK(rounded.converged);
+  CHECK(rounded.iterations == 2);
+  growth = 1.01;
+  const auto uphill = polish(rising, wide, Eigen::VectorXd::Zero(1), pool, 100);
+  CHECK(uphill.converged);
+  CHECK_WITH(uphill.iterations <= 16, std::to_string(uphill.iterations));
 }
 
 CHECK_CASE("polish: Rosenbrock's valley") {

@@ -226,6 +226,30 @@ CHECK_CASE("windows: the duration follows the noise of the velocity") {
   CHECK_CLOSE(limited.duration, 7999 / 80 * kPeriod, 1e-9);  // 20 windows a parameter are kept
 }
 
+CHECK_CASE("windows: the shortest whose noise is a thousandth; a hundredth is named") {
+  auto noisy = swinging(8000);
+  base::Random random(5, 0, 0, 0);
+  for (double& v : noisy.velocity) v += 0.01 * (2.0 * random.uniform() - 1.0);
+  const std::vector<std::uint8_t> usable(7999, 1);
+  const auto chosen = identify::choose_window(noisy, usable, 4);
+  const auto share = [&](double duration) {
+    return identify::choose_window(noisy, usable, 4, {0, duration}).noise_share;
+  };
+  CHECK(chosen.duration > 10.5 * kPeriod);
+  CHECK(chosen.noise_share <= 1e-3);
+  CHECK(share(chosen.duration / 1.3) > 1e-3);
+  int named = 0;
+  int silent = 0;  // within a factor of two of the limit
+  for (int lag = 1; lag < 60; ++lag) {
+    const auto given = identify::choose_window(noisy, usable, 4, {0, lag * kPeriod});
+    CHECK(given.noise_limited == (given.noise_share > 1e-2));
+    if (given.noise_share > 1e-2 && given.noise_share < 2e-2) ++named;
+    if (given.noise_share < 1e-2 && given.noise_share > 5e-3) ++silent;
+  }
+  CHECK(named > 0);
+  CHECK(silent > 0);
+}
+
 CHECK_CASE("windows: what cannot be is refused in words") {
   CHECK_REFUSED((identify::WindowOptions{-1, 0.0}.validate()),
                 "windows.count is -1: must be positive");

@@ -14,21 +14,23 @@ import pytest
 _TESTS = Path(__file__).resolve().parents[1]
 _COMPILER = shutil.which("cc") or shutil.which("gcc")
 _ALL = os.environ.get("JOINTID_WRITE_FAULTS") == "all"  # `make write-faults`
-# Calls that are tried of each scenario (0: all), and faults at least: three at each call, and one behind the end.
+# Calls that are tried of each scenario (0: all), and faults at least: four at each call, and one behind the end.
 _SCENARIOS = {
-    "recording": (0, 13),
-    "joint": (0, 13),
-    "design": (0, 13),
-    "estimate": (0, 13),
-    "report": (0, 13),
-    "run": (0, 18),
-    "sweep": (20, 61),
+    "recording": (0, 17),
+    "joint": (0, 17),
+    "design": (0, 17),
+    "estimate": (0, 17),
+    "report": (0, 17),
+    "run": (0, 24),
+    "sweep": (20, 81),
     "session": (4, 4),
-    "command identify": (3, 10),
-    "command report": (2, 7),
-    "command sweep": (3, 10),
-    "command design": (2, 7),
-    "command run": (3, 10),
+    "command identify": (3, 13),
+    "command report": (2, 9),
+    "command sweep": (3, 13),
+    "command design": (2, 9),
+    "command simulate": (2, 9),
+    "command export": (2, 9),
+    "command run": (3, 13),
 }
 _counted: dict[str, int] = {}
 

@@ -1,6 +1,10 @@
 """The commands `simulate` and `sweep`."""
 
 import json
+import os
+import select
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -156,6 +160,28 @@ def test_sweep_prints_writes_draws_and_goes_on(
     cells = json.loads(capsys.readouterr().out)["cells"]
     assert [cell["trials"] for cell in cells] == [3] * 4
     assert len(jid.Study.load(output)) == 12
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="children are read from /proc")
+def test_workers_end_with_a_command_that_is_killed(tmp_path: Path) -> None:
+    output = tmp_path / "study.jsonl"
+    words = ["sweep", WELL, "--grid", "windows=100,200", "--trials", "500", "--workers", "2"]
+    command = subprocess.Popen(
+        [sys.executable, "-m", "jointid", *words, "--output", str(output), "--quiet"]
+    )
+    try:
+        while not output.exists() or output.read_text().count("\n") < 4:  # work has begun
+            assert command.poll() is None
+            select.select([], [], [], 0.05)
+        children = Path(f"/proc/{command.pid}/task/{command.pid}/children").read_text().split()
+        assert len(children) >= 2
+        ends = [os.pidfd_open(int(child)) for child in children]
+    finally:
+        command.kill()
+        command.wait()
+    for end in ends:
+        assert select.select([end], [], [], 30.0)[0], "a worker outlives its command"
+        os.close(end)
 
 
 def test_sweep_simulates(folder: Path, capsys: Printed) -> None:

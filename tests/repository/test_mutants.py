@@ -1,5 +1,6 @@
 """The mutants' tool: CI kills those that are marked, survivors are told, and a place that is gone is an error."""
 
+import dataclasses
 import os
 import shutil
 import subprocess
@@ -12,6 +13,7 @@ TOOLS = Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
 
 from mutants.catalogue import Mutant, MutantError, check_places, read  # noqa: E402
+from mutants.kept import Kept  # noqa: E402
 from mutants.page import complaints, summary, written  # noqa: E402
 from mutants.running import Verdict  # noqa: E402
 from mutants.switched_sources import SWITCH, switched  # noqa: E402
@@ -87,6 +89,34 @@ def test_a_survivor_is_told(tmp_path: Path) -> None:
     assert "becomes `if parts > 0 and` | **not justified** |" in page.read_text()
 
 
+def test_a_verdict_is_kept_until_its_files_change(tmp_path: Path) -> None:
+    for name in ("part.py", "test_part.py", "cpp/tests/check_part.cpp"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("x = 1\n")
+    made = dataclasses.replace(mutant(1, "x", "x", "y"), path="part.py", tests=("test_part.py::a",))
+    verdict = Verdict(mutant=made, killed=True, by="test_part.py::a", seconds=2.0)
+    kept = tmp_path / "build" / "verdicts.json"
+    Kept(kept, tmp_path).add(verdict)
+    assert Kept(kept, tmp_path).find([made]) == [verdict]
+    assert not Kept(kept, tmp_path).find([dataclasses.replace(made, becomes="z")])
+    for name in ("part.py", "test_part.py", "cpp/tests/check_part.cpp"):
+        (tmp_path / name).write_text("x = 2\n")
+        assert not Kept(kept, tmp_path).find([made])
+        (tmp_path / name).write_text("x = 1\n")
+        assert Kept(kept, tmp_path).find([made])
+    kept.write_text("torn")
+    assert not Kept(kept, tmp_path).find([made])
+
+
+def test_what_was_tried_is_not_tried_again(tmp_path: Path) -> None:
+    lists = listed(tmp_path, "{ was = '_TURN = 2.0', becomes = '_TURN = 3.0' }")
+    for earlier in (0, 1):
+        done = tried(tmp_path, "--lists", str(lists), "--jobs", "1")
+        assert f"1 mutants: 1 killed, 0 justified, 0 survived; {earlier} of them" in done.stdout
+    again = tried(tmp_path, "--lists", str(lists), "--jobs", "1", "--again")
+    assert "; 0 of them earlier" in again.stdout
+
+
 @pytest.mark.parametrize(
     ("row", "said"),
     [
@@ -128,8 +158,8 @@ def test_a_justified_survivor_passes_and_stands_in_the_page() -> None:
     ]
     assert complaints(verdicts) == []
     assert summary(verdicts) == "11 mutants: 10 killed, 1 justified, 0 survived"
-    page = written(verdicts, 3.0, 1.0)
-    assert "| core | 11 | 10 | 0 | 1 | 0 |" in page
+    page = written(verdicts[1:], [verdicts[0].mutant])
+    assert "| core | 11 | 9 | 0 | 1 | 0 | 1 |" in page
     assert "cpp/toy.cpp: `10` becomes `y` | the same |" in page
 
 

@@ -10,9 +10,11 @@ import tempfile
 import tomllib
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from xml.etree import ElementTree
 
 import designs
 import numpy as np
+from closed_loop import TRUTH
 
 import jointid as jid
 from jointid.cli.command_line import main
@@ -48,6 +50,7 @@ def _given() -> Path:
     _recording(folder)
     run = jid.load(folder / "run.npz")
     jid.identify(run, model="coulomb_viscous", search="separable").save(folder / "estimate.json")
+    jid.thesis_joint().with_parameters(TRUTH).save(folder / "joint.toml")
     (folder / "design.toml").write_text(designs.bench_text())
     bench = (_EXAMPLES / "hardware" / "joint.toml").read_text()
     assert bench.count(_SHORT[0]) == 1
@@ -85,6 +88,11 @@ COMMANDS: dict[str, tuple[str, ...]] = {
         *("design", "design.toml", "--evaluations", "64", "--rehearsals", "10"),
         *("--joints", "2", "--threads", "1", "--quiet", "--output", "motion.toml"),
     ),
+    "simulate": (
+        *("simulate", "joint.toml", "--trajectory", "thesis:duration=1"),
+        *("--output", "simulated.npz"),
+    ),
+    "export": ("export", "estimate.json", "--to", "joint.xml"),
     "run": (
         *("run", "bench.toml", "--emulate", "--cycles", "0", "--quiet"),
         *("--output", "."),
@@ -142,13 +150,15 @@ def _torn(path: Path) -> str:
             json.loads(content)
         elif path.suffix == ".toml":
             tomllib.loads(content.decode())
+        elif path.suffix == ".xml":
+            ElementTree.fromstring(content)
         elif path.suffix == ".jsonl":
             read(path)
-        elif path.suffix == ".csv" and path.name != "table.csv":
+        elif path.suffix in (".csv", ".npz") and path.name != "table.csv":
             jid.load(path)
     except jid.InputError as error:
         return "" if "\n" not in str(error) and path.name in str(error) else f"torn: {error}"
-    except ValueError as error:
+    except (ValueError, ElementTree.ParseError) as error:
         return f"torn: {error}"
     return ""
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from mutants import page, tree
 from mutants.catalogue import LISTS, REPOSITORY, Mutant, MutantError, check_places, read
-from mutants.running import Trials
+from mutants.kept import Kept
+from mutants.running import Trials, Verdict
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -29,6 +30,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--only", default="", metavar="TEXT", help="in the name of list or file")
     parser.add_argument("--python", action="store_true", help="Python alone: nothing is compiled")
     parser.add_argument("--ci", action="store_true", help="those marked `ci`")
+    parser.add_argument("--again", action="store_true", help="also those whose verdict still holds")
     parser.add_argument("--check", action="store_true", help="that each text is there, no trial")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes at a time")
     parser.add_argument("--folder", type=Path, default=REPOSITORY / "build" / "mutants")
@@ -45,28 +47,43 @@ def _tried(options: argparse.Namespace) -> int:
         return 0
     began = time.monotonic()
     folder = options.folder.resolve()
+    kept = Kept(folder / "verdicts.json")
+    known = [] if options.again else kept.find(mutants)
+    tried = _trials(folder, everything, _others(mutants, known), kept, options.jobs)
+    minutes = (time.monotonic() - began) / 60.0
+    verdicts = sorted([*known, *tried], key=lambda each: each.mutant.number)
+    print(f"{page.summary(verdicts)}; {len(known)} of them earlier; {minutes:.1f} minutes")
+    for each in verdicts:
+        if not each.killed and each.mutant.justified:
+            print(f"justified: {each.mutant}: {each.mutant.justified}")
+    if options.output is not None:
+        ever = kept.find(everything)
+        text = page.written(ever, _others(everything, ever))
+        options.output.write_text(text, encoding="utf-8")
+    wrong = page.complaints(verdicts)
+    print("\n".join(wrong), end="\n" if wrong else "")
+    return 1 if wrong else 0
+
+
+def _trials(
+    folder: Path, everything: list[Mutant], mutants: list[Mutant], kept: Kept, jobs: int
+) -> list[Verdict]:
+    if not mutants:
+        return []
     extension, core_check = tree.installed_core(), None
     if not all(each.is_python for each in mutants):
         # All of them, so that another choice needs no compiler.
         print("building the core with all mutants in it", flush=True)
         inside = [each for each in everything if not each.is_python]
         extension, core_check = tree.built_core(folder, inside)
-    building = time.monotonic() - began
-    packages = [
-        tree.package(folder / f"package_{number}", extension) for number in range(options.jobs)
-    ]
-    verdicts = Trials(packages, core_check, folder / "logs").all_of(mutants, _told)
-    minutes = (time.monotonic() - began) / 60.0
-    print(f"{page.summary(verdicts)}; {minutes:.1f} minutes")
-    for each in verdicts:
-        if not each.killed and each.mutant.justified:
-            print(f"justified: {each.mutant}: {each.mutant.justified}")
-    if options.output is not None:
-        text = page.written(verdicts, minutes, building / 60.0)
-        options.output.write_text(text, encoding="utf-8")
-    wrong = page.complaints(verdicts)
-    print("\n".join(wrong), end="\n" if wrong else "")
-    return 1 if wrong else 0
+    packages = [tree.package(folder / f"package_{number}", extension) for number in range(jobs)]
+    trials = Trials(packages, core_check, folder / "logs")
+    return trials.all_of(mutants, _told, kept.add)
+
+
+def _others(mutants: list[Mutant], known: list[Verdict]) -> list[Mutant]:
+    numbers = {each.mutant.number for each in known}
+    return [each for each in mutants if each.number not in numbers]
 
 
 def _chosen(mutant: Mutant, options: argparse.Namespace) -> bool:

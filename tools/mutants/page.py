@@ -38,17 +38,18 @@ def summary(verdicts: Sequence[Verdict]) -> str:
     )
 
 
-def written(verdicts: Sequence[Verdict], minutes: float, building: float) -> str:
+def written(verdicts: Sequence[Verdict], untried: Sequence[Mutant] = ()) -> str:
     """The page.
 
     Parameters
     ----------
     verdicts : sequence of Verdict
-        Of all mutants.
-    minutes, building : float
-        How long everything took, and the compiler's part.
+        Of all mutants that were tried.
+    untried : sequence of Mutant
+        The others.
     """
-    rooms = list(dict.fromkeys(each.mutant.room for each in verdicts))
+    rooms = sorted({each.mutant.room for each in verdicts} | {each.room for each in untried})
+    minutes = sum(each.seconds for each in verdicts) / 60.0
     named = [each for each in verdicts if each.mutant.named]
     lines = [
         "# Mutants",
@@ -62,19 +63,21 @@ def written(verdicts: Sequence[Verdict], minutes: float, building: float) -> str
         "ends and says so. C++ is compiled once, with all mutants in it, and a number in the environment chooses one.",
         "CI tries those that are marked `ci`.",
         "",
-        f"**{summary(verdicts)}** ({minutes:.0f} minutes on two processors, {building:.0f} of them the compiler's). Of "
+        f"**{summary(verdicts)}** ({minutes:.0f} minutes on one processor, without the compiler's). Of "
         f"{len(named)} places that",
         f"survived when mutants were first tried by hand, {sum(each.killed for each in named)} die now.",
         "",
-        "| list | mutants | killed | of these without an end | justified | survived |",
-        "|---|---:|---:|---:|---:|---:|",
+        "| list | mutants | killed | of these without an end | justified | survived | not tried |",
+        "|---|---:|---:|---:|---:|---:|---:|",
     ]
     for room in [*rooms, "all"]:
         of = [each for each in verdicts if room in (each.mutant.room, "all")]
         left = _left(of)
         justified = sum(bool(each.mutant.justified) for each in left)
         endless = sum(each.by == "did not end" for each in of)
-        counts = (len(of), len(of) - len(left), endless, justified, len(left) - justified)
+        missing = sum(room in (each.room, "all") for each in untried)
+        survived = len(left) - justified
+        counts = (len(of) + missing, len(of) - len(left), endless, justified, survived, missing)
         lines.append(f"| {room} | {' | '.join(map(str, counts))} |")
     left = sorted(_left(verdicts), key=lambda each: not each.mutant.justified)
     if left:

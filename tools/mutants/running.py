@@ -87,9 +87,12 @@ class Trials:
             importlib.import_module(name)
 
     def all_of(
-        self, mutants: Sequence[Mutant], told: Callable[[str], object] = print
+        self,
+        mutants: Sequence[Mutant],
+        told: Callable[[str], object] = print,
+        ended: Callable[[Verdict], object] = lambda _: None,
     ) -> list[Verdict]:
-        """Try every mutant, after the program as it is.
+        """Try every mutant, after the program as it is; `ended` gets each verdict at once.
 
         Raises
         ------
@@ -141,6 +144,7 @@ class Trials:
                 raise MutantError(f"{task.mutant}: {_said(code, log)}")
             by = _said(code, log) if code else ""
             verdicts.append(Verdict(mutant=task.mutant, killed=bool(code), by=by, seconds=seconds))
+            ended(verdicts[-1])
             state = "killed" if code else "justified" if task.mutant.justified else "SURVIVED"
             told(f"{len(verdicts):4} of {len(tasks)} {state:9} {seconds:6.1f} s  {task.mutant}")
         return sorted(verdicts, key=lambda each: each.mutant.number)
@@ -204,7 +208,9 @@ def _change(mutant: Mutant, package: Path) -> None:
 
 def _in_the_child(task: _Task, package: Path, core_check: Path | None, log: Path) -> int:
     try:
-        os.setsid()
+        os.setpgid(
+            0, 0
+        )  # no session of its own: that would leave the scheduling group of a background job
         with log.open("w") as stream:
             os.dup2(stream.fileno(), 1)
             os.dup2(stream.fileno(), 2)

@@ -52,6 +52,7 @@ def built_core(folder: Path, mutants: list[Mutant]) -> tuple[Path, Path]:
     ]
     setup += ["-DCMAKE_BUILD_TYPE=Release", f"-DPython_EXECUTABLE={sys.executable}"]
     setup += [f"-Dpybind11_DIR={_pybind11()}", f"-DSKBUILD_PROJECT_VERSION={_version()}"]
+    setup.append("-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=OFF")
     setup.append("-DJOINTID_BUILD_EXTENSION=ON")  # with the checks: the core is compiled once
     if shutil.which("ccache"):
         setup.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -31,6 +33,7 @@ from jointid.cli.scenario import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+    from multiprocessing.process import BaseProcess
 
     from jointid.study.study_result import Study
 
@@ -227,7 +230,6 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
 
 
 def _workers(count: int | None) -> Executor | nullcontext[None]:
-
     if count is None:
         return nullcontext()
     if not 1 <= count <= 1024:
@@ -236,7 +238,23 @@ def _workers(count: int | None) -> Executor | nullcontext[None]:
     from multiprocessing import get_context
 
     # A fresh interpreter each: a fork of a process with threads may hang.
-    return ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    return ProcessPoolExecutor(
+        count, mp_context=get_context("spawn"), initializer=_end_with_the_command
+    )
+
+
+def _end_with_the_command() -> None:
+    """In a worker: end when the command is gone. One that is killed tells nobody, and workers wait for ever."""
+    from multiprocessing import parent_process
+
+    command = parent_process()
+    if command is not None:
+        threading.Thread(target=_end_after, args=(command,), daemon=True).start()
+
+
+def _end_after(command: BaseProcess) -> None:
+    command.join()
+    os._exit(1)
 
 
 def _grid(pairs: list[tuple[str, str]]) -> dict[str, list[Any]]:

@@ -26,7 +26,7 @@ COLUMNS = (
     "late_cycles",
 )
 _FLUSH = 0.02  # [s]: not much more is lost when the program is killed
-_SYNC = 0.5  # [s]: not much more is lost with the power
+_SYNC = 0.25  # [s]: with what a slow disk takes, less than a second is lost with the power
 
 Frame = tuple[float, int, bytes, bool]
 
