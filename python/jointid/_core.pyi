@@ -495,6 +495,11 @@ class Penalty(PenaltyFunction):
     @property
     def noise_share(self) -> float: ...
     @property
+    def reading(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Window integrals of the sensor's reading. Only with a gain.
+        """
+    @property
     def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
         """
         Which recording each window belongs to, shape (window_count,).
