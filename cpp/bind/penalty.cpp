@@ -170,6 +170,8 @@ void bind_penalty(py::module_& m) {
           py::arg("shapes"),
           "Window integrals of all coefficients, shape (windows, coefficients), of the reading "
           "itself.")
+      .def_property_readonly("reading", &Penalty::reading,
+                             "Window integrals of the sensor's reading. Only with a gain.")
       .def(
           "project_reading",
           [](Penalty& p, const std::vector<Eigen::Index>& free, int threads) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bind/recording.hpp"
+#include "identify/solve/folds.hpp"
 #include "search/least_squares.hpp"
 
 namespace jointid::bind {
@@ -55,6 +56,19 @@ void bind_regression(py::module_& m) {
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
       "Products of whitened rows over segments: with each other, and with the residual.");
+  using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  py::class_<identify::Folds>(m, "Folds", "Cross-validated least squares on any of many columns.")
+      .def(py::init([](const Rows& rows, const std::vector<std::int64_t>& edges) {
+             if (rows.ndim() != 2 || rows.shape(1) < 1 || edges.size() < 2 ||
+                 !std::is_sorted(edges.begin(), edges.end()) || edges.front() < 0 ||
+                 edges.back() > rows.shape(0)) {
+               throw std::invalid_argument("edges must cut the rows of a matrix into blocks");
+             }
+             return identify::Folds(rows.data(), static_cast<std::size_t>(rows.shape(1)), edges);
+           }),
+           py::arg("rows"), py::arg("edges"), "The last column is the target.")
+      .def("misfit", &identify::Folds::misfit, py::arg("columns"),
+           "Sum of squares left in each block, with these columns fitted to the other blocks.");
 }
 
 }  // namespace jointid::bind

@@ -5,6 +5,7 @@
 #include "bind/recording.hpp"
 #include "signals/repeated_noise.hpp"
 #include "signals/shift_fit.hpp"
+#include "signals/window_integrals.hpp"
 #include "signals/window_means.hpp"
 
 namespace jointid::bind {
@@ -113,6 +114,23 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("signal"), py::arg("weight"), py::arg("middles"),
       "Weighted sums of a signal over windows.");
+  m.def(
+      "window_integrals",
+      [](const Array& values, const Array& weights, const Indices& windows, bool rise) {
+        const bool fits = windows.ndim() == 2 && windows.shape(1) == 2 && values.ndim() >= 1 &&
+                          values.ndim() <= 2 && values.shape(0) == weights.size() + 1;
+        const signals::Bounds bounds(windows.data(), fits ? windows.shape(0) : 0, 2);
+        if (!fits ||
+            (bounds.size() > 0 && (bounds.minCoeff() < 0 || bounds.maxCoeff() > weights.size()))) {
+          throw std::invalid_argument("windows and weights must fit the samples");
+        }
+        const auto width = static_cast<std::size_t>(values.ndim() == 2 ? values.shape(1) : 1);
+        return signals::window_integrals(values.data(), width, signal(weights), bounds,
+                                         rise ? signals::Summed::rise : signals::Summed::area);
+      },
+      py::arg("values"), py::arg("weights"), py::arg("windows"), py::kw_only(),
+      py::arg("rise") = false,
+      "Integrals over windows, one row a window, or how far the values rise there.");
   m.def(
       "smoothed",
       [](const Array& values, const Array& weight) {

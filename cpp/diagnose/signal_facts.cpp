@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "base/clones.hpp"
 #include "base/quantile.hpp"
+#include "base/scans.hpp"
 
 namespace jointid::diagnose {
 
@@ -19,8 +19,8 @@ constexpr double kStill = 0.005;  // of the peak speed
 constexpr double kNear = 0.01;    // of the range
 constexpr double kFrozen = 0.1;   // [s]
 constexpr std::size_t kBlock = 65536;
-constexpr std::size_t kFew = 32;   // samples looked at together
-constexpr std::size_t kLanes = 8;  // of extremes
+constexpr std::size_t kFew = 32;  // samples looked at together
+constexpr std::size_t kLanes = 8;
 
 void look(const base::Cancel* cancel) {
   if (cancel != nullptr) cancel->check();
@@ -45,50 +45,15 @@ bool is_fine(const Signal& signal, double smallest, std::int64_t changes, std::i
   return median / smallest >= kFine;
 }
 
-JOINTID_CLONES void extremes_of(const double* x, std::size_t count, double* lowest,
-                                double* highest) {
-  std::array<double, kLanes> low;
-  std::array<double, kLanes> high;
-  low.fill(x[0]);
-  high.fill(x[0]);
-  std::size_t k = 0;
-  for (; k + kLanes <= count; k += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      low[l] = x[k + l] < low[l] ? x[k + l] : low[l];
-      high[l] = x[k + l] > high[l] ? x[k + l] : high[l];
-    }
-  }
-  for (; k < count; ++k) {
-    low[0] = x[k] < low[0] ? x[k] : low[0];
-    high[0] = x[k] > high[0] ? x[k] : high[0];
-  }
-  *lowest = *std::min_element(low.begin(), low.end());
-  *highest = *std::max_element(high.begin(), high.end());
-}
-
-/// Steps that are not zero, and the smallest of them.
-JOINTID_CLONES void count_changes(const double* x, std::size_t steps, std::int64_t* changes,
-                                  double* smallest) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+/// Steps that are not zero.
+JOINTID_CLONES std::int64_t count_changes(const double* x, std::size_t steps) {
   std::array<std::int64_t, kLanes> count{};
-  std::array<double, kLanes> least;
-  least.fill(kNone);
   std::size_t k = 0;
   for (; k + kLanes <= steps; k += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double step = std::fabs(x[k + l + 1] - x[k + l]);
-      count[l] += step > 0.0 ? 1 : 0;
-      const double one = step > 0.0 ? step : kNone;
-      least[l] = one < least[l] ? one : least[l];
-    }
+    for (std::size_t l = 0; l < kLanes; ++l) count[l] += x[k + l + 1] != x[k + l] ? 1 : 0;
   }
-  for (; k < steps; ++k) {
-    const double step = std::fabs(x[k + 1] - x[k]);
-    count[0] += step > 0.0 ? 1 : 0;
-    least[0] = step > 0.0 && step < least[0] ? step : least[0];
-  }
-  *changes = std::accumulate(count.begin(), count.end(), std::int64_t{0});
-  *smallest = *std::min_element(least.begin(), least.end());
+  for (; k < steps; ++k) count[0] += x[k + 1] != x[k] ? 1 : 0;
+  return std::accumulate(count.begin(), count.end(), std::int64_t{0});
 }
 
 struct Rules {
@@ -128,10 +93,8 @@ JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
 }  // namespace
 
 Extremes extremes(const Signal& signal) {
-  Extremes found;
-  extremes_of(signal.data(), static_cast<std::size_t>(signal.size()), &found.lowest,
-              &found.highest);
-  return found;
+  const auto [low, high] = base::range_of(signal.data(), static_cast<std::size_t>(signal.size()));
+  return {low, high};
 }
 
 SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double peak_speed,
@@ -143,7 +106,9 @@ SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double 
   const double* x = signal.data();
   const double* v = velocity.data();
   const auto steps = static_cast<std::size_t>(n - 1);
-  count_changes(x, steps, &facts.changes, &facts.smallest);
+  const auto least = base::least_steps(x, steps);
+  facts.smallest = least.positive;
+  facts.changes = least.any > 0.0 ? static_cast<std::int64_t>(steps) : count_changes(x, steps);
   const auto [lowest, highest] = facts.range;
   const Rules rules{lowest, highest, kNear * (highest - lowest), facts.smallest,
                     kMoving * peak_speed};

@@ -7,6 +7,7 @@
 
 #include "base/clones.hpp"
 #include "base/quantile.hpp"
+#include "base/scans.hpp"
 
 namespace jointid::diagnose {
 
@@ -22,7 +23,6 @@ constexpr Eigen::Index kReach = 6;  // samples: a derived velocity tells a rever
 constexpr double kJump = 4.0;       // times the rate that 1 % of the intervals exceed
 constexpr double kClearly = 1e-12;  // rounding never decides
 constexpr Eigen::Index kBlock = 65536;
-constexpr std::size_t kLanes = 8;
 
 /// Largest value(k), k < count, in four lanes.
 template <class Value>
@@ -40,29 +40,6 @@ double largest(Eigen::Index count, const base::Cancel* cancel, Value value) {
     }
     for (; k < end; ++k) high[0] = std::max(high[0], value(k));
   }
-  return *std::max_element(high.begin(), high.end());
-}
-
-/// Samples `width` apart from their neighbours on both sides, on the same side of both: the largest
-/// distance from the nearer one.
-JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::size_t places) {
-  std::array<double, kLanes> high{};
-  std::size_t k = 0;
-  const auto height = [x, width](std::size_t i) {
-    const double there = x[i + width] - x[i];
-    const double back = x[i + width] - x[i + 2 * width];
-    const double one = std::fabs(there);
-    const double other = std::fabs(back);
-    const double low = other < one ? other : one;
-    return there * back > 0.0 ? low : 0.0;
-  };
-  for (; k + kLanes <= places; k += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double one = height(k + l);
-      high[l] = one > high[l] ? one : high[l];
-    }
-  }
-  for (; k < places; ++k) high[0] = std::max(high[0], height(k));
   return *std::max_element(high.begin(), high.end());
 }
 
@@ -132,8 +109,8 @@ Spike largest_spike(const Signal& signal, SpikeRule rule, const Signal& velocity
       return there * back > 0.0 ? low : 0.0;
     };
     if (cancel != nullptr) cancel->check();
-    const double highest = largest_height(signal.data(), static_cast<std::size_t>(width),
-                                          static_cast<std::size_t>(places));
+    const double highest = base::largest_height(signal.data(), static_cast<std::size_t>(width),
+                                                static_cast<std::size_t>(places));
     if (highest == 0.0) continue;
     // More than half of the changes beyond this: so is the median, and the limit beyond `highest`.
     const double enough = highest / times * (1.0 + kClearly);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/gram.hpp"
 #include "base/quantile.hpp"
 
 namespace jointid::signals {
@@ -77,8 +78,7 @@ class Projection {
   Projection(const Eigen::Ref<const MatrixXd>& columns, const VectorXd* weights)
       : columns_(columns) {
     if (weights != nullptr) weighted_ = weights->asDiagonal() * columns;
-    MatrixXd gram = MatrixXd::Zero(columns.cols(), columns.cols());
-    gram.triangularView<Eigen::Lower>() += columns.transpose() * weighted();
+    const MatrixXd gram = base::symmetric_products(columns, weighted());
     VectorXd scale = gram.diagonal().cwiseSqrt();
     scale = (scale.array() > 0.0).select(scale, std::numeric_limits<double>::infinity());
     const VectorXd inverse = scale.cwiseInverse();

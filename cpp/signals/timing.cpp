@@ -8,6 +8,7 @@
 
 #include "base/clones.hpp"
 #include "base/quantile.hpp"
+#include "base/scans.hpp"
 
 namespace jointid::signals {
 
@@ -38,25 +39,6 @@ std::vector<Stretch> stretches(Eigen::Index intervals) {
     result.push_back({begin, begin + kStretch});
   }
   return result;
-}
-
-JOINTID_CLONES double smallest_step(const double* x, std::size_t steps) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  std::array<double, kLanes> least;
-  least.fill(kNone);
-  std::size_t k = 0;
-  for (; k + kLanes <= steps; k += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double step = std::fabs(x[k + l + 1] - x[k + l]);
-      const double one = step > 0.0 ? step : kNone;
-      least[l] = one < least[l] ? one : least[l];
-    }
-  }
-  for (; k < steps; ++k) {
-    const double step = std::fabs(x[k + 1] - x[k]);
-    least[0] = step > 0.0 && step < least[0] ? step : least[0];
-  }
-  return *std::min_element(least.begin(), least.end());
 }
 
 /// Of the speeds over 2 kReach intervals.
@@ -108,7 +90,7 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
   const auto parts = stretches(intervals);
   double smallest = std::numeric_limits<double>::infinity();
   double peak = 0.0;
-  smallest = smallest_step(position.data(), static_cast<std::size_t>(intervals));
+  smallest = base::least_steps(position.data(), static_cast<std::size_t>(intervals)).positive;
   for (const auto& part : parts) {
     // Third differences need one interval more on either side.
     const Eigen::Index first = part.begin + 1;

@@ -23,6 +23,7 @@ __all__: list[str] = [
     "Excitation",
     "FirstStage",
     "FittedShift",
+    "Folds",
     "GaOptions",
     "GaResult",
     "GaState",
@@ -110,6 +111,7 @@ __all__: list[str] = [
     "triangle",
     "usable_intervals",
     "window_duration",
+    "window_integrals",
     "window_means",
 ]
 
@@ -492,6 +494,11 @@ class Penalty(PenaltyFunction):
     def noise_limited(self) -> bool: ...
     @property
     def noise_share(self) -> float: ...
+    @property
+    def reading(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Window integrals of the sensor's reading. Only with a gain.
+        """
     @property
     def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
         """
@@ -1386,6 +1393,25 @@ class Inspection:
     def timing_errors(self) -> tuple[float, float]:
         """
         Scatter of the samples' times about the stamps and about an even grid [s].
+        """
+
+class Folds:
+    """
+    Cross-validated least squares on any of many columns.
+    """
+    def __init__(
+        self,
+        rows: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    ) -> None:
+        """
+        The last column is the target.
+        """
+    def misfit(
+        self, columns: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Sum of squares left in each block, with these columns fitted to the other blocks.
         """
 
 class Trajectory:
@@ -3840,6 +3866,17 @@ def window_duration(
 ) -> float:
     """
     The duration of a window that the velocity's noise asks for [s].
+    """
+
+def window_integrals(
+    values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    weights: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    windows: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+    *,
+    rise: bool = False,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    Integrals over windows, one row a window, or how far the values rise there.
     """
 
 def window_means(

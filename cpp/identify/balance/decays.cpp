@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
@@ -28,20 +29,135 @@ JOINTID_CLONES void powers(const double* speed, double exponent, std::size_t cou
   }
 }
 
-/// For every window w, sums[w * kLanes + lane] = sum of weight exp(-rates[lane] x), but for x of
-/// `vanishing` and more. first[w] counts from first[0].
-JOINTID_CLONES void window_sums(const double* x, const double* weight, const std::size_t* first,
-                                std::size_t windows, const double* rates, double vanishing,
-                                double* sums) {
+constexpr std::size_t kNodes = 12;  // of a run, at most
+constexpr std::size_t kDegree = 24;
+
+/// Neighbouring nodes of a window, whose speeds are alike: weight exp(-rate x) is summed over them
+/// by Taylor's series about the middle of their range, one exponential for all of them.
+struct Run {
+  std::size_t begin;
+  std::size_t end;
+  double middle;
+  double half;                              ///< of the range of x
+  double least;                             ///< x
+  std::array<double, kDegree + 1> moments;  ///< sums of weight ((x - middle) / half)^j / j!
+};
+
+constexpr std::array<double, kDegree + 1> kInverseFactorials = [] {
+  std::array<double, kDegree + 1> result{1.0};
+  for (std::size_t j = 1; j <= kDegree; ++j) result[j] = result[j - 1] / static_cast<double>(j);
+  return result;
+}();
+
+JOINTID_CLONES void take_moments(const double* x, const double* weight, Run& run) {
+  std::array<double, kNodes> place{};
+  std::array<double, kNodes> power{};
+  const double scale = run.half > 0.0 ? 1.0 / run.half : 0.0;
+  for (std::size_t i = 0; i < run.end - run.begin; ++i) {
+    place[i] = (x[run.begin + i] - run.middle) * scale;
+    power[i] = weight[run.begin + i];
+  }
+  for (std::size_t j = 0; j <= kDegree; ++j) {
+    std::array<double, 4> sum{};
+    for (std::size_t i = 0; i < kNodes; i += 4) {
+      for (std::size_t l = 0; l < 4; ++l) sum[l] += power[i + l];
+    }
+    run.moments[j] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) * kInverseFactorials[j];
+    for (std::size_t i = 0; i < kNodes; ++i) power[i] *= place[i];
+  }
+}
+
+/// The runs of windows; `first` counts from first[0].
+std::vector<Run> runs_of(const std::vector<double>& x, const double* weight,
+                         const std::size_t* first, std::size_t windows,
+                         std::vector<std::size_t>& first_run) {
+  std::vector<Run> runs;
+  runs.reserve(windows + x.size() / kNodes);
+  first_run.reserve(windows + 1);
+  for (std::size_t w = 0; w < windows; ++w) {
+    first_run.push_back(runs.size());
+    const std::size_t end = first[w + 1] - first[0];
+    for (std::size_t begin = first[w] - first[0]; begin < end; begin += kNodes) {
+      auto& run = runs.emplace_back();
+      run.begin = begin;
+      run.end = std::min(end, begin + kNodes);
+      double low = x[begin];
+      double high = low;
+      for (std::size_t i = begin + 1; i < run.end; ++i) {
+        low = std::min(low, x[i]);
+        high = std::max(high, x[i]);
+      }
+      run.least = low;
+      run.half = 0.5 * (high - low);
+      run.middle = low + run.half;
+      take_moments(x.data(), weight, run);
+    }
+  }
+  first_run.push_back(runs.size());
+  return runs;
+}
+
+struct Lanes {
+  std::array<double, kLanes> rates;
+  std::size_t count;
+  double fastest;    ///< the largest |rate|
+  double vanishing;  ///< x from which all of them vanish
+};
+
+/// The series at y, without a loop: the loop over the lanes must vectorise.
+template <std::size_t... Terms>
+[[gnu::always_inline]] inline double series(const double* moments, double y,
+                                            std::index_sequence<Terms...>) {
+  constexpr std::size_t kTerms = sizeof...(Terms);
+  double result = moments[kTerms];
+  ((result = result * y + moments[kTerms - 1 - Terms]), ...);
+  return result;
+}
+
+/// Adds a run's sums by the series up to `Degree`.
+template <std::size_t Degree>
+[[gnu::always_inline]] inline void add_series(const Run& run, const double* rates, double* sum) {
+  const double half = run.half;
+  const double middle = run.middle;
+  const double* moments = run.moments.data();
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const double part = series(moments, -rates[l] * half, std::make_index_sequence<Degree>());
+    sum[l] += part * base::exp_decay(rates[l] * middle);
+  }
+}
+
+/// For every window w, sums[w + lane * stride] = sum of weight exp(-rates[lane] x), but for runs
+/// whose decays vanish.
+JOINTID_CLONES void window_sums(const double* x, const double* weight, const Run* runs,
+                                const std::size_t* first_run, std::size_t windows,
+                                const Lanes& lanes, double* sums, std::size_t stride) {
+  const std::array<double, kLanes> rates = lanes.rates;
   for (std::size_t w = 0; w < windows; ++w) {
     std::array<double, kLanes> sum{};
-    for (std::size_t i = first[w] - first[0]; i < first[w + 1] - first[0]; ++i) {
-      if (x[i] >= vanishing) continue;
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        sum[l] += weight[i] * base::exp_decay(rates[l] * x[i]);
+    for (std::size_t r = first_run[w]; r < first_run[w + 1]; ++r) {
+      const Run& run = runs[r];
+      if (run.least >= lanes.vanishing) continue;
+      // As many terms as leave y^(d+1) / (d+1)! below 2^-54, beside the largest decay of the run.
+      const double y = lanes.fastest * run.half;
+      if (y <= 5.8e-3) {
+        add_series<5>(run, rates.data(), sum.data());
+      } else if (y <= 0.107) {
+        add_series<9>(run, rates.data(), sum.data());
+      } else if (y <= 0.41) {
+        add_series<13>(run, rates.data(), sum.data());
+      } else if (y <= 1.1) {
+        add_series<18>(run, rates.data(), sum.data());
+      } else if (y <= 2.5) {
+        add_series<kDegree>(run, rates.data(), sum.data());
+      } else {
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+          for (std::size_t l = 0; l < kLanes; ++l) {
+            sum[l] += weight[i] * base::exp_decay(rates[l] * x[i]);
+          }
+        }
       }
     }
-    for (std::size_t l = 0; l < kLanes; ++l) sums[w * kLanes + l] = sum[l];
+    for (std::size_t l = 0; l < lanes.count; ++l) sums[w + l * stride] = sum[l];
   }
 }
 
@@ -56,19 +172,22 @@ void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const 
   const double* speed = nodes.speed.data() + begin;
   group.exponent == 2.0 ? squares(speed, count, x.data())
                         : powers(speed, group.exponent, count, x.data());
-  Eigen::VectorXd sums(static_cast<Eigen::Index>(rows * kLanes));  // not set to zero before
+  const double* weight = nodes.weight.data() + begin;
+  std::vector<std::size_t> first_run;
+  const auto runs = runs_of(x, weight, nodes.first.data() + windows.begin, rows, first_run);
   for (std::size_t from = 0; from < group.rates.size(); from += kLanes) {
     if (cancel != nullptr) cancel->check();
-    const std::size_t lanes = std::min(kLanes, group.rates.size() - from);
-    std::array<double, kLanes> rates{};
-    std::copy_n(group.rates.begin() + static_cast<std::ptrdiff_t>(from), lanes, rates.begin());
-    const double least = *std::min_element(rates.begin(), rates.begin() + lanes);
-    window_sums(x.data(), nodes.weight.data() + begin, nodes.first.data() + windows.begin, rows,
-                rates.data(), vanishing_at(least), sums.data());
-    const Eigen::Map<const Eigen::MatrixXd> found(sums.data(), kLanes,
-                                                  static_cast<Eigen::Index>(rows));
-    columns.middleCols(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(lanes)) =
-        found.topRows(static_cast<Eigen::Index>(lanes)).transpose();
+    Lanes lanes{{}, std::min(kLanes, group.rates.size() - from), 0.0, 0.0};
+    double least = group.rates[from];
+    for (std::size_t l = 0; l < lanes.count; ++l) {
+      lanes.rates[l] = group.rates[from + l];
+      lanes.fastest = std::max(lanes.fastest, std::fabs(lanes.rates[l]));
+      least = std::min(least, lanes.rates[l]);
+    }
+    lanes.vanishing = vanishing_at(least);
+    window_sums(x.data(), weight, runs.data(), first_run.data(), rows, lanes,
+                columns.col(static_cast<Eigen::Index>(from)).data(),
+                static_cast<std::size_t>(columns.outerStride()));
   }
 }
 

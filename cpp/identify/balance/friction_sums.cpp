@@ -31,8 +31,9 @@ JOINTID_CLONES void stribeck_values(double shape, const double* speed, const dou
 JOINTID_CLONES void stribeck_slopes(double shape, const double* speed, const double* weight,
                                     std::size_t count, double* value, double* slope) {
   for (std::size_t i = 0; i < count; ++i) {
-    value[i] = weight[i] * model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
-    slope[i] = weight[i] * model::basis_slope(model::SpeedBasis::stribeck, speed[i], &shape, 0);
+    const double decay = model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
+    value[i] = weight[i] * decay;
+    slope[i] = weight[i] * (-speed[i] * speed[i] * decay);
   }
 }
 

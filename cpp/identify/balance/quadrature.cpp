@@ -17,8 +17,17 @@ constexpr std::size_t kShort = 256;  // samples of a window whose nodes are made
 
 /// Whether every interval of a window is usable.
 bool whole(const std::vector<std::uint8_t>& usable, const Window& window) {
+  const std::uint8_t* flags = usable.data() + window.begin;
   const auto count = static_cast<std::size_t>(window.end - window.begin);
-  return std::memchr(usable.data() + window.begin, 0, count) == nullptr;
+  if (count > 16) return std::memchr(flags, 0, count) == nullptr;
+  if (count < 8) return std::all_of(flags, flags + count, [](std::uint8_t f) { return f != 0; });
+  // The usual window, without a call: eight flags at either end, which may overlap.
+  const auto has_zero = [&](std::size_t from) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, flags + from, sizeof eight);
+    return ((eight - 0x0101010101010101U) & ~eight & 0x8080808080808080U) != 0;
+  };
+  return !has_zero(0) && !has_zero(count - 8);
 }
 
 /// Sum over a window's usable intervals of value(k), k the interval k -> k+1.

@@ -302,17 +302,23 @@ model::Decay decay_of(const Term& term) {
 }
 
 Term find_term(std::string_view key) {
-  std::string known;
   for (const auto& row : term_table()) {
-    if (row.harmonic == Harmonic::none && !is_own(row) && row.key == key) return row;
-    if (const auto signal = signal_of(row, key); !signal.empty()) return of_signal(row, signal);
-    Term term = row;
-    if (row.harmonic != Harmonic::none && key.size() > row.key.size() + 1 &&
-        key.starts_with(row.key) && key[row.key.size()] == '_' &&
-        read_order(key.substr(row.key.size() + 1), term.order)) {
+    if (row.harmonic == Harmonic::none) {
+      if (!is_own(row) && row.key == key) return row;
+      if (const auto signal = signal_of(row, key); !signal.empty()) return of_signal(row, signal);
+      continue;
+    }
+    double order = row.order;
+    if (key.size() > row.key.size() + 1 && key.starts_with(row.key) && key[row.key.size()] == '_' &&
+        read_order(key.substr(row.key.size() + 1), order)) {
+      Term term = row;
+      term.order = order;
       term.key = term.name = std::string(key);
       return term;
     }
+  }
+  std::string known;
+  for (const auto& row : term_table()) {
     known += (known.empty() ? "" : ", ") + row.key;
     if (row.harmonic != Harmonic::none) known += "_<order>";
     if (is_own(row)) known += "_<signal>";

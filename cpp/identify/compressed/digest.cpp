@@ -4,11 +4,38 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/clones.hpp"
+#include "base/inner_product.hpp"
+
 namespace jointid::identify {
 
 namespace {
 
 constexpr std::size_t kMerged = 32;  // parts at a time: the stack stays in the cache
+
+/// Takes the `count` directions at q, `rows` apart, out of a column; `products`: its share of each.
+JOINTID_CLONES void take_out(const double* q, std::size_t count, std::size_t rows, double* column,
+                             double* products) {
+  for (std::size_t j = 0; j < count; ++j)
+    products[j] = base::inner_product(q + j * rows, column, rows);
+  std::size_t j = 0;
+  for (; j + 4 <= count; j += 4) {
+    const double* const direction = q + j * rows;
+    const double* const share = products + j;
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double first = share[0] * direction[i] + share[1] * direction[i + rows];
+      const double last = share[2] * direction[i + 2 * rows] + share[3] * direction[i + 3 * rows];
+      column[i] -= first + last;
+    }
+  }
+  for (; j < count; ++j) {
+    for (std::size_t i = 0; i < rows; ++i) column[i] -= products[j] * q[i + j * rows];
+  }
+}
+
+JOINTID_CLONES double inner_product(const double* a, const double* b, std::size_t count) {
+  return base::inner_product(a, b, count);
+}
 
 /// Splits columns into their projections on the constant ones and inner products of the rest.
 Digest split(const Eigen::MatrixXd& constant, Eigen::MatrixXd& columns, Eigen::Index shaped) {
@@ -17,16 +44,20 @@ Digest split(const Eigen::MatrixXd& constant, Eigen::MatrixXd& columns, Eigen::I
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(constant.rows(), m);
   Digest result;
   result.triangle = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
-  result.projections.noalias() = q.transpose() * columns;
-  columns.noalias() -= q * result.projections;
+  result.projections.resize(m, columns.cols());
+  const auto rows = static_cast<std::size_t>(columns.rows());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    take_out(q.data(), static_cast<std::size_t>(m), rows, columns.col(j).data(),
+             result.projections.col(j).data());
+  }
   const Eigen::Index nodes = shaped > 0 ? columns.cols() / shaped : 0;
   result.remainders.resize(pairs(shaped), nodes);
   for (Eigen::Index node = 0; node < nodes; ++node) {
     Eigen::Index pair = 0;
     for (Eigen::Index j = 0; j < shaped; ++j) {
       for (Eigen::Index i = 0; i <= j; ++i) {
-        result.remainders(pair++, node) =
-            columns.col(node * shaped + i).dot(columns.col(node * shaped + j));
+        result.remainders(pair++, node) = inner_product(
+            columns.col(node * shaped + i).data(), columns.col(node * shaped + j).data(), rows);
       }
     }
   }

@@ -1,9 +1,10 @@
 #include "identify/penalty/instruments.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 #include <utility>
+
+#include "base/householder.hpp"
 
 namespace jointid::identify {
 
@@ -123,8 +124,7 @@ Eigen::MatrixXd square_triangle(Eigen::MatrixXd rows) {
     rows.conservativeResize(m, Eigen::NoChange);
     rows.bottomRows(m - given).setZero();
   }
-  const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(rows);  // in place
-  return qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
+  return base::triangle_of(rows);
 }
 
 Eigen::MatrixXd fold(const std::vector<Eigen::MatrixXd>& triangles) {

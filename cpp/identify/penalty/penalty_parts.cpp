@@ -56,8 +56,8 @@ std::optional<FirstStage> PenaltyParts::first_stage(
     const std::vector<Eigen::Index>& free, const std::vector<std::unique_ptr<Penalty>>& made,
     base::Pool* pool) const {
   if (frame_.residual() != Residual::instruments) return std::nullopt;
-  const Instruments instruments =
-      (made.empty() ? part(0) : *made[0]).instruments(free, windows_.size());
+  const Instruments instruments = made.empty() ? part(0).instruments(free, windows_.size())
+                                               : made[0]->instruments(free, windows_.size());
   std::vector<Eigen::MatrixXd> triangles(count());
   for_each(count(), pool, [&](std::size_t i) {
     triangles[i] = made.empty() ? part(i).instrument_triangle(instruments, nullptr)

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/input_error.hpp"
+#include "base/scans.hpp"
 
 namespace jointid::identify {
 
@@ -21,18 +22,9 @@ constexpr Eigen::Index kRarest = 5;  // at most one interval in five is left out
 constexpr Eigen::Index kReach = 2;   // intervals left out on either side of what is not smooth
 constexpr double kFine = 1e-4;       // of the peak speed: so fine a velocity is zero only at rest
 constexpr double kStopped = 0.5;     // of the change of speed a sample: slower between two of them
+constexpr Eigen::Index kBlock = 64;  // samples that are looked at together before one by one
 constexpr double kResolved =
     0.005;  // of the peak speed: a motion slower than this per quantum seems to stick
-
-template <class Value>
-double smallest_positive(Eigen::Index from, Eigen::Index to, Value value) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = from; k < to; ++k) {
-    const double size = std::fabs(value(k));
-    smallest = size > 0.0 && size < smallest ? size : smallest;
-  }
-  return smallest;
-}
 
 /// Marks samples first..last of each run in which `same(k)` holds for consecutive k, if the run
 /// passes `long_enough`.
@@ -86,9 +78,14 @@ void mark_brief_stops(const RecordingView& r, const MotionScale& scale,
                       std::vector<std::uint8_t>& standing) {
   if (scale.finest >= kFine * scale.peak) return;  // steps of an encoder look like stops
   const double slow = kResolved * scale.peak;
-  for (Eigen::Index k = 2; k + 3 < r.samples(); ++k) {
-    if (std::fabs(r.velocity[k]) > slow) continue;
-    if (r.velocity[k] == 0.0 || stopped_briefly(r, k)) standing[static_cast<std::size_t>(k)] = 1;
+  for (Eigen::Index begin = 2; begin + 3 < r.samples(); begin += kBlock) {
+    const Eigen::Index end = std::min(begin + kBlock, r.samples() - 3);
+    const auto count = static_cast<std::size_t>(end - begin);
+    if (base::least_sizes(r.velocity.data() + begin, count).any > slow) continue;
+    for (Eigen::Index k = begin; k < end; ++k) {
+      if (std::fabs(r.velocity[k]) > slow) continue;
+      if (r.velocity[k] == 0.0 || stopped_briefly(r, k)) standing[static_cast<std::size_t>(k)] = 1;
+    }
   }
 }
 
@@ -100,7 +97,11 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
     return k > 0 && after_gap[static_cast<std::size_t>(k)] == 0 &&
            r.position[k] == r.position[k - 1];
   };
-  mark_runs(r.samples(), standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
+  const auto n = static_cast<std::size_t>(r.samples());
+  // Of most recordings no sample repeats the one before, and none is at rest.
+  const Eigen::Index alike =
+      base::least_steps(r.position.data(), n - 1).any > 0.0 ? 0 : r.samples();
+  mark_runs(alike, standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
     const bool stuck =
         last - first >= 2 && r.time[last] - r.time[first - 1] >= sticking_time(scale);
     any = any || stuck;
@@ -111,7 +112,8 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
     if (standing[static_cast<std::size_t>(k)] != 0 && unchanged(k))
       standing[static_cast<std::size_t>(k - 1)] = 1;
   }
-  if (scale.finest < kResolved * scale.peak) {
+  if (scale.finest < kResolved * scale.peak &&
+      !(base::least_sizes(r.velocity.data(), n).any > 0.0)) {
     mark_runs(
         r.samples(), standing, [&](Eigen::Index k) { return r.velocity[k] == 0.0; },
         [](Eigen::Index first, Eigen::Index last) { return last > first; });
@@ -155,12 +157,8 @@ std::vector<Region> quiet_regions(const RecordingView& r, double span, double re
   std::vector<Region> regions;
   for (Eigen::Index begin = 0; begin < n; begin += length) {
     const Eigen::Index end = std::min(n, begin + length);
-    double low = r.position[begin];
-    double high = low;
-    for (Eigen::Index k = begin + 1; k < end; ++k) {
-      low = std::min(low, r.position[k]);
-      high = std::max(high, r.position[k]);
-    }
+    const auto [low, high] =
+        base::range_of(r.position.data() + begin, static_cast<std::size_t>(end - begin));
     const double lasting =
         r.time[std::min(n - 1, end)] - r.time[std::max<Eigen::Index>(0, begin - 1)];
     if (high - low > reach && lasting < 0.5 * span) continue;
@@ -237,12 +235,18 @@ void mark_jolts(const RecordingView& r, const MotionScale& scale,
     return false;
   };
   std::vector<Eigen::Index> turns;
-  for (Eigen::Index k = 0; k + 1 < n; ++k) {
-    const double here = r.velocity[k];
-    const double next = r.velocity[k + 1];
-    const bool turning =
-        (here > 0.0 && next <= 0.0) || (here < 0.0 && next >= 0.0) || (here == 0.0 && next != 0.0);
-    if (turning && jumps(k)) turns.push_back(k);
+  for (Eigen::Index begin = 0; begin + 1 < n; begin += kBlock) {
+    const Eigen::Index end = std::min(begin + kBlock, n - 1);
+    const auto [low, high] =
+        base::range_of(r.velocity.data() + begin, static_cast<std::size_t>(end - begin) + 1);
+    if (low > 0.0 || high < 0.0) continue;
+    for (Eigen::Index k = begin; k < end; ++k) {
+      const double here = r.velocity[k];
+      const double next = r.velocity[k + 1];
+      const bool turning = (here > 0.0 && next <= 0.0) || (here < 0.0 && next >= 0.0) ||
+                           (here == 0.0 && next != 0.0);
+      if (turning && jumps(k)) turns.push_back(k);
+    }
   }
   // With few samples per reversal every reversal jumps: a bias is better than no data.
   constexpr Eigen::Index width = 2 * kReach + 1;
@@ -263,19 +267,18 @@ double MotionScale::memory() const {
 
 MotionScale motion_scale(const RecordingView& r) {
   MotionScale scale;
-  double low = r.position[0];
-  double high = low;
-  for (Eigen::Index k = 0; k < r.samples(); ++k) {
-    scale.peak = std::max(scale.peak, std::fabs(r.velocity[k]));
-    low = std::min(low, r.position[k]);
-    high = std::max(high, r.position[k]);
-  }
+  const auto n = static_cast<std::size_t>(r.samples());
+  const auto largest = [n](const RecordingView::Signal& signal) {
+    const auto [low, high] = base::range_of(signal.data(), n);
+    return std::max(std::fabs(low), std::fabs(high));
+  };
+  const auto [low, high] = base::range_of(r.position.data(), n);
+  scale.peak = largest(r.velocity);
   scale.travel = high - low;
   scale.period = motion_period(r, scale.travel);
-  scale.push = r.torque.cwiseAbs().maxCoeff();
-  scale.quantum = smallest_positive(
-      1, r.samples(), [&](Eigen::Index k) { return r.position[k] - r.position[k - 1]; });
-  scale.finest = smallest_positive(1, r.samples(), [&](Eigen::Index k) { return r.velocity[k]; });
+  scale.push = largest(r.torque);
+  scale.quantum = base::least_steps(r.position.data(), n - 1).positive;
+  scale.finest = base::least_sizes(r.velocity.data(), n).positive;
   return scale;
 }
 

@@ -106,8 +106,8 @@ std::shared_ptr<const SampleDecays> MaskedRecording::decays(
   const auto samples = static_cast<std::size_t>(recording_.samples());
   auto made = std::make_shared<SampleDecays>();
   made->rates = rates;
-  made->speed.resize(samples);
-  made->values.resize(samples * rates.size());
+  made->speed.resize(recording_.samples());
+  made->values.resize(recording_.samples() * static_cast<Eigen::Index>(rates.size()));
   decays_at(recording_.velocity.data(), samples, rates.data(), rates.size(),
             vanishing_at(*std::min_element(rates.begin(), rates.end())), made->speed.data(),
             made->values.data());

@@ -21,8 +21,8 @@ inline double vanishing_at(double rate) {
 /// Decays exp(-rate v^2) at every sample; zero where the slowest of them has vanished.
 struct SampleDecays {
   std::vector<double> rates;
-  std::vector<double> speed;   ///< |v|
-  std::vector<double> values;  ///< those of one sample side by side
+  Eigen::VectorXd speed;   ///< |v|
+  Eigen::VectorXd values;  ///< those of one sample side by side
 };
 
 class MaskedRecording {

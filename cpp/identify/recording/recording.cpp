@@ -1,11 +1,11 @@
 #include "identify/recording/recording.hpp"
 
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "base/input_error.hpp"
+#include "base/scans.hpp"
 
 namespace jointid::identify {
 
@@ -16,12 +16,7 @@ void check_signal(const RecordingView::Signal& signal, const char* name, Eigen::
     throw std::invalid_argument(std::string(name) + " has " + std::to_string(signal.size()) +
                                 " samples, time has " + std::to_string(samples));
   }
-  constexpr std::uint64_t kExponent = 0x7ff0000000000000ULL;  // all ones: infinite, or no number
-  std::uint64_t bad = 0;
-  for (Eigen::Index k = 0; k < samples; ++k) {
-    bad |= (std::bit_cast<std::uint64_t>(signal[k]) & kExponent) == kExponent ? 1U : 0U;
-  }
-  if (bad == 0) return;
+  if (base::all_finite(signal.data(), static_cast<std::size_t>(samples))) return;
   for (Eigen::Index k = 0; k < samples; ++k) {
     if (!std::isfinite(signal[k])) {
       throw std::invalid_argument(std::string(name) + " is not finite at sample " +
@@ -55,7 +50,8 @@ void RecordingView::validate() const {
   check_signal(torque, "torque", n);
   if (has_sensor()) check_signal(sensor, "sensor", n);
   for (const auto& each : own) check_signal(each.series, each.name.c_str(), n);
-  for (Eigen::Index k = 1; k < n; ++k) {
+  const bool rises = base::increases(time.data(), static_cast<std::size_t>(n - 1));
+  for (Eigen::Index k = 1; !rises && k < n; ++k) {
     if (!(time[k] > time[k - 1])) {
       throw std::invalid_argument("time must increase, it does not at sample " + std::to_string(k));
     }

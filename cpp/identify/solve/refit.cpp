@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "base/gram.hpp"
+
 namespace jointid::identify {
 
 namespace {
@@ -50,8 +52,7 @@ class Windows {
       } else {
         kept_[i]->residuals(theta, residual, &jacobian);
       }
-      each[i].square.setZero(jacobian.cols(), jacobian.cols());
-      each[i].square.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+      each[i].square = base::symmetric_products(jacobian, jacobian);
       each[i].gradient = jacobian.transpose() * residual;
       each[i].penalty = residual.squaredNorm();
     });
@@ -61,7 +62,6 @@ class Windows {
       all.gradient += each[i].gradient;
       all.penalty += each[i].penalty;
     }
-    all.square = all.square.selfadjointView<Eigen::Lower>();
     return all;
   }
 

@@ -1,9 +1,9 @@
 #include "identify/solve/regression.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <vector>
 
+#include "base/householder.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
 namespace jointid::identify {
@@ -12,12 +12,6 @@ namespace {
 
 constexpr Eigen::Index kRows = 512;    // of a block: it stays in the cache
 constexpr Eigen::Index kTask = 16384;  // rows that one task brings down to one triangle
-
-Eigen::MatrixXd upper(const Eigen::MatrixXd& block) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block);
-  const Eigen::Index rows = std::min(block.rows(), block.cols());
-  return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
-}
 
 std::size_t tasks(Eigen::Index rows) {
   return static_cast<std::size_t>(std::max<Eigen::Index>(1, (rows + kTask - 1) / kTask));
@@ -38,14 +32,14 @@ Eigen::MatrixXd triangle(const Eigen::Ref<const Eigen::MatrixXd>& matrix, base::
       const Eigen::Index count = std::min(kRows, end - row);
       block.resize(reached.rows() + count, columns);
       block << reached, matrix.middleRows(row, count);
-      reached = upper(block);
+      reached = base::triangle_of(block);
     }
   });
   Eigen::MatrixXd all = each[0];
   for (std::size_t i = 1; i < each.size(); ++i) {
     Eigen::MatrixXd both(all.rows() + each[i].rows(), columns);
     both << all, each[i];
-    all = upper(both);
+    all = base::triangle_of(both);
   }
   return all;
 }

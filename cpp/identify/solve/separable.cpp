@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -21,6 +22,10 @@ constexpr int kGrid = 16;  // over each of several
 constexpr int kFew = 4;
 constexpr std::size_t kPolished = 3;  // best points of the grid that are polished
 constexpr double kNarrow = 1e-9;      // of a scale's range: tolerance of the lowest point
+constexpr double kBeside = 1e-5;      // the same, where the slope tells it from there on
+constexpr double kLevel = 1e-14;      // the last step along the slope
+constexpr int kSlopes = 40;
+constexpr double kRounding = 1e-12;  // of a penalty: values do not tell points so near
 
 /// The penalty as a function of the free shapes alone.
 class Eliminated {
@@ -51,6 +56,26 @@ class Eliminated {
     if (result.best.size() > 0 && value > result.penalty) return;
     result.best = theta;
     result.penalty = value;
+  }
+
+  /// Takes a point where the penalty is level: rounding decides which value is lower.
+  void settle(const Eigen::VectorXd& theta, SeparableResult& result) const {
+    const double value = penalty_(theta, &pool_.cancel());
+    ++result.evaluations;
+    if (result.best.size() > 0 && value > result.penalty * (1.0 + kRounding)) return;
+    result.best = theta;
+    result.penalty = value;
+  }
+
+  [[nodiscard]] bool is_linear() const { return penalty_.is_linear(); }
+
+  /// The penalty's derivative by the only free shape, the coefficients at their best: they change
+  /// with it, but to first order the penalty does not change with them.
+  [[nodiscard]] double slope(double shape) const {
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd jacobian;
+    penalty_.residuals(full({shape}), residual, &jacobian, &pool_.cancel());
+    return 2.0 * jacobian.col(free_[0]).dot(residual);
   }
 
   /// Penalties at many points, over the threads.
@@ -101,6 +126,44 @@ bool falls_from(const std::vector<double>& scanned, double from) {
   return true;
 }
 
+/// Where the penalty is level between two points, if its slopes there say that it is; by false
+/// position (Illinois). Values tell the lowest point to the root of their rounding only, slopes to
+/// their rounding itself.
+std::optional<double> level_between(const Eliminated& reduced, const Scale& scale,
+                                    search::Interval interval, base::Pool& pool,
+                                    SeparableResult& result) {
+  const auto slope = [&](double share) {
+    pool.poll();
+    ++result.evaluations;
+    return reduced.slope(scale.at(share));
+  };
+  auto [left, right] = interval;
+  double falls = slope(left);
+  double rises = slope(right);
+  if (!(falls < 0.0 && rises > 0.0)) return std::nullopt;
+  double found = left;
+  int side = 0;  // which end the last point took the place of
+  for (int i = 0; i < kSlopes; ++i) {
+    const double next = (left * rises - right * falls) / (rises - falls);
+    const double here = slope(next);
+    const bool settled = std::fabs(next - found) <= kLevel || here == 0.0;
+    found = next;
+    if (settled) break;
+    if (here < 0.0) {
+      left = next;
+      falls = here;
+      if (side < 0) rises *= 0.5;  // the other end must move, too
+      side = -1;
+    } else {
+      right = next;
+      rises = here;
+      if (side > 0) falls *= 0.5;
+      side = 1;
+    }
+  }
+  return found;
+}
+
 /// The lowest point of an interval.
 void narrow(const Eliminated& reduced, const Scale& scale, search::Interval interval,
             base::Pool& pool, SeparableResult& result) {
@@ -109,6 +172,15 @@ void narrow(const Eliminated& reduced, const Scale& scale, search::Interval inte
     ++result.evaluations;
     return reduced.values({{scale.at(share)}})[0];
   };
+  if (reduced.is_linear()) {
+    const double near = search::minimise_brent(value, interval, kBeside);
+    const search::Interval beside{std::max(interval.left, near - 10.0 * kBeside),
+                                  std::min(interval.right, near + 10.0 * kBeside)};
+    if (const auto level = level_between(reduced, scale, beside, pool, result)) {
+      reduced.settle(reduced.full({scale.at(*level)}), result);
+      return;
+    }
+  }
   const double best = search::minimise_brent(value, interval, kNarrow);
   reduced.offer(reduced.full({scale.at(best)}), result);
 }

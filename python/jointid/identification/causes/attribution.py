@@ -182,7 +182,7 @@ def at_scales(fit: Fitted, matrix: Array) -> list[tuple[int, Folds]]:
     scaled = []
     for factor in SCALES:
         rows, _ = summed(matrix, fit.run, factor)
-        folds = Folds.of(rows[:, :-1], rows[:, -1])
+        folds = Folds.of_rows(rows)
         if folds is not None and len(rows) > 3 * fit.jacobian.shape[1] + 20:
             scaled.append((factor, folds))
     return scaled

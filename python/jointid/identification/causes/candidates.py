@@ -285,11 +285,12 @@ def _has_order(fit: Fitted, family: str, order: float) -> bool:
 
 
 def _pair(angle: Array) -> Array:
-    return np.column_stack([np.cos(angle), np.sin(angle)])
+    return np.column_stack(_core.circle(angle))
 
 
 def _slope(angle: Array) -> Array:
-    return np.column_stack([-np.sin(angle), np.cos(angle)])
+    cosine, sine = _core.circle(angle)
+    return np.column_stack([-np.asarray(sine), cosine])
 
 
 def _angle(fit: Fitted, order: float) -> Array:

@@ -173,11 +173,11 @@ class Fitted:
 
     def integral(self, signal: Callable[[int, Recording], Array]) -> Array:
         """Integral over each window of a signal of the samples, shape (samples,) or (samples, m)."""
-        return self._by_window(signal, self._summed)
+        return self._by_window(signal, rise=False)
 
     def rise(self, signal: Callable[[int, Recording], Array]) -> Array:
         """How far a signal rises over the integrated part of each window."""
-        return self._by_window(signal, self._risen)
+        return self._by_window(signal, rise=True)
 
     @classmethod
     def of(
@@ -233,28 +233,15 @@ class Fitted:
         actual[:, place] = -reading
         return replace(fit, residual=fit.residual + actual @ start, start=start)
 
-    def _summed(self, number: int, values: Array) -> Array:
-        weight = self.weights[number]
-        middle = 0.5 * (values[1:] + values[:-1])
-        return middle * (weight if values.ndim == 1 else weight[:, np.newaxis])
-
-    def _risen(self, number: int, values: Array) -> Array:
-        used = self.weights[number] > 0.0
-        step = np.diff(values, axis=0)
-        return step * (used if values.ndim == 1 else used[:, np.newaxis])
-
-    def _by_window(
-        self,
-        signal: Callable[[int, Recording], Array],
-        steps: Callable[[int, Array], Array],
-    ) -> Array:
+    def _by_window(self, signal: Callable[[int, Recording], Array], *, rise: bool) -> Array:
         bounds = np.asarray(self.penalty.windows)
         parts = []
         for number, recording in enumerate(self.problem.recordings):
             mine = slice(*np.searchsorted(self._every_run, (number, number + 1)))
-            each = steps(number, np.asarray(signal(number, recording), dtype=np.float64))
-            total = np.concatenate([np.zeros((1, *each.shape[1:])), np.cumsum(each, axis=0)])
-            parts.append(total[bounds[mine, 1]] - total[bounds[mine, 0]])
+            values = np.asarray(signal(number, recording), dtype=np.float64)
+            weights = self.weights[number]
+            each = _core.window_integrals(values, weights, bounds[mine], rise=rise)
+            parts.append(each[:, 0] if values.ndim == 1 else each)
         return self.summed(np.concatenate(parts))
 
 

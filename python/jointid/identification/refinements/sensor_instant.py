@@ -156,8 +156,7 @@ def _integrals(
     """
     bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
     steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
-    shapes = np.full(len(penalty.names) - penalty.coefficients, 1.0)
-    reading = np.asarray(penalty.columns(shapes))[:, list(penalty.names).index("sensor_gain")]
+    reading = np.asarray(penalty.reading)
     duration = np.asarray(penalty.usable_duration)
     faster, angle, speed, step, lasting = np.zeros((5, len(run)))
     for number, recording in enumerate(problem.recordings):

@@ -47,6 +47,11 @@ class Stretch:
         """Mean time between samples [s]."""
         return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
 
+    @cached_property
+    def unusable_before(self) -> NDArray[np.int64]:
+        """How many samples before each are not usable, shape (n + 1,)."""
+        return np.concatenate([[0], np.cumsum(~self.usable)])
+
 
 @dataclass(frozen=True, kw_only=True)
 class SmoothWindows:
@@ -96,11 +101,10 @@ class SmoothWindows:
     def kept(self) -> NDArray[np.bool_]:
         """Which of these windows are used."""
         stretch = self.stretch
-        bad = np.zeros(len(stretch.time), dtype=np.int64)
+        kept = np.ones(len(self.middles), dtype=bool)
         if self.usable_only:
-            bad[:] = ~stretch.usable
-        before = np.concatenate([[0], np.cumsum(bad)])
-        kept = before[self.middles + self.half] - before[self.middles - self.half] == 0
+            before = stretch.unusable_before
+            kept = before[self.middles + self.half] == before[self.middles - self.half]
         if self.clear:
             sign = np.sign(stretch.velocity)
             turned = np.concatenate([[0], np.cumsum(sign[1:] != sign[:-1])])

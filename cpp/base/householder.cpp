@@ -1,0 +1,47 @@
+#include "base/householder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "base/clones.hpp"
+#include "base/inner_product.hpp"
+
+namespace jointid::base {
+
+namespace {
+
+/// Reflects column after column of a matrix, stored column by column, onto its triangle.
+JOINTID_CLONES void reflect(double* matrix, std::size_t rows, std::size_t columns) {
+  for (std::size_t k = 0; k < std::min(rows, columns); ++k) {
+    double* own = matrix + k * rows + k;
+    const std::size_t below = rows - k - 1;
+    const double head = own[0];
+    const double tail = inner_product(own + 1, own + 1, below);
+    if (tail <= std::numeric_limits<double>::min()) continue;
+    const double size = std::sqrt(head * head + tail);
+    const double diagonal = head >= 0.0 ? -size : size;
+    // The reflection is 1 - weight v v' with v = (1, own / (head - diagonal)).
+    const double scale = 1.0 / (head - diagonal);
+    const double weight = (diagonal - head) / diagonal;
+    for (std::size_t i = 1; i <= below; ++i) own[i] *= scale;
+    for (std::size_t j = k + 1; j < columns; ++j) {
+      double* other = matrix + j * rows + k;
+      const double along = weight * (other[0] + inner_product(own + 1, other + 1, below));
+      other[0] -= along;
+      for (std::size_t i = 1; i <= below; ++i) other[i] -= along * own[i];
+    }
+    own[0] = diagonal;
+  }
+}
+
+}  // namespace
+
+Eigen::MatrixXd triangle_of(Eigen::MatrixXd& matrix) {
+  reflect(matrix.data(), static_cast<std::size_t>(matrix.rows()),
+          static_cast<std::size_t>(matrix.cols()));
+  return matrix.topRows(std::min(matrix.rows(), matrix.cols())).triangularView<Eigen::Upper>();
+}
+
+}  // namespace jointid::base

@@ -1,0 +1,34 @@
+#pragma once
+// Extremes over the samples of a signal, several samples side by side: what passes over a whole
+// recording ask for first. Any order of the samples gives the same bits.
+
+#include <cstddef>
+
+namespace jointid::base {
+
+struct Range {
+  double low;
+  double high;
+};
+/// Of at least one sample.
+Range range_of(const double* x, std::size_t count);
+
+struct Least {
+  double any;       ///< infinite without a sample
+  double positive;  ///< of those that are not 0; infinite without one
+};
+/// The smallest sizes |x|.
+Least least_sizes(const double* x, std::size_t count);
+/// The smallest sizes of `steps` steps from one sample to the next.
+Least least_steps(const double* x, std::size_t steps);
+
+/// Samples `width` apart from their neighbours on both sides, on the same side of both: the largest
+/// distance from the nearer one, at `places` places; 0 without one.
+double largest_height(const double* x, std::size_t width, std::size_t places);
+
+/// Whether no sample is infinite or no number.
+bool all_finite(const double* x, std::size_t count);
+/// Whether each of `steps` steps is upwards.
+bool increases(const double* x, std::size_t steps);
+
+}  // namespace jointid::base

@@ -1,0 +1,149 @@
+// What sums and extremes over many rows are built of, against the same by plain loops.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/gram.hpp"
+#include "base/householder.hpp"
+#include "base/random.hpp"
+#include "base/scans.hpp"
+#include "check.hpp"
+#include "identify/balance/decays.hpp"
+
+namespace jointid::tests {
+namespace {
+
+Eigen::MatrixXd scattered(Eigen::Index rows, Eigen::Index columns) {
+  base::Random random(3, 0);
+  Eigen::MatrixXd result(rows, columns);
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < rows; ++i) result(i, j) = random.uniform() - 0.4;
+  }
+  return result;
+}
+
+}  // namespace
+
+CHECK_CASE("columns: the triangle has the columns' inner products") {
+  for (const Eigen::Index rows : {1, 3, 5, 8, 37, 400}) {
+    Eigen::MatrixXd matrix = scattered(rows, 5);
+    matrix.col(3).setZero();
+    matrix.col(1) *= 1e-9;
+    const Eigen::MatrixXd products = matrix.transpose() * matrix;
+    const Eigen::MatrixXd triangle = base::triangle_of(matrix);
+    CHECK(triangle.rows() == std::min<Eigen::Index>(rows, 5));
+    const Eigen::MatrixXd found = triangle.transpose() * triangle;
+    for (Eigen::Index j = 0; j < 5; ++j) {
+      for (Eigen::Index i = 0; i < 5; ++i) {
+        const double size = std::sqrt(products(i, i) * products(j, j));
+        CHECK_CLOSE(found(i, j), products(i, j), 1e-14 * size);
+      }
+      for (Eigen::Index i = j + 1; i < triangle.rows(); ++i) CHECK(triangle(i, j) == 0.0);
+    }
+  }
+}
+
+CHECK_CASE("columns: symmetric products, also of a part of a matrix") {
+  const Eigen::MatrixXd matrix = scattered(45, 6);
+  const Eigen::VectorXd weight = scattered(45, 1).cwiseAbs();
+  const Eigen::MatrixXd weighted = weight.asDiagonal() * matrix;
+  const Eigen::MatrixXd expected = matrix.transpose() * weighted;
+  const Eigen::MatrixXd found = base::symmetric_products(matrix, weighted);
+  CHECK((found - expected).cwiseAbs().maxCoeff() < 1e-14);
+  const Eigen::MatrixXd part =
+      base::symmetric_products(matrix.block(3, 1, 40, 4), weighted.block(3, 1, 40, 4));
+  const Eigen::MatrixXd wanted =
+      matrix.block(3, 1, 40, 4).transpose() * weighted.block(3, 1, 40, 4);
+  CHECK((part - wanted).cwiseAbs().maxCoeff() < 1e-14);
+}
+
+CHECK_CASE("scans: extremes of samples and steps, wherever they lie") {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd base = scattered(23, 1);
+  for (Eigen::Index place = 0; place < 23; ++place) {
+    for (const double value : {-3.0, 0.0, 4.0}) {
+      Eigen::VectorXd x = base;
+      x[place] = value;
+      const auto [low, high] = base::range_of(x.data(), 23);
+      CHECK(low == x.minCoeff() && high == x.maxCoeff());
+      double any = kNone;
+      double positive = kNone;
+      for (const double one : x) {
+        any = std::min(any, std::fabs(one));
+        if (one != 0.0) positive = std::min(positive, std::fabs(one));
+      }
+      const auto sizes = base::least_sizes(x.data(), 23);
+      CHECK(sizes.any == any && sizes.positive == positive);
+      if (place > 0) x[place - 1] = x[place];  // a step of nothing
+      double least = kNone;
+      double height = 0.0;
+      for (Eigen::Index k = 0; k + 1 < 23; ++k) {
+        const double step = std::fabs(x[k + 1] - x[k]);
+        if (step > 0.0) least = std::min(least, step);
+        if (k + 2 >= 23) continue;
+        const double there = x[k + 1] - x[k];
+        const double back = x[k + 1] - x[k + 2];
+        if (there * back > 0.0)
+          height = std::max(height, std::min(std::fabs(there), std::fabs(back)));
+      }
+      const auto steps = base::least_steps(x.data(), 22);
+      CHECK(steps.positive == least);
+      CHECK(steps.any == (place > 0 ? 0.0 : least));
+      CHECK(base::largest_height(x.data(), 1, 21) == height);
+    }
+  }
+}
+
+CHECK_CASE("scans: what is not finite or does not increase is seen at every place") {
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(21, 0.0, 1.0);
+  CHECK(base::all_finite(time.data(), 21) && base::increases(time.data(), 20));
+  for (Eigen::Index k = 0; k < 21; ++k) {
+    for (const double bad : {HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+      Eigen::VectorXd wrong = time;
+      wrong[k] = bad;
+      CHECK(!base::all_finite(wrong.data(), 21));
+    }
+    if (k == 0) continue;
+    Eigen::VectorXd still = time;
+    still[k] = still[k - 1];
+    CHECK(!base::increases(still.data(), 20));
+  }
+}
+
+CHECK_CASE("decays: sums by series are those of single exponentials") {
+  base::Random random(5, 0);
+  identify::FrictionNodes nodes;
+  for (const int count : {0, 1, 11, 12, 13, 40, 200}) {
+    const double start = 3.0 * random.uniform();
+    const double step = 0.2 * random.uniform() / std::max(1, count);
+    for (int i = 0; i < count; ++i) {
+      nodes.speed.push_back(std::fabs(start - i * step));
+      nodes.weight.push_back(1e-3 * (random.uniform() - 0.2));
+    }
+    nodes.first.push_back(nodes.speed.size());
+  }
+  identify::DecayRates group;
+  for (double rate = -0.05; rate < 2000.0; rate = rate < 0.01 ? rate + 0.03 : 1.4 * rate) {
+    group.rates.push_back(rate);
+  }
+  const auto windows = nodes.first.size() - 1;
+  Eigen::MatrixXd found(static_cast<Eigen::Index>(windows),
+                        static_cast<Eigen::Index>(group.rates.size()));
+  integrate_decays(nodes, {0, windows}, group, nullptr, found);
+  for (std::size_t w = 0; w < windows; ++w) {
+    for (std::size_t k = 0; k < group.rates.size(); ++k) {
+      double sum = 0.0;
+      double size = 0.0;
+      for (std::size_t i = nodes.first[w]; i < nodes.first[w + 1]; ++i) {
+        sum += nodes.weight[i] * std::exp(-group.rates[k] * nodes.speed[i] * nodes.speed[i]);
+        size += std::fabs(nodes.weight[i]);
+      }
+      const auto row = static_cast<Eigen::Index>(w);
+      CHECK_CLOSE(found(row, static_cast<Eigen::Index>(k)), sum, 4e-15 * size);
+    }
+  }
+}
+
+}  // namespace jointid::tests
