@@ -4,7 +4,8 @@ The plant is the core's at a tenth of a millisecond, with a supply that sags und
 is read from it one value after the other, rounded, and with a velocity that lags.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -46,6 +47,20 @@ class Truth:
         }
 
 
+@dataclass(frozen=True)
+class Bench:
+    """How the bench is built and read; what an identification may wrongly assume."""
+
+    sag: float = SAG
+    row: float = ROW  # s, by which a row's position is older than its duty
+    play: float = (
+        0.0  # rad, between the load and the sensor, which is on the motor's side of the gear
+    )
+    mass: float = MASS
+    delay: float = 0.0  # s, of the position loop
+    plant: dict[str, Any] = field(default_factory=dict)  # further fields of the core's joint
+
+
 def servo_joint(*, supply: float | None = None, resistance: float | None = None) -> jid.Joint:
     """What is known of the bench before an identification."""
     return jid.Joint(
@@ -76,7 +91,12 @@ def references(
 
 
 def bench_runs(
-    truth: Truth | None = None, *, seed: int = 0, runs: int = 16, free: bool = True
+    truth: Truth | None = None,
+    *,
+    seed: int = 0,
+    runs: int = 16,
+    free: bool = True,
+    bench: Bench | None = None,
 ) -> list[jid.Recording]:
     """Record runs of the bench.
 
@@ -88,8 +108,9 @@ def bench_runs(
     runs : int
     free : bool
         Whether some runs let the motor turn freely.
+    bench : Bench, optional
     """
-    truth = truth or Truth()
+    truth, bench = truth or Truth(), bench or Bench()
     generator = np.random.default_rng(seed)
     fine = np.arange(0.0, 6.0, 1e-3)
     gains = (100.0, 200.0, 400.0, 800.0)
@@ -100,7 +121,7 @@ def bench_runs(
         if not free:
             driven = np.ones(len(fine))
         plans.append((wanted, driven, gain))
-        loops.append(_loop(truth, gain))
+        loops.append(_loop(truth, gain, bench))
         logs.append((fine, wanted, np.full(len(fine), SUPPLY), driven))
     # A sagging supply depends on the duty, which depends on the motion: two passes settle it.
     for _ in range(2):
@@ -110,24 +131,51 @@ def bench_runs(
         ):
             duty = np.clip(gain * (wanted - position), -1.0, 1.0) * driven
             current = np.abs(duty) * np.abs(duty * SUPPLY - truth.torque_constant * velocity)
-            supply = SUPPLY - SAG * current / truth.resistance
+            supply = SUPPLY - bench.sag * current / truth.resistance
             logs[k] = (fine, wanted, supply, driven)
     motions = _core.roll_out_servos(loops, logs, step=1e-4)
     return [
-        _logged(fine, motion, log, plan[2], gains[(k // 4) % 4], generator, k)
+        _logged(
+            fine,
+            (_sensed(truth, bench, motion, log, plan[2]), motion[1]),
+            log,
+            (plan[2], gains[(k // 4) % 4], bench.row, bench.delay),
+            generator,
+            k,
+        )
         for k, (motion, log, plan) in enumerate(zip(motions, logs, plans, strict=True))
     ]
 
 
-def _loop(truth: Truth, gain: float) -> _core.ServoLoop:
+def _sensed(
+    truth: Truth,
+    bench: Bench,
+    motion: tuple[np.ndarray, np.ndarray],
+    log: tuple[np.ndarray, ...],
+    gain: float,
+) -> np.ndarray:
+    """Position on the motor's side of the gear's play, whose teeth touch on the side of the torque through them."""
+    position, velocity = motion
+    if bench.play == 0.0:
+        return position
+    _, wanted, supply, driven = log
+    k_t, resistance = truth.torque_constant, truth.resistance
+    volts = np.clip(gain * (wanted - position), -1.0, 1.0) * supply
+    motor = k_t / resistance * (volts - k_t * velocity) * driven
+    through = motor - bench.mass * 9.80665 * LENGTH * np.sin(position)
+    return np.asarray(position + 0.5 * bench.play * np.tanh(through / 0.01))
+
+
+def _loop(truth: Truth, gain: float, bench: Bench) -> _core.ServoLoop:
+    fields: dict[str, Any] = {"decay": "none"} | bench.plant
     plant = _core.SimulatedJoint(
-        inertia=truth.inertia + MASS * LENGTH**2,
-        decay="none",
+        inertia=truth.inertia + bench.mass * LENGTH**2,
         coulomb_positive=truth.coulomb,
         coulomb_negative=truth.coulomb,
         viscous_positive=truth.viscous,
         viscous_negative=truth.viscous,
-        weights=[(MASS * 9.80665 * LENGTH, -np.pi / 2)],
+        weights=[(bench.mass * 9.80665 * LENGTH, -np.pi / 2)],
+        **fields,
     )
     k_t = truth.torque_constant
     return _core.ServoLoop(
@@ -136,6 +184,7 @@ def _loop(truth: Truth, gain: float) -> _core.ServoLoop:
         back_emf=k_t * k_t / truth.resistance,
         load_friction=truth.load_friction,
         gain=gain,
+        delay=bench.delay,
     )
 
 
@@ -143,20 +192,21 @@ def _logged(
     fine: np.ndarray,
     motion: tuple[np.ndarray, np.ndarray],
     log: tuple[np.ndarray, ...],
-    gain: float,
-    unit: float,
+    loop: tuple[float, float, float, float],
     generator: np.random.Generator,
     number: int,
 ) -> jid.Recording:
     """Read the signals one after the other: position at the row's time, duty and supply later."""
     position, velocity = motion
     _, wanted, supply, driven = log
+    gain, unit, row, delay = loop
     stamps = np.cumsum(generator.uniform(0.97, 1.03, int(5.95 / PERIOD)) * PERIOD)
     stamps = stamps[stamps < fine[-1] - 0.01]
-    later = stamps + ROW
+    later = stamps + row
     at = np.interp(stamps, fine, position)
     held = wanted[np.searchsorted(fine, later, side="right") - 1]  # as the loop has it
-    duty = np.clip(gain * (held - np.interp(later, fine, position)), -1.0, 1.0)
+    acted = wanted[np.searchsorted(fine, later - delay, side="right") - 1]
+    duty = np.clip(gain * (acted - np.interp(later - delay, fine, position)), -1.0, 1.0)
     on = driven[np.searchsorted(fine, stamps)]
     volts = np.interp(later, fine, supply) + generator.normal(0.0, 0.1, len(stamps))
     return jid.Recording(

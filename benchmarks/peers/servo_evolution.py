@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import cma
@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 import jointid as jid
 from jointid import _core
 from jointid.servo.rolling_out import servo_loop
-from jointid.servo.signals import signals_of
+from jointid.servo.signals import ServoSignals, signals_of
 
 Array = NDArray[np.float64]
 
 # Lowest and highest: torque constant, resistance, viscous, Coulomb, friction of the load, inertia. On the logarithm.
 LOW = np.array([0.1, 1.0, 1e-4, 1e-5, 1e-3, 2e-4])
 HIGH = np.array([1.0, 10.0, 0.1, 0.1, 0.5, 0.01])
+
+FLAT = 1e-6
+"""A search ends when its best errors differ by less [rad], 6e-5 degrees."""
 
 
 def described(joint: jid.Joint, values: Array) -> jid.Joint:
@@ -32,41 +35,28 @@ def described(joint: jid.Joint, values: Array) -> jid.Joint:
     ).with_parameters({"viscous": viscous, "coulomb": coulomb, "load_friction": load})
 
 
-def evolved(
-    recordings: Sequence[jid.Recording],
-    joint: jid.Joint,
-    *,
-    load_friction: bool,
-    generations: int = 60,
-    population: int = 12,
-    seed: int = 0,
-) -> tuple[jid.Joint, int]:
-    """Return the joint whose rollouts are nearest to the logs, and how many sets of rollouts that took.
-
-    Parameters
-    ----------
-    recordings : sequence of Recording
-    joint : Joint
-    load_friction : bool
-    generations, population, seed : int
-    """
-    runs = signals_of(recordings, joint)
-    free = np.array([0, 1, 2, 3, 4, 5] if load_friction else [0, 1, 2, 3, 5])
-    low, high = np.log(LOW[free]), np.log(HIGH[free])
-
-    def values_of(x: Array) -> Array:
-        values = np.zeros(6)
-        values[free] = np.exp(low + (high - low) * x)
-        return values
-
+def cost_of(joint: jid.Joint, runs: Sequence[ServoSignals]) -> Callable[[Array], Array]:
+    """Return the mean error of all runs' rollouts [rad], of many sets of values at once."""
+    start = described(joint, np.sqrt(LOW * HIGH))
+    loops = [servo_loop(start, run) for run in runs]
     logs = [
         (run.time, run.duty if run.reference is None else run.reference, run.supply, run.driven)
         for run in runs
     ]
 
     def costs(points: Array) -> Array:
-        loops = [servo_loop(described(joint, values_of(x)), run) for x in points for run in runs]
-        motions = _core.roll_out_servos(loops, logs * len(points), step=1e-3)
+        tried = []
+        for k_t, resistance, viscous, coulomb, load, inertia in points:
+            plant = loops[0].joint.replace(
+                inertia=inertia + joint.link_inertia,
+                coulomb_positive=coulomb,
+                coulomb_negative=coulomb,
+                viscous_positive=viscous,
+                viscous_negative=viscous,
+            )
+            motor = {"torque_per_voltage": k_t / resistance, "back_emf": k_t * k_t / resistance}
+            tried += [loop.replace(joint=plant, load_friction=load, **motor) for loop in loops]
+        motions = _core.roll_out_servos(tried, logs * len(points), step=1e-3)
         errors = [
             np.mean(np.abs(position - runs[k % len(runs)].position))
             for k, (position, _) in enumerate(motions)
@@ -74,20 +64,58 @@ def evolved(
         means: Array = np.reshape(errors, (len(points), -1)).mean(axis=1)
         return means
 
-    strategy = cma.CMAEvolutionStrategy(
-        np.full(len(free), 0.5),
-        0.25,
-        {
-            "bounds": [0.0, 1.0],
-            "seed": seed + 1,
-            "verbose": -9,
-            "popsize": population,
-            "maxiter": generations,
-        },
-    )
-    evaluations = 0
-    while not strategy.stop():
-        points = strategy.ask()
-        strategy.tell(points, list(costs(np.array(points))))
-        evaluations += len(points)
-    return described(joint, values_of(np.asarray(strategy.result.xbest))), evaluations
+    return costs
+
+
+def evolved(
+    recordings: Sequence[jid.Recording],
+    joint: jid.Joint,
+    *,
+    load_friction: bool,
+    searches: int = 2,
+    population: int = 12,
+    generations: int = 250,
+    seed: int = 0,
+) -> tuple[list[float], int]:
+    """Return the values whose rollouts are nearest to the logs, and how many sets of rollouts that took.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    joint : Joint
+    load_friction : bool
+    searches : int
+        With seeds of their own, of which the best counts: one alone may end beside it.
+    population, generations : int
+        A search ends earlier when its errors have become flat.
+    seed : int
+    """
+    costs = cost_of(joint, signals_of(recordings, joint))
+    free = [k for k in range(6) if k != 4 or load_friction]
+    low, high = np.log(LOW[free]), np.log(HIGH[free])
+
+    def values_of(points: Array) -> Array:
+        values = np.zeros((len(points), 6))
+        values[:, free] = np.exp(low + (high - low) * points)
+        return values
+
+    options = {
+        "bounds": [0.0, 1.0],
+        "verbose": -9,
+        "popsize": population,
+        "maxiter": generations,
+        "tolfun": FLAT,
+        "tolfunhist": FLAT,
+    }
+    evaluations, best, found = 0, np.inf, np.full(len(free), 0.5)
+    for number in range(searches):
+        strategy = cma.CMAEvolutionStrategy(
+            np.full(len(free), 0.5), 0.25, {**options, "seed": 1 + searches * seed + number}
+        )
+        while not strategy.stop():
+            points = strategy.ask()
+            strategy.tell(points, list(costs(values_of(np.array(points)))))
+            evaluations += len(points)
+        if strategy.result.fbest < best:
+            best, found = strategy.result.fbest, np.asarray(strategy.result.xbest)
+    return [float(value) for value in values_of(found[None])[0]], evaluations

@@ -34,6 +34,7 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
             "windows": estimate.windows,
             "lead": estimate.lead,
             "lead_found": estimate.lead_found,
+            "command_lag": estimate.command_lag,
             "load_friction": estimate.load_friction,
             "separable": estimate.separable,
             "runs": list(estimate.runs),

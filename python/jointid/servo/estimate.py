@@ -48,6 +48,9 @@ class ServoEstimate:
         Time by which a row's position is older than its duty [s].
     lead_found : bool
         Whether the lead was estimated.
+    command_lag : float or None
+        How much later than its row the command acts on average [s]: half a row if it is held from row to row, 0 if it
+        moves evenly. None where the position loop is not known.
     windows : int
         Windows used.
     window, slowest : float
@@ -73,6 +76,7 @@ class ServoEstimate:
     separable: bool
     lead: float
     lead_found: bool
+    command_lag: float | None
     windows: int
     window: float
     slowest: float

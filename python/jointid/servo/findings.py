@@ -10,7 +10,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, two_digits
 from jointid.servo.estimate import ServoEstimate
-from jointid.servo.solving import BACK_EMF_SHARE, Sought
+from jointid.servo.solving import Sought
 
 _VAGUE = 0.25  # a standard error, of the value
 _MOTOR = ("back_emf", "viscous", "torque_constant", "resistance")
@@ -45,8 +45,8 @@ def _inseparable(estimate: ServoEstimate, sought: Sought) -> Iterator[Finding]:
         parameters=_MOTOR,
         evidence={"sum": Measured(total, "N·m·s/rad")},
         cause="the motor is driven throughout, so back-EMF and viscous friction brake alike and only their sum, "
-        f"{total:.3g} N·m·s/rad, is known: k_t and R are not identifiable, only k_t / R; {percent(BACK_EMF_SHARE)} of "
-        "the sum is taken as back-EMF, which matters where the motor turns freely",
+        f"{total:.3g} N·m·s/rad, is known: k_t and R are not identifiable, only k_t / R; {percent(sought.share)} of "
+        "the sum is taken as back-EMF, whose free swing is nearest to those of all other shares, at worst",
         advice=(
             Action("record", text="runs in which the torque is switched off while the load swings"),
             Action("inspect", text="the winding's resistance, and state it in the joint's drive"),

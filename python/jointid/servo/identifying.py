@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -16,12 +16,13 @@ from jointid.joint.checks import finite_number, positive_number
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model, ModelName
 from jointid.recording.recording import Recording
+from jointid.servo.dividing import share_of
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.findings import findings_of
 from jointid.servo.resampling import drawn, units_of
 from jointid.servo.row_lead import lead_of
 from jointid.servo.signals import ServoSignals, signals_of
-from jointid.servo.solving import NAMES, Sought, fixed_point
+from jointid.servo.solving import HELD, NAMES, SIZE, Sought, fixed_point, weights
 from jointid.servo.tables import parameters_of
 from jointid.servo.windows import KNOWN, SLOWEST, WINDOW, ServoGrid, grid_of
 
@@ -29,6 +30,8 @@ Array = NDArray[np.float64]
 
 _FEWEST = 20  # windows
 _LEAD_ERROR = 2e-4  # s
+_DECIDING, _DOUBT = 200, 0.025  # draws, and the share of them that may say otherwise
+_DIVISIONS = 3  # the share of back-EMF hardly depends on what follows from it
 
 
 def identify_servo(
@@ -98,36 +101,42 @@ def identify_servo(
         raise InputError("a whole number of at least 0 is expected", argument="draws", value=draws)
     found_lead = lead_of(runs, joint) if lead is None else None
     shift = (found_lead or 0.0) if lead is None else finite_number("", "lead", lead)
-    fit = _fitted(
-        runs, joint, load_friction=load_friction, window=window, slowest=slowest, lead=shift
-    )
-    grid, table, sought, values, each = fit
-    others = drawn(each, sought, values, draws, seed) if draws else np.empty((0, len(NAMES)))
+
+    def grid_with(window: float) -> ServoGrid:
+        grid = grid_of(runs, joint, window=window, slowest=slowest, lead=shift)
+        return _usable(grid, window, slowest)
+
+    grid = grid_with(window)
+    sought = _sought(joint, grid, load_friction=load_friction)
+    values = _fitted(grid, sought)
+    if not sought.divided:
+        sought, values = _divided(grid, sought, values, lambda v: share_of(joint, runs, v))
     moved: dict[str, Array] = {}
+    filled = grid.with_load(_side(grid, values))
+    if sought.held and not _shown(_products_of_units(grid, filled), sought, values, seed):
+        moved["command"] = values
+        sought = replace(sought, held=False)
+        values = _fitted(grid, sought, values * (np.arange(SIZE) != HELD))
+        filled = grid.with_load(_side(grid, values))
+    each = _products_of_units(grid, filled)
+    others = drawn(each, sought, values, draws, seed) if draws else np.empty((0, SIZE))
     if draws:
         # What runs drawn anew cannot show, because all of them have it: the windows' length, and the rows' lead.
-        for name, longer, later in (("windows", 2.0, 0.0), ("lag", 1.0, _LEAD_ERROR)):
-            other = _fitted(
-                runs,
-                joint,
-                load_friction=load_friction,
-                window=longer * window,
-                slowest=slowest,
-                lead=shift + later,
-            )
-            moved[name] = other[3]
-    durations = grid.integrals(np.ones(len(grid.velocity)))
-    residual = _left(grid, table, values) / durations
-    measured = table[:, KNOWN] / durations
+        moved["windows"] = _fitted(grid_with(2.0 * window), sought, values)
+        moved["lag"] = _fitted(grid.with_lead(runs, joint, shift + _LEAD_ERROR), sought, values)
+    durations = grid.integrals(np.ones(len(grid.velocity)))[:, 0]
+    residual = filled @ weights(values) / durations
+    measured = grid.columns[:, KNOWN] / durations
     estimate = ServoEstimate(
         joint=joint,
         parameters=parameters_of(values, others, sought, len(each), moved),
-        draws=others,
-        values=values,
+        draws=others[:, : len(NAMES)],
+        values=values[: len(NAMES)],
         load_friction=load_friction,
         separable=sought.separable,
         lead=shift,
         lead_found=found_lead is not None,
+        command_lag=0.5 * _row(runs) * float(values[HELD]) if grid.late.any() else None,
         windows=len(grid.start),
         window=window,
         slowest=slowest,
@@ -144,17 +153,8 @@ def identify_servo(
     return replace(estimate, findings=found, seconds=time.perf_counter() - started)
 
 
-def _fitted(
-    runs: Sequence[ServoSignals],
-    joint: Joint,
-    *,
-    load_friction: bool,
-    window: float,
-    slowest: float,
-    lead: float,
-) -> tuple[ServoGrid, Array, Sought, Array, Array]:
-    """Return grid, table, what is sought, the parameters, and the columns' products of each unit of resampling."""
-    grid = grid_of(runs, joint, window=window, slowest=slowest, lead=lead)
+def _usable(grid: ServoGrid, window: float, slowest: float) -> ServoGrid:
+    """Return a grid; refuse one with too few windows."""
     if len(grid.start) < _FEWEST:
         raise InputError(
             f"only {len(grid.start)} windows of {1e3 * window:g} ms are faster than {slowest:g} rad/s throughout, "
@@ -162,31 +162,54 @@ def _fitted(
             argument="recordings",
             remedy="record more motion",
         )
-    sought = _sought(joint, grid, load_friction=load_friction)
+    return grid
+
+
+def _fitted(grid: ServoGrid, sought: Sought, start: Array | None = None) -> Array:
+    """Return the parameters, shape (SIZE,), from a solution of nearly the same if there is one."""
+
+    def products_of(side: Array | None) -> Array:
+        filled = grid.columns if side is None else grid.with_load(side)
+        return filled.T @ filled
+
+    return fixed_point(lambda values: _side(grid, values), products_of, sought, start)
+
+
+def _divided(
+    grid: ServoGrid, sought: Sought, values: Array, share_of: Callable[[Array], float]
+) -> tuple[Sought, Array]:
+    """Return what is sought with the share of back-EMF, and the parameters with it."""
+    for _ in range(_DIVISIONS):
+        share = share_of(values)
+        if share == sought.share:
+            break
+        sought = replace(sought, share=share)
+        values = _fitted(grid, sought, values)
+    return sought, values
+
+
+def _shown(products: Array, sought: Sought, values: Array, seed: int) -> bool:
+    """Return whether runs drawn anew agree that the command is held between rows; it is not assumed else."""
+    held = drawn(products, sought, values, _DECIDING, seed)[:, HELD]
+    return bool(np.quantile(held, _DOUBT) > 0.0)
+
+
+def _side(grid: ServoGrid, values: Array) -> Array:
+    return grid.side(float(values[0]), float(values[1]), float(values[HELD]))
+
+
+def _products_of_units(grid: ServoGrid, filled: Array) -> Array:
+    """Return the products of a table's columns for each unit of resampling, shape (units, COLUMNS, COLUMNS)."""
     units = units_of(grid)
-    table = grid.table()
-
-    def products_of(torque_per_voltage: float, back_emf: float) -> Array:
-        return _products(grid.with_load(table, torque_per_voltage, back_emf), units)
-
-    values = fixed_point(lambda k, b: products_of(k, b).sum(axis=0), sought)
-    return grid, table, sought, values, products_of(values[0], values[1])
-
-
-def _products(filled: Array, units: NDArray[np.int64]) -> Array:
-    """Return the columns' products of each unit, shape (units, COLUMNS, COLUMNS)."""
     order = np.argsort(units, kind="stable")
     bounds = np.searchsorted(units[order], np.arange(int(units.max()) + 2)).tolist()
     rows = filled[order]
     return np.stack([rows[a:b].T @ rows[a:b] for a, b in pairwise(bounds)])
 
 
-def _left(grid: ServoGrid, table: Array, values: Array) -> Array:
-    """Return what the model leaves of each window's balance [N·m·s]."""
-    filled = grid.with_load(table, values[0], values[1])
-    k, b, viscous, coulomb, load, inertia = values
-    weights = np.array([k, -b, -viscous, -coulomb, -inertia, -load, -load * k, load * b, -1.0])
-    return np.asarray(-(filled @ weights))
+def _row(runs: Sequence[ServoSignals]) -> float:
+    """Return how far rows are apart, in the middle [s]."""
+    return float(np.median([np.median(np.diff(run.time)) for run in runs]))
 
 
 def _sought(joint: Joint, grid: ServoGrid, *, load_friction: bool) -> Sought:
@@ -203,6 +226,7 @@ def _sought(joint: Joint, grid: ServoGrid, *, load_friction: bool) -> Sought:
     return Sought(
         separable=bool(0.0 < driven.mean() < 1.0),
         load_friction=load_friction and "load_friction" not in fixed,
+        held=bool(grid.late.any()),
         torque_constant=None if k_t is None else abs(k_t * joint.gear_ratio),
         resistance=joint.voltage.resistance,
         fixed=fixed,

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.servo.solving import NAMES, Sought, solved
+from jointid.servo.solving import Sought, solved
 from jointid.servo.windows import DRIVEN, TURNED, ServoGrid
 
 Array = NDArray[np.float64]
 
 _ENOUGH = 8  # runs, to draw whole ones
-_PASSES = 4  # of a set, which starts next to its solution
 _SOME = 1e-9
 _STRETCH = 1.0  # s; of a run, where runs are few
 
@@ -27,13 +26,13 @@ def units_of(grid: ServoGrid) -> NDArray[np.int64]:
 
 
 def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int) -> Array:
-    """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, 6).
+    """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, SIZE).
 
     Parameters
     ----------
-    products : ndarray, shape (units, columns, columns)
+    products : ndarray, shape (units, COLUMNS, COLUMNS)
     sought : Sought
-    values : ndarray, shape (6,)
+    values : ndarray, shape (SIZE,)
         The solution of all units, from which each set starts.
     draws, seed : int
     """
@@ -48,7 +47,4 @@ def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int)
             (times[:, free].sum(axis=1) > 0.0) & (times[:, driven > 0.0].sum(axis=1) > 0.0)
         ]
     sums = np.tensordot(times, products, axes=1)
-    found = np.empty((len(times), len(NAMES)))
-    for k in range(len(times)):
-        found[k] = solved(sums[k], sought, values, passes=_PASSES)
-    return found
+    return solved(sums, sought, np.tile(values, (len(sums), 1)))

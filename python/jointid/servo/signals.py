@@ -55,6 +55,10 @@ class ServoSignals:
         """Whether the position loop is known, so that a rollout can close it."""
         return self.reference is not None and self.gain != 0.0
 
+    def driven_at(self, times: Array) -> Array:
+        """Return 1 where the motor is on its voltage, 0 where it turns freely."""
+        return np.asarray(self.driven[np.searchsorted(self.time, times, side="right") - 1])
+
 
 def signals_of(recordings: Recording | Sequence[Recording], joint: Joint) -> list[ServoSignals]:
     """Return the runs of a servo.

@@ -57,11 +57,16 @@ def parameters_of(
         return {part: abs(_named(other, name) - own) for part, other in moved.items()}
 
     known = set(sought.fixed)
+    # Few units: the spread of the draws is short by this, and the quantile is Student's.
+    short = math.sqrt(units / max(units - 1.0, 1.0))
+    quantile = float(_core.student_quantile(0.975, float(max(units - 1, 1))))
     if sought.torque_constant is not None and sought.resistance is not None:
         known |= {"torque_per_voltage", "back_emf"}
     shown = [n for n in NAMES if n != "load_friction" or sought.load_friction or n in known]
     found = {
-        name: _parameter(name, values[k], draws[:, k], name not in known, units, systematic(name))
+        name: _parameter(
+            name, values[k], draws[:, k], name not in known, short, quantile, systematic(name)
+        )
         for k, name in enumerate(NAMES)
         if name in shown
     }
@@ -71,7 +76,7 @@ def parameters_of(
     ):
         value = given if given is not None else float(_motor(values[None, :], name)[0])
         found[name] = _parameter(
-            name, value, _motor(draws, name), given is None, units, systematic(name)
+            name, value, _motor(draws, name), given is None, short, quantile, systematic(name)
         )
     if not sought.divided:
         for name in ("back_emf", "viscous", "torque_constant", "resistance"):
@@ -100,7 +105,8 @@ def _parameter(
     value: float,
     draws: Array,
     free: bool,
-    units: int,
+    short: float,
+    quantile: float,
     systematic: Mapping[str, float],
 ) -> ParameterEstimate:
     meaning, unit = _MEANING[name]
@@ -108,10 +114,8 @@ def _parameter(
     stderr, interval = None, None
     finite = draws[np.isfinite(draws)]
     if free and len(finite) > 1:
-        # Few units: the spread of the draws is short by this, and the quantile is Student's.
-        spread = float(np.std(finite, ddof=1)) * np.sqrt(units / max(units - 1.0, 1.0))
-        total = math.hypot(spread, *systematic.values())
-        half = total * _core.student_quantile(0.975, float(max(units - 1, 1)))
+        spread = short * float(np.std(finite, ddof=1))
+        half = quantile * math.hypot(spread, *systematic.values())
         stderr = None if at_bound else spread
         interval = (max(0.0, value - half), value + half)
     return ParameterEstimate(
@@ -187,6 +191,7 @@ def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) 
         f"fit       {1e3 * estimate.rms:.3g} mN·m left, "
         f"{100.0 * estimate.relative_residual:.1f} % of the load's torque",
         f"rows      {_lead(estimate)}",
+        *_command(estimate),
         f"time      {1e3 * estimate.seconds:.0f} ms",
     ]
     if estimate.findings:
@@ -200,3 +205,14 @@ def _lead(estimate: ServoEstimate) -> str:
     if estimate.lead_found:
         return f"{shown} (found)"
     return f"{shown} (given)" if estimate.lead else "position and duty are taken as simultaneous"
+
+
+def _command(estimate: ServoEstimate) -> list[str]:
+    if estimate.command_lag is None:
+        return []
+    if estimate.command_lag == 0.0:
+        return [
+            "command   nothing shows that it is held between rows: it is taken as moving evenly"
+        ]
+    late = f"{1e3 * estimate.command_lag:.1f} ms"
+    return [f"command   held between rows: it acts {late} later than its row on average (found)"]

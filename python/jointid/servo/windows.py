@@ -6,18 +6,22 @@ Over a window, with the load's inertia and gravity known, without any accelerati
                             - viscous ∫ ω - coulomb ∫ sgn ω - load ∫ sgn ω |gear| - J dω
 
 where u is the voltage and gear = gravity + motor torque is what presses the teeth: motor and load pull from the two
-sides. With the sign of gear held, its integral is linear in k_t/R and k_t²/R, too.
+sides. With the sign of gear held, its integral is linear in k_t/R and k_t²/R, too. How the command moves between rows
+is not logged: u = even + held · late, where late is what a command that is held until the next row adds.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
 from jointid.joint.joint import Joint
+from jointid.servo.between_rows import voltages
+from jointid.servo.motion import local_quadratic, smoothed
 from jointid.servo.signals import ServoSignals
 
 Array = NDArray[np.float64]
@@ -37,8 +41,9 @@ _FEWEST = 5  # samples in that span, at least
 _REACH = int(0.5 * _SPAN * _PIECES)  # grid steps in half of that span
 
 # Columns of the table.
-VOLTAGE, DRIVEN, TURNED, SIGN, CHANGE, LOAD, LOAD_VOLTAGE, LOAD_DRIVEN, KNOWN = range(9)
-COLUMNS = 9
+VOLTAGE, LATE, DRIVEN, TURNED, SIGN, CHANGE, KNOWN = range(7)
+LOAD, LOAD_VOLTAGE, LOAD_LATE, LOAD_DRIVEN = range(7, 11)
+COLUMNS = 11
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -47,8 +52,10 @@ class ServoGrid:
 
     Attributes
     ----------
-    velocity, voltage, gravity, driven, sign : ndarray, shape (n,)
-        [rad/s], [V], [N·m], 0 or 1, sign of the velocity.
+    velocity, voltage, late, gravity, driven, sign : ndarray, shape (n,)
+        [rad/s], [V], [V] that a held command adds, [N·m], 0 or 1, sign of the velocity.
+    instants : tuple of ndarray
+        Of each run [s].
     step : ndarray, shape (n,)
         Of each instant's run [s].
     start, end : ndarray of int, shape (windows,)
@@ -58,50 +65,74 @@ class ServoGrid:
         Of a window's start in its run [s].
     load_inertia : float
         [kg·m²]
+    columns : ndarray, shape (windows, COLUMNS)
+        The table, with zeros for the load's friction.
     """
 
     velocity: Array
     voltage: Array
+    late: Array
     gravity: Array
     driven: Array
     sign: Array
+    instants: tuple[Array, ...]
     step: Array
     start: Counts
     end: Counts
     run: Counts
     time: Array
     load_inertia: float
+    columns: Array
 
-    def integrals(self, values: Array) -> Array:
-        """Return the trapezoidal integral of a signal over each window."""
-        pieces = 0.5 * (values[1:] + values[:-1]) * self.step[1:]
-        sums = np.concatenate(([0.0], np.cumsum(pieces)))
-        return np.asarray(sums[self.end] - sums[self.start])
+    def integrals(self, *signals: Array) -> Array:
+        """Return the trapezoidal integrals of signals over each window, shape (windows, signals)."""
+        values = np.stack(signals)
+        sums = np.zeros(values.shape)
+        pieces = (values[:, 1:] + values[:, :-1]) * (0.5 * self.step[1:])
+        np.cumsum(pieces, axis=1, out=sums[:, 1:])
+        return np.asarray((sums[:, self.end] - sums[:, self.start]).T)
 
-    def gear_torque(self, torque_per_voltage: float, back_emf: float) -> Array:
-        """Return what presses the teeth at each instant [N·m]."""
-        motor = torque_per_voltage * self.voltage - back_emf * self.velocity * self.driven
-        return np.asarray(self.gravity + motor)
-
-    def table(self) -> Array:
-        """Return all columns but those of the load's friction, shape (windows, COLUMNS)."""
+    def with_columns(self) -> ServoGrid:
+        """Return the grid with its table as its signals give it."""
         columns = np.zeros((len(self.start), COLUMNS))
-        columns[:, VOLTAGE] = self.integrals(self.voltage)
-        columns[:, DRIVEN] = self.integrals(self.velocity * self.driven)
-        columns[:, TURNED] = self.integrals(self.velocity)
-        columns[:, SIGN] = self.integrals(self.sign)
+        signals = (
+            *(self.voltage, self.late, self.velocity * self.driven, self.velocity, self.sign),
+            self.gravity,
+        )
+        columns[:, [VOLTAGE, LATE, DRIVEN, TURNED, SIGN, KNOWN]] = self.integrals(*signals)
         columns[:, CHANGE] = self.velocity[self.end] - self.velocity[self.start]
-        columns[:, KNOWN] = self.load_inertia * columns[:, CHANGE] + self.integrals(self.gravity)
-        return columns
+        columns[:, KNOWN] += self.load_inertia * columns[:, CHANGE]
+        return replace(self, columns=columns)
 
-    def with_load(self, table: Array, torque_per_voltage: float, back_emf: float) -> Array:
-        """Return the table with the load's friction, for the gear's torque of these values."""
-        side = self.sign * np.sign(self.gear_torque(torque_per_voltage, back_emf))
-        filled = table.copy()
-        filled[:, LOAD] = self.integrals(side * self.gravity)
-        filled[:, LOAD_VOLTAGE] = self.integrals(side * self.voltage)
-        filled[:, LOAD_DRIVEN] = self.integrals(side * self.velocity * self.driven)
+    def side(self, torque_per_voltage: float, back_emf: float, held: float) -> Array:
+        """Return on which side of the motion the gear's torque is, for these values: -1, 0 or 1."""
+        volts = self.voltage + held * self.late
+        motor = torque_per_voltage * volts - back_emf * self.velocity * self.driven
+        return np.asarray(self.sign * np.sign(self.gravity + motor))
+
+    def with_load(self, side: Array) -> Array:
+        """Return the table with the load's friction, for a gear's torque on these sides."""
+        filled = self.columns.copy()
+        signals = (self.gravity, self.voltage, self.late, self.velocity * self.driven)
+        filled[:, LOAD : LOAD_DRIVEN + 1] = self.integrals(*(side * each for each in signals))
         return filled
+
+    def with_lead(self, runs: Sequence[ServoSignals], joint: Joint, lead: float) -> ServoGrid:
+        """Return the grid with another lead of the rows; its windows stay.
+
+        Parameters
+        ----------
+        runs : sequence of ServoSignals
+            Of this grid.
+        joint : Joint
+        lead : float
+            [s]
+        """
+        pairs = [
+            _voltages(run, joint, at, lead) for run, at in zip(runs, self.instants, strict=True)
+        ]
+        voltage, late = (np.concatenate(each) for each in zip(*pairs, strict=True))
+        return replace(self, voltage=voltage, late=late).with_columns()
 
 
 def grid_of(
@@ -129,53 +160,61 @@ def grid_of(
     lead : float
         Time by which a row's position is older than its duty [s]. Default 0.
     """
-    parts, offset = [], 0
+    parts, instants, offset = [], [], 0
     for number, run in enumerate(runs):
         duration = max(window, _FEWEST * float(np.median(np.diff(run.time))) / _SPAN)
-        part = _part(run, joint, duration, slowest, lead)
+        times, part = _part(run, joint, duration, slowest, lead)
         part["run"] = np.full(len(part["start"]), number)
         part["start"], part["end"] = part["start"] + offset, part["end"] + offset
-        offset += len(part["velocity"])
+        offset += len(times)
         parts.append(part)
+        instants.append(times)
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    return ServoGrid(load_inertia=joint.link_inertia, **joined)
+    return ServoGrid(
+        load_inertia=joint.link_inertia,
+        instants=tuple(instants),
+        columns=np.zeros((0, COLUMNS)),
+        **joined,
+    ).with_columns()
 
 
 def _part(
     run: ServoSignals, joint: Joint, duration: float, slowest: float, lead: float
-) -> dict[str, NDArray[np.float64] | Counts]:
+) -> tuple[Array, dict[str, NDArray[np.float64] | Counts]]:
     step, half = duration / _PIECES, 0.5 * _SPAN * duration
     count = max(0, int((run.time[-1] - run.time[0] - 2.0 * half) / step)) + 1
     times = run.time[0] + half + step * np.arange(count)
     position, velocity = local_quadratic(run.time, run.position, times, half)
-    driven = run.driven[np.searchsorted(run.time, times, side="right") - 1]
-    # A row's duty was read after its position, so it belongs to a later time.
-    voltage = np.interp(times, run.time + lead, run.duty * run.supply) * driven
+    voltage, late = _voltages(run, joint, times, lead)
+    driven = run.driven_at(times)
     if joint.link is None:
         gravity = np.zeros(count)
     else:
         weight = joint.gravity_coefficients
         gravity = weight.cos * np.cos(position) + weight.sin * np.sin(position)
-    # The slope of a span is a weighted mean of the velocity; what stands beside it is taken as the same mean.
-    voltage, gravity = smoothed(voltage), smoothed(gravity)
     start = np.arange(_REACH, max(_REACH, count - _PIECES - _REACH), _STRIDE)
-    inside = start[:, None] + np.arange(_PIECES + 1)
-    around = start[:, None] + np.arange(-_REACH, _PIECES + _REACH + 1)
+    # What a window must not have, counted up to each instant: slow motion, a change of side, switching.
+    sign = np.sign(velocity)
+    slow = _upto(np.abs(velocity) < slowest)
+    turns, switches = _upto(sign[1:] != sign[:-1]), _upto(driven[1:] != driven[:-1])
+    end = start + _PIECES
     usable = (
-        (np.abs(velocity[inside]).min(axis=1) >= slowest)
-        & (np.ptp(np.sign(velocity)[inside], axis=1) == 0.0)
-        & (np.ptp(driven[around], axis=1) == 0.0)
+        (slow[end + 1] == slow[start])
+        & (turns[end] == turns[start])
+        & (switches[end + _REACH] == switches[start - _REACH])
     )
     start = start[usable]
     # No integral crosses from one run to the next: the first piece of a run has no length.
     steps = np.full(count, step)
     steps[0] = 0.0
-    return {
+    return times, {
         "velocity": velocity,
         "voltage": voltage,
-        "gravity": gravity,
+        "late": late,
+        # The slope of a span is a weighted mean of the velocity; what stands beside it is taken as the same mean.
+        "gravity": smoothed(gravity, _REACH),
         "driven": driven,
-        "sign": np.sign(velocity),
+        "sign": sign,
         "step": steps,
         "start": start,
         "end": start + _PIECES,
@@ -183,56 +222,11 @@ def _part(
     }
 
 
-def smoothed(values: Array) -> Array:
-    """Return a signal as the mean over the span that the slope of a parabola takes of a velocity.
-
-    The slope over a half span h weighs the velocity at a distance x by 1 - (x / h)².
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        On the even grid; its first and last are continued.
-    """
-    x = np.arange(-_REACH, _REACH + 1) / _REACH
-    weights = 1.0 - x * x
-    padded = np.pad(values, _REACH, mode="edge")
-    return np.convolve(padded, weights / weights.sum(), mode="valid")
+def _voltages(run: ServoSignals, joint: Joint, times: Array, lead: float) -> tuple[Array, Array]:
+    even, late = voltages(run, joint.voltage, times, lead)
+    return smoothed(even, _REACH), smoothed(late, _REACH) if late.any() else late
 
 
-def local_quadratic(time: Array, values: Array, at: Array, half: float) -> tuple[Array, Array]:
-    """Return value and slope of parabolas through the samples within a half span of each instant.
-
-    The logged velocity of a servo lags by tens of milliseconds; the slope of its position does not.
-
-    Parameters
-    ----------
-    time, values : ndarray, shape (n,)
-    at : ndarray, shape (m,)
-    half : float
-        [s]
-    """
-    first = np.searchsorted(time, at - half - 1e-9)
-    last = np.searchsorted(time, at + half + 1e-9)
-    widest = int((last - first).max())
-    index = first[:, None] + np.arange(widest)
-    inside = index < last[:, None]
-    index = np.minimum(index, len(time) - 1)
-    x = np.where(inside, (time[index] - at[:, None]) / half, 0.0)
-    y = np.where(inside, values[index], 0.0)
-    powers = [inside.sum(axis=1).astype(float)]
-    moments = [y.sum(axis=1)]
-    raised = np.where(inside, 1.0, 0.0)
-    for order in range(1, 5):
-        raised = raised * x
-        powers.append(raised.sum(axis=1))
-        if order < 3:
-            moments.append((raised * y).sum(axis=1))
-    matrix = np.stack(
-        [np.stack([powers[i + j] for j in range(3)], axis=-1) for i in range(3)], axis=-2
-    )
-    # Three different instants fix a parabola; where a gap leaves fewer, the span has no slope.
-    poor = powers[0] < 4
-    matrix[poor] = np.eye(3)
-    found = np.linalg.solve(matrix, np.stack(moments, axis=-1)[..., None])[..., 0]
-    found[poor] = 0.0
-    return found[:, 0], found[:, 1] / half
+def _upto(marks: NDArray[np.bool_]) -> Counts:
+    """Return how many marks there are before each instant, and at the end of all."""
+    return np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(marks)))
