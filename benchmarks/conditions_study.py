@@ -237,11 +237,8 @@ def main() -> None:
             measure(store, [c for c in chosen if c.clean == clean], joints, given.seed)
     found = {c.name: outcomes(store, c) for c in chosen}
     chosen = [c for c in chosen if found[c.name]]
-    joints, cleans = (
-        min((len(found[c.name]) for c in chosen if c.clean == kind), default=0)
-        for kind in (False, True)
-    )
-    lines = [_TEXT.format(joints=joints, clean=cleans, one=100.0 / max(cleans, 1))]
+    cleans = min((len(found[c.name]) for c in chosen if c.clean), default=0)
+    lines = [_TEXT.format(clean=cleans, one=100.0 / max(cleans, 1))]
     for title, clean in (("Clean conditions", True), ("Mismatches and defects", False)):
         lines += [f"\n## {title}\n", HEAD]
         lines += [row(c, found[c.name]) for c in chosen if c.clean == clean]
@@ -264,7 +261,7 @@ def main() -> None:
 _TEXT = """# Accuracy under many conditions
 
 Written by `benchmarks/conditions_study.py` (`make study`); do not edit. Each condition of `benchmarks/conditions.py`
-has random joints ({clean} for a clean condition, {joints} for one with a mismatch or defect), simulated by
+has random joints (as many as its row says), simulated by
 `tests/plants`, which shares no code with the package: other inertia, friction, gravity, sensor and motion each time,
 12 s at 1 kHz unless the condition says otherwise. With a sensor the call knows the drive's inertia and the model;
 without one the model with gravity free; "no joint given" is `identify(recording)`.
@@ -276,7 +273,7 @@ recording tells the two apart. A parameter is named if a finding of severity "wa
 "blocking". A parameter that the estimate does not have counts as off. On a clean recording a finding that a value is
 uncertain (`undetermined`, `at_bound`, `model_too_rich`, `noisy_velocity`) is false unless a 95 % interval is as wide as
 `undetermined` says (±4 %; a gain's ±1 %; a coefficient of gravity against both together) or missing; any other one is
-false. Rare findings need many joints: one in {clean} joints is {one:.1f} %."""
+false. Rare findings need many joints: one in {clean} joints is {one:.2g} %."""
 
 if __name__ == "__main__":
     main()
