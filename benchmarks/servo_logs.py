@@ -132,7 +132,7 @@ def log_tables(logs: Path, *, peer: bool) -> Iterator[str]:
 def _times(runs: list[jid.Recording]) -> Iterator[str]:
     joint = xl330_joint()
     found = jid.identify_servo(runs, joint)
-    calls = {
+    calls: dict[str, Callable[[], object]] = {
         "the fit": lambda: jid.identify_servo(runs, joint, draws=0),
         "the fit with its errors": lambda: jid.identify_servo(runs, joint),
         "rollouts of 16 runs of 6 s at 1 ms, three times, for what is bistable": lambda: (

@@ -185,6 +185,26 @@ def _robot() -> Example:
     )
 
 
+def _servo() -> Example:
+    from simulated_servo import bench_runs, servo_joint
+
+    found = jid.identify_servo(bench_runs(runs=8), servo_joint())
+
+    def use(path: Path) -> None:
+        read = jid.ServoEstimate.load(path)
+        read.report()
+        read.to_json()
+        read.identified.save(path.with_name("again.toml"))
+
+    return Example(
+        name="servo.json",
+        documents=[json.loads(found.to_json())],
+        use=use,
+        modules=["servo.estimate", "servo.reading_back"],
+        elsewhere=("joint",),
+    )
+
+
 def _study(use: Callable[[Path], object], name: str) -> Example:
     values = {"coulomb": 2.0}
     rows = [
@@ -297,6 +317,7 @@ EXAMPLES: dict[str, Callable[[], Example]] = {
     "facts": _facts,
     "estimate": _saved_estimate,
     "joints": _several,
+    "servo": _servo,
     "study": lambda: _study(_read_study, "study.jsonl"),
     "resumed study": lambda: _study(_resumed, "resumed.jsonl"),
     "recording": _recording,

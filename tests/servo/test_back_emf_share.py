@@ -8,7 +8,7 @@ from scipy.optimize import nnls
 from simulated_servo import SUPPLY, Truth, bench_runs, servo_joint, with_truth
 
 import jointid as jid
-from jointid.servo.not_negative import not_negative
+from jointid.servo.pivoting import not_negative
 
 TRUTH = Truth()
 

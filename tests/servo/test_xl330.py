@@ -32,6 +32,19 @@ def test_held_out_by_gain_and_by_trajectory(runs: list[jid.Recording]) -> None:
         assert "best: coulomb_viscous:load_friction" in found.report()
 
 
+def test_compare_models_scores_by_rollouts(runs: list[jid.Recording]) -> None:
+    joint = servo_joint(supply=7.3)
+    found = jid.compare_models(runs, joint, score="rollout", models="coulomb_viscous:load_friction")
+    assert np.degrees(found.medians[0]) <= 2.3
+    assert found.models == ("coulomb_viscous:load_friction",)
+    with pytest.raises(jid.InputError, match="no options but models"):
+        jid.compare_models(runs, joint, score="rollout", folds=3)  # type: ignore[call-overload]
+    with pytest.raises(jid.InputError, match="voltage"):
+        jid.compare_models(runs, joint.replace(voltage=None), score="rollout")
+    with pytest.raises(jid.InputError, match="windows or rollout"):
+        jid.compare_models(runs, joint, score="torque")  # type: ignore[call-overload]
+
+
 def test_what_cannot_be_compared_is_refused(runs: list[jid.Recording]) -> None:
     joint = servo_joint(supply=7.3)
     with pytest.raises(jid.InputError, match="groups"):

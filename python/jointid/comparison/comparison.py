@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from jointid.problem.terms import Residual
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 from jointid.recording.signals import TorqueHold
+
+if TYPE_CHECKING:
+    from jointid.servo.comparing import ServoComparison
 
 _MODELS: tuple[ModelName, ...] = ("coulomb_viscous", "stribeck")
 
@@ -97,10 +100,22 @@ def shown_gravity(runs: Sequence[Recording], joint: Joint | None, **options: Any
     return None if found == "none" else found
 
 
+@overload
 def compare_models(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None = None,
     *,
+    score: Literal["rollout"],
+    models: Model | str | Sequence[Any] | None = None,
+) -> ServoComparison: ...
+
+
+@overload
+def compare_models(
+    recordings: Recording | Sequence[Recording],
+    joint: Joint | None = None,
+    *,
+    score: Literal["windows"] = "windows",
     models: Model | str | Sequence[Any] | None = None,
     folds: int = 5,
     parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
@@ -112,7 +127,26 @@ def compare_models(
     shift: Mapping[str, float] | None = None,
     min_speed: float = 0.0,
     callback: Callable[[ComparisonStep], object] | None = None,
-) -> Comparison:
+) -> Comparison: ...
+
+
+def compare_models(
+    recordings: Recording | Sequence[Recording],
+    joint: Joint | None = None,
+    *,
+    score: Literal["windows", "rollout"] = "windows",
+    models: Model | str | Sequence[Any] | None = None,
+    folds: int = 5,
+    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
+    search: Search | Method | None = None,
+    residual: Residual | None = None,
+    windows: Windows = None,
+    torque_hold: TorqueHold | None = None,
+    mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float = 0.0,
+    callback: Callable[[ComparisonStep], object] | None = None,
+) -> Comparison | ServoComparison:
     """Compare friction models by how well they predict what they were not fitted to.
 
     One recording is cut into contiguous blocks; of several recordings, each is one block. Every model is
@@ -126,6 +160,9 @@ def compare_models(
     recordings : Recording or sequence of Recording
     joint : Joint, optional
         As in `identify`, except that its model's name and `asymmetric` are not used.
+    score : str
+        "windows" (default): the balance of held-out windows. "rollout": the closed loop of held-out runs, simulated, of
+        a servo without a torque signal, with `models` as the only option; see `compare_servo_models`.
     models : sequence of Model, str or mapping, optional
         Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, all with the gravity
         that `identify` would choose, without those that cannot be used with these data; they are listed in
@@ -150,6 +187,7 @@ def compare_models(
     Returns
     -------
     Comparison
+        Of rollouts a `ServoComparison`.
 
     Raises
     ------
@@ -164,6 +202,20 @@ def compare_models(
     >>> found.winner, found.estimate.settings["model"]
     ('stribeck', 'stribeck')
     """
+    if score == "rollout":
+        usual = (folds == 5, mask_standstill is True, min_speed == 0.0)
+        others = (parameters, search, residual, windows, torque_hold, shift, callback)
+        if not all(usual) or any(each is not None for each in others):
+            raise InputError(
+                "it takes no options but models; compare_servo_models has more",
+                argument="score",
+                value=score,
+            )
+        from jointid.servo.comparing import compare_servo_models
+
+        return compare_servo_models(listed(recordings), _servo(joint), models=_listed(models))
+    if score != "windows":
+        raise InputError("windows or rollout is expected", argument="score", value=score)
     runs = listed(recordings)
     specs = compared_models(models) if models is not None else default_models()
     if models is None:
@@ -246,6 +298,20 @@ def compare_models(
             "left_out": left_out,
         },
     )
+
+
+def _servo(joint: Joint | None) -> Joint:
+    if joint is None or joint.voltage is None:
+        raise InputError(
+            "rollouts are of a joint whose drive's input is a voltage",
+            argument="score",
+            value="rollout",
+        )
+    return joint
+
+
+def _listed(models: Model | str | Sequence[Any] | None) -> Sequence[Any] | None:
+    return (models,) if isinstance(models, str | Model | Mapping) else models
 
 
 class _Fitter:

@@ -38,6 +38,7 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
             "load_friction": estimate.load_friction,
             "separable": estimate.separable,
             "runs": list(estimate.runs),
+            "moving": list(estimate.moving),
         },
         "seconds": estimate.seconds,
     }

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.base.schema import read_text
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate
@@ -152,6 +154,45 @@ class ServoEstimate:
         from jointid.servo.document import save
 
         return save(self, path)
+
+    @classmethod
+    def from_json(cls, text: str) -> ServoEstimate:
+        """Return the estimate that a JSON text holds.
+
+        Raises
+        ------
+        InputError
+            Not JSON, not a servo's estimate, another schema, or a field that cannot be used; names the place in it.
+        """
+        from jointid.servo.reading_back import read_servo_estimate
+
+        return read_servo_estimate(text)
+
+    @classmethod
+    def load(cls, path: str | Path) -> ServoEstimate:
+        """Return the estimate that a .json file holds; all but `draws` is in it.
+
+        Parameters
+        ----------
+        path : path-like
+
+        Raises
+        ------
+        InputError
+            No such file, or as `from_json`; names the file and the place in it.
+
+        Examples
+        --------
+        >>> path = jid.identify_servo(servo_runs, servo).save("servo.json")
+        >>> jid.ServoEstimate.load(path)["inertia"] > 0.0
+        True
+        """
+        file = require_path("path", path)
+        text = read_text(file)
+        try:
+            return cls.from_json(text)
+        except InputError as error:
+            raise error.at(str(file)) from error
 
     def __repr__(self) -> str:
         shown = ", ".join(f"{name}={p.value:.4g}" for name, p in self.parameters.items())

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
-from jointid.servo.not_negative import not_negative
+from jointid.servo.pivoting import not_negative
 from jointid.servo.windows import (
     CHANGE,
     COLUMNS,

@@ -1,0 +1,112 @@
+"""A servo's estimate from its JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.base.schema import (
+    Flag,
+    ListOf,
+    Number,
+    OrNull,
+    Plain,
+    Record,
+    TableOf,
+    Text,
+    read_json,
+)
+from jointid.estimate.json import empty_calls, finding_of, parameter_of
+from jointid.estimate.json_schema import FINDING, PARAMETER
+from jointid.joint.joint_file import joint_from_document
+from jointid.servo.document import KIND, SCHEMA
+from jointid.servo.estimate import ServoEstimate
+from jointid.servo.solving import NAMES
+
+_MOTOR = ("torque_constant", "resistance")
+_MOST = 1_000_000  # runs
+_ANY = Number(infinite=True, undefined=True)
+_TIME = Number(low=-1e9, high=1e9)
+_DURATION = Number(low=1e-9, high=1e9)
+_SIZE = Number(low=0.0, high=1e100)
+_PARTS = ("windows", "lag", "command")
+_PARAMETER = Record(
+    {
+        **PARAMETER.fields,
+        "value": Number(low=0.0, infinite=True),
+        "systematic": Record({}, optional=dict.fromkeys(_PARTS, _ANY)),
+    }
+)
+_SETTINGS = Record(
+    {
+        "window": _DURATION,
+        "slowest": _SIZE,
+        "windows": Number(low=0, high=2**53, whole=True),
+        "lead": _TIME,
+        "lead_found": Flag(),
+        "command_lag": OrNull(_TIME),
+        "load_friction": Flag(),
+        "separable": Flag(),
+        "runs": ListOf(Text(), 1, _MOST),
+        "moving": ListOf(Number(low=0.0, high=2.0), 1, _MOST),
+    }
+)
+_ESTIMATE = Record(
+    {
+        "schema": Number(low=SCHEMA, high=SCHEMA, whole=True),
+        "kind": Text(),
+        "joint": TableOf(Plain()),  # the joint has a reader of its own
+        "parameters": TableOf(_PARAMETER),
+        "findings": ListOf(FINDING),
+        "rms": _SIZE,
+        "relative_residual": _SIZE,
+        "settings": _SETTINGS,
+        "seconds": _SIZE,
+    },
+    {"rollout": Plain()},  # what `jointid identify --rollout --json` adds
+)
+
+
+def read_servo_estimate(text: str) -> ServoEstimate:
+    """Return the estimate that a JSON text holds; see `ServoEstimate.load`."""
+    document = read_json(text)
+    if not isinstance(document, dict) or document.get("kind") != KIND:
+        raise InputError(
+            f"this JSON is not a servo's estimate: its field 'kind' is not '{KIND}'",
+            remedy="save one with identify_servo",
+        )
+    d = _ESTIMATE.read(document, "")
+    for place, reason in _contradictions(d):
+        raise InputError(reason, place=place)
+    joint = joint_from_document(d["joint"], "joint")
+    if joint.voltage is None:
+        raise InputError("a servo's input is a voltage", place="joint.drive.input")
+    settings, parameters = d["settings"], d["parameters"]
+    return ServoEstimate(
+        joint=joint,
+        parameters={name: parameter_of(entry) for name, entry in parameters.items()},
+        findings=tuple(finding_of(each) for each in d["findings"]),
+        values=np.array([parameters[n]["value"] if n in parameters else 0.0 for n in NAMES]),
+        draws=np.empty((0, len(NAMES))),
+        rms=d["rms"],
+        relative_residual=d["relative_residual"],
+        seconds=d["seconds"],
+        **{**settings, "runs": tuple(settings["runs"]), "moving": tuple(settings["moving"])},
+    )
+
+
+def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Places where fields, each right by itself, do not fit together."""
+    names = d["parameters"]
+    needed = {*NAMES, *_MOTOR} - ({"load_friction"} - set(names))
+    if set(names) != needed:
+        yield "parameters", f"these are expected: {', '.join(sorted(needed))}"
+    for name, entry in names.items():
+        if entry["name"] != name:
+            yield f"parameters.{name}.name", "this is not the name of the entry"
+    if len(d["settings"]["moving"]) != len(d["settings"]["runs"]):
+        yield "settings.moving", "one number for each of the runs is expected"
+    yield from empty_calls(d["findings"])

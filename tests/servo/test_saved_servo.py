@@ -1,0 +1,39 @@
+"""A servo's estimate is read back as it was saved."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from simulated_servo import Truth, bench_runs, servo_joint
+
+import jointid as jid
+
+
+@pytest.mark.parametrize(
+    "model", ["coulomb_viscous:load_friction", "coulomb_viscous:load_friction=false"]
+)
+def test_all_but_the_draws_is_read_back(tmp_path: Path, model: str) -> None:
+    runs = bench_runs(Truth(), seed=4, runs=8)
+    found = jid.identify_servo(runs, servo_joint(), model=model)
+    again = jid.ServoEstimate.load(found.save(tmp_path / "servo.json"))
+    assert again.report() == found.report()
+    assert again.to_json() == found.to_json()
+    assert np.array_equal(again.values, found.values)
+    assert jid.rollout(again, runs).median == jid.rollout(found, runs).median
+
+
+def test_what_does_not_fit_together_is_refused(tmp_path: Path) -> None:
+    runs = bench_runs(Truth(), seed=4, runs=8)
+    found = jid.identify_servo(runs, servo_joint())
+    text = found.to_json()
+    for old, new, message in (
+        ('"jointid servo"', '"jointid robot"', "not a servo's estimate"),
+        ('"name": "inertia"', '"name": "mass"', "not the name of the entry"),
+        ('"run 0",', "", "one number for each of the runs"),
+        ('"schema": 1,\n "kind"', '"schema": 2,\n "kind"', "schema"),
+    ):
+        assert old in text
+        path = tmp_path / "servo.json"
+        path.write_text(text.replace(old, new), encoding="utf-8")
+        with pytest.raises(jid.InputError, match=message):
+            jid.ServoEstimate.load(path)
