@@ -113,7 +113,7 @@ def test_one_for_the_other(run: jid.Recording, estimate: jid.Estimate) -> None:
         lambda: jid.plot.friction_curves({"run": wrong}),
         lambda: jid.plot.sweep(wrong),
         lambda: estimate.predict(swapped),
-        lambda: jid.compare_models(run, JOINT, models=5),  # type: ignore[arg-type]
+        lambda: jid.compare_models(run, JOINT, models=5),  # type: ignore[call-overload]
         lambda: jid.Estimate.from_json(5),  # type: ignore[arg-type]
     ):
         assert "expected" in message_of(call)

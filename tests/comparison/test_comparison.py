@@ -347,7 +347,7 @@ def test_a_bar_is_drawn_on_a_terminal_only() -> None:
 
 
 def compare(**options: object) -> Callable[[], object]:
-    return lambda: jid.compare_models(simulated(0), **options)  # type: ignore[arg-type]
+    return lambda: jid.compare_models(simulated(0), **options)  # type: ignore[call-overload]
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ import jointid as jid
 )
 def test_all_but_the_draws_is_read_back(tmp_path: Path, model: str) -> None:
     runs = bench_runs(Truth(), seed=4, runs=8)
-    found = jid.identify_servo(runs, servo_joint(), model=model)
+    found = jid.identify_servo(runs, servo_joint(), model=jid.Model.parse(model))
     again = jid.ServoEstimate.load(found.save(tmp_path / "servo.json"))
     assert again.report() == found.report()
     assert again.to_json() == found.to_json()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
+from jointid.comparison.contenders import compared_models, default_models, shown_gravity, text_of
 from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
@@ -21,7 +22,7 @@ from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Gravity, Model, ModelName
+from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Residual
@@ -31,8 +32,6 @@ from jointid.recording.signals import TorqueHold
 
 if TYPE_CHECKING:
     from jointid.servo.comparing import ServoComparison
-
-_MODELS: tuple[ModelName, ...] = ("coulomb_viscous", "stribeck")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,54 +49,6 @@ class ComparisonStep:
     number: int
     total: int
     model: str
-
-
-def default_models() -> tuple[Model, ...]:
-    """Return the models compared by default: Coulomb + viscous and Stribeck, each also asymmetric."""
-    return tuple(Model(name, asymmetric=side) for side in (False, True) for name in _MODELS)
-
-
-def compared_models(models: object) -> tuple[Model, ...]:
-    """Return the models of a call: one or several, each as `Model.of` accepts it; symmetric unless stated.
-
-    Raises
-    ------
-    InputError
-        No model, something else, a model without a name, or the same model twice.
-    """
-    alone = isinstance(models, str | Model | Mapping)
-    if not alone and not isinstance(models, Iterable):
-        raise InputError("a list of models is expected", argument="models", value=models)
-    given = (models,) if alone else tuple(models)  # type: ignore[arg-type]
-    entries = tuple(Model.of(each).over(Model(asymmetric=False)) for each in given)
-    if not entries:
-        raise InputError("at least one is expected, e.g. stribeck", argument="models", value=[])
-    for index, model in enumerate(entries):
-        if not model.named:
-            raise InputError("a compared model needs a name", argument="models", value=_text(model))
-        if model in entries[:index]:
-            raise InputError("it is given twice", argument="models", value=_text(model))
-    return entries
-
-
-def shown_gravity(runs: Sequence[Recording], joint: Joint | None, **options: Any) -> Gravity | None:
-    """Return the gravity that a model without a name gets from the recordings; None where it has none, or it is stated.
-
-    Parameters
-    ----------
-    runs : sequence of Recording
-    joint : Joint or None
-    **options
-        As for `prepare`.
-    """
-    if joint is not None and joint.model.gravity is not None:
-        return None
-    try:
-        model = prepare(runs, joint, model=None, choose=True, **options).problem.choice.model
-    except InputError:  # each fit says what it cannot do
-        return None
-    found = model.resolved.gravity
-    return None if found == "none" else found
 
 
 @overload
@@ -259,7 +210,7 @@ def compare_models(
             if models is not None or spec == specs[0]:
                 raise
             cause = error.__cause__
-            left_out[_text(spec)] = _without_remedy(
+            left_out[text_of(spec)] = _without_remedy(
                 cause if isinstance(cause, InputError) else error
             )
             fitter.total -= 1 + parts
@@ -338,14 +289,14 @@ class _Fitter:
         try:
             estimate = identify(training, self._joint, model=spec, windows=windows, **self._common)
         except InputError as error:
-            raise error.at(f"model '{_text(spec)}'{where}") from error
+            raise error.at(f"model '{text_of(spec)}'{where}") from error
         self._step(spec)
         return estimate
 
     def _step(self, spec: Model) -> None:
         self._done += 1
         if self._callback is not None:
-            self._callback(ComparisonStep(number=self._done, total=self.total, model=_text(spec)))
+            self._callback(ComparisonStep(number=self._done, total=self.total, model=text_of(spec)))
 
     def _values(
         self, spec: Model, training: Sequence[Recording], windows: Windows, where: str
@@ -365,7 +316,7 @@ class _Fitter:
             )
             outcome = run_search(search, prepared.penalty, prepared.domain)
         except InputError as error:
-            raise error.at(f"model '{_text(spec)}'{where}") from error
+            raise error.at(f"model '{text_of(spec)}'{where}") from error
         self._step(spec)
         return prepared.fitted(search, outcome)
 
@@ -386,13 +337,8 @@ class _Fitter:
             try:
                 found.append(split.residual(fitted, predictor))
             except InputError as error:
-                raise error.at(f"model '{_text(spec)}'{where}") from error
+                raise error.at(f"model '{text_of(spec)}'{where}") from error
         return found
-
-
-def _text(spec: Model) -> str:
-    """Return a compared model's text; a symmetric one's does not say so."""
-    return str(spec if spec.asymmetric else spec.replace(asymmetric=None))
 
 
 def _as_found(spec: Model, estimate: Estimate) -> Model:
@@ -417,7 +363,7 @@ def _cumulative(windows: Windows) -> bool:
 def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedModel:
     reason = refusal(estimate)
     return ComparedModel(
-        model=_text(spec),
+        model=text_of(spec),
         spec=spec,
         parameters=counted(estimate),
         score=float(np.mean(scores)),

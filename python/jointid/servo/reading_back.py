@@ -66,7 +66,11 @@ _ESTIMATE = Record(
         "settings": _SETTINGS,
         "seconds": _SIZE,
     },
-    {"rollout": Plain()},  # what `jointid identify --rollout --json` adds
+    # A verdict follows from the findings.
+    {
+        "verdict": Plain(),
+        "rollout": Plain(),
+    },  # the second is what `jointid identify --rollout --json` adds
 )
 
 

@@ -1,0 +1,69 @@
+"""The models that a comparison is between: those of the call, or the usual ones with the gravity that the log shows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.identification.prepared import prepare
+from jointid.joint.joint import Joint
+from jointid.joint.model import Gravity, Model, ModelName
+from jointid.recording.recording import Recording
+
+_MODELS: tuple[ModelName, ...] = ("coulomb_viscous", "stribeck")
+
+
+def default_models() -> tuple[Model, ...]:
+    """Return the models compared by default: Coulomb + viscous and Stribeck, each also asymmetric."""
+    return tuple(Model(name, asymmetric=side) for side in (False, True) for name in _MODELS)
+
+
+def compared_models(models: object) -> tuple[Model, ...]:
+    """Return the models of a call: one or several, each as `Model.of` accepts it; symmetric unless stated.
+
+    Raises
+    ------
+    InputError
+        No model, something else, a model without a name, or the same model twice.
+    """
+    alone = isinstance(models, str | Model | Mapping)
+    if not alone and not isinstance(models, Iterable):
+        raise InputError("a list of models is expected", argument="models", value=models)
+    given = (models,) if alone else tuple(models)  # type: ignore[arg-type]
+    entries = tuple(Model.of(each).over(Model(asymmetric=False)) for each in given)
+    if not entries:
+        raise InputError("at least one is expected, e.g. stribeck", argument="models", value=[])
+    for index, model in enumerate(entries):
+        if not model.named:
+            raise InputError(
+                "a compared model needs a name", argument="models", value=text_of(model)
+            )
+        if model in entries[:index]:
+            raise InputError("it is given twice", argument="models", value=text_of(model))
+    return entries
+
+
+def shown_gravity(runs: Sequence[Recording], joint: Joint | None, **options: Any) -> Gravity | None:
+    """Return the gravity that a model without a name gets from the recordings; None where it has none, or it is stated.
+
+    Parameters
+    ----------
+    runs : sequence of Recording
+    joint : Joint or None
+    **options
+        As for `prepare`.
+    """
+    if joint is not None and joint.model.gravity is not None:
+        return None
+    try:
+        model = prepare(runs, joint, model=None, choose=True, **options).problem.choice.model
+    except InputError:  # each fit says what it cannot do
+        return None
+    found = model.resolved.gravity
+    return None if found == "none" else found
+
+
+def text_of(spec: Model) -> str:
+    """Return a compared model's text; a symmetric one's does not say so."""
+    return str(spec if spec.asymmetric else spec.replace(asymmetric=None))
