@@ -116,5 +116,6 @@ def text_report(
             lines += [
                 f"joint {each.name}, {found.severity} ({found.code}): {found.worded(action)}"
                 for found in each.estimate.findings
+                if found.code != "motor_side"  # said once, of all
             ]
     return printable("\n".join(lines).rstrip())

@@ -34,6 +34,7 @@ FILES = (
     "gaps",
     "late",
     "assumed_units",
+    "motor_side",
     "left_out",
     "message_log",
 )
