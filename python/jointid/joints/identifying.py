@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from jointid.base.argument_checks import require_kind
 from jointid.base.advice import Action
+from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Method, Search
