@@ -121,7 +121,12 @@ def identify_joints(
 def _of_each(error: InputError, joints: int) -> InputError:
     """Return an error whose advice asks for one gear ratio a joint: joints have different gears."""
     remedies = tuple(
-        Action("call", each.arguments, "one for each joint, comma-separated", each.function)
+        Action(
+            "call",
+            each.arguments,
+            f"{each.text}; one for each joint, comma-separated",
+            each.function,
+        )
         if isinstance(each, Action) and joints > 1 and each.arguments.keys() == {"gear_ratio"}
         else each
         for each in error.remedy
