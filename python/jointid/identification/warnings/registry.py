@@ -11,6 +11,7 @@ FILES = (
     "stopped",
     "velocity",
     "delays",
+    "long_shift",
     "speed",
     "torque_balance",
     "constant",
