@@ -65,7 +65,7 @@ def test_a_design_follows_one_of_several_joints(
         json.dumps(json.loads(arm.read_text("utf-8"))["joints"]["2"]["estimate"])
     ).joint.save(joint)
     line = ["design", str(joint), "--after", str(arm), "--position", "-60deg,60deg", "--quiet"]
-    line += ["--velocity", "2", "--torque", "50", "--duration", "4", "--evaluations", "64"]
+    line += ["--velocity", "2", "--torque", "300", "--duration", "4", "--evaluations", "64"]
     line += ["--output", str(motion), "--rehearsals", "10"]
     code, said = answer(line, capsys)
     assert code == 2
@@ -118,7 +118,7 @@ def test_all_that_a_simulator_needs_is_advised_at_once(
 ) -> None:
     joint = tmp_path / "joint.toml"
     parameters = {"coulomb": 1.0, "viscous": 2.0, "static": 0.5, "stribeck": 0.1}
-    jid.Joint(model="stribeck", inertia=1.0).with_parameters(parameters).save(joint)
+    jid.Joint(model=jid.Model.of("stribeck"), inertia=1.0).with_parameters(parameters).save(joint)
     line = ["export", str(joint), "--to", str(tmp_path / "joint.xml")]
     code, said = answer(line, capsys)
     assert code == 2
