@@ -11,6 +11,7 @@ from foreign_text_logs import LOGS, write_log
 
 from jointid.cli.command_line import main
 
+ROOT = Path(__file__).resolve().parents[2]
 SHORTENED = Path(__file__).with_name("foreign_logs")
 
 # File → corrections, what only the user knows, and a value that the estimate must come near, with its tolerance.
@@ -20,12 +21,10 @@ FILES: dict[str, tuple[int, dict[str, str], tuple[str, float, float]]] = {
     "emps/emps_train.csv.gz": (0, {}, ("inertia", 95.11, 0.01)),
     "tx40/tx40.csv.gz": (1, {}, ("viscous", 8.05 / 32**2, 0.1)),
     "ak80/ak80_swing_up.csv": (0, {}, ("coulomb", 0.22, 0.2)),
-    "xl330/bam_xl330.csv.gz": (1, {}, ("coulomb", 0.032, 0.3)),
 }
 COPIES: dict[str, tuple[int, dict[str, str], tuple[str, float, float]]] = {
     "kr300_125_hz.csv.gz": (1, {"RATIO": "256.86"}, ("coulomb", 370.0, 0.2)),
     "tx40_200_hz.csv.gz": (1, {}, ("viscous", 8.05 / 32**2, 0.2)),
-    "xl330_two_runs.csv.gz": FILES["xl330/bam_xl330.csv.gz"],
     "ak80_swing_up.csv.gz": FILES["ak80/ak80_swing_up.csv"],
 }
 
@@ -81,6 +80,43 @@ def test_a_real_log(
 @pytest.mark.parametrize("name", COPIES)
 def test_a_shortened_log(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     check(SHORTENED / name, COPIES[name], capsys)
+
+
+@pytest.mark.parametrize(
+    "name", ["foreign_logs/xl330_two_runs.csv.gz", "../data/xl330/bam_xl330.csv.gz"]
+)
+def test_a_servo_log_has_no_torque(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A duty is not offered as a torque: the advice leads to the joint file of docs/servos.md, and to a motor."""
+    path = Path(__file__).parent / name
+    for command in ("identify", "compare"):
+        code, sentence = answer([command, str(path), "--quiet"], capsys)
+        assert code == 2
+        assert "the log has no torque" in sentence
+        assert "torque=" not in sentence
+    page = (ROOT / "docs" / "servos.md").read_text(encoding="utf-8")
+    servo = tmp_path / "servo.toml"
+    servo.write_text(page.partition("```toml\n")[2].partition("```")[0], encoding="utf-8")
+    options = pasted(sentence, {"SERVO.toml": str(servo)})
+    assert options == ["--joint", str(servo), "--by", "run_index"]
+    assert main(["identify", str(path), *options, "--quiet"]) == 0
+    assert "torque_constant" in capsys.readouterr().out
+
+
+def test_a_motor_side_without_a_gear_ratio_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = ["identify", str(SHORTENED / "tx40_200_hz.csv.gz"), "--joints", "1", "--quiet"]
+    said = (
+        "no gear ratio is known: the values are on the motor's side; load with --gear-ratio RATIO"
+    )
+    page = tmp_path / "page.html"
+    assert main([*line, "--report", str(page)]) == 0
+    assert said in capsys.readouterr().out
+    assert "no gear ratio is known: the values are on the motor" in page.read_text("utf-8")
+    assert main([*line, "--gear-ratio", "32"]) == 0
+    assert "no gear ratio" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", LOGS)

@@ -386,3 +386,10 @@ def test_a_fold_that_cannot_be_fitted_is_named() -> None:
     runs = [simulated(0, seconds=4.0), simulated(1, seconds=0.1)]
     with pytest.raises(InputError, match="model 'coulomb_viscous', fold 1 of 2"):
         jid.compare_models(runs, models="coulomb_viscous", windows=0.05)
+
+
+def test_a_comparison_as_a_data_frame(comparison: jid.Comparison) -> None:
+    frame = comparison.to_pandas()
+    assert list(frame.index) == [row.model for row in comparison.rows]
+    assert list(frame["score"]) == [row.score for row in comparison.rows]
+    assert bool(frame.loc[comparison.winner, "eligible"])

@@ -354,3 +354,23 @@ def test_the_page_of_findings_is_what_the_checks_say() -> None:
     assert written == findings_page(), (
         "write it anew: python -m jointid.identification.warnings.table > docs/findings.md"
     )
+
+
+def test_a_shift_in_milliseconds_is_doubted(well_excited: jid.Recording) -> None:
+    found = found_in(separable(well_excited, shift={"torque": 1.0}), "long_shift")
+    assert "torque by 1 s is shifted" in found.cause
+    assert "1 ms is 0.001" in found.message
+    short = separable(well_excited, shift={"torque": 0.05})
+    assert "long_shift" not in {each.code for each in short.findings}
+
+
+def test_a_reversed_torque_is_flipped_as_it_is_read(
+    well_excited: jid.Recording, tmp_path: Path
+) -> None:
+    assert well_excited.torque is not None
+    wrong = well_excited.with_signals(torque=-well_excited.torque)
+    found = found_in(separable(wrong), "reversed_sign")
+    (action,) = (each for each in found.advice if each.kind == "call")
+    assert (action.function, dict(action.arguments)) == ("load", {"scale": {"torque": -1.0}})
+    after = obeyed(action, wrong, {}, tmp_path)
+    assert "reversed_sign" not in {each.code for each in after.findings}

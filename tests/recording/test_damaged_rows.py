@@ -47,3 +47,31 @@ def test_a_damaged_column_is_not_dropped_row_by_row(tmp_path: Path) -> None:
         jid.load(path)
     with pytest.raises(InputError, match="30 of 60 rows have a value that no joint has"):
         jid.load(path, drop_invalid=True)
+
+
+@pytest.mark.parametrize("cell", ["", "overflow"])
+def test_a_cell_without_a_number_is_a_damaged_row(cell: str, tmp_path: Path) -> None:
+    """MATLAB writes blanks where a value is missing."""
+    path = written(tmp_path / "a.csv", {20: cell})
+    with pytest.raises(InputError, match="load with drop_invalid=True") as caught:
+        jid.load(path)
+    assert "line 22" in str(caught.value)
+    loaded = jid.load(path, drop_invalid=True)
+    assert len(loaded) == 59
+    assert 0.04 not in loaded.time
+    assert loaded.metadata["dropped_rows"] == 1
+
+
+def test_a_column_of_words_is_not_dropped_row_by_row(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", dict.fromkeys(range(30), "off"))
+    for given in (False, True):
+        with pytest.raises(InputError, match="'off' is not a number") as caught:
+            jid.load(path, drop_invalid=given)
+        assert "drop_invalid" not in str(caught.value)
+
+
+def test_rows_out_of_order_are_advised_to_be_sorted(tmp_path: Path) -> None:
+    head, *rows = written(tmp_path / "a.csv", {}).read_text().splitlines()
+    (tmp_path / "b.csv").write_text("\n".join([head, *rows[30:], *rows[:30], ""]))
+    with pytest.raises(InputError, match="strictly increase; sort the rows by time, or cut"):
+        jid.load(tmp_path / "b.csv")

@@ -34,6 +34,12 @@ def ending_of(path: Path, endings: Sequence[str]) -> str:
 
 def no_ending(path: Path, endings: Sequence[str]) -> InputError:
     """Return the error of a file name that has none of some endings."""
-    return InputError(
-        f"a file name that ends in {alternatives(endings)} is expected", place=str(path)
-    )
+    expected = f"a file name that ends in {alternatives(endings)} is expected"
+    if path.is_dir():
+        inside = path / f"*{endings[0]}"
+        return InputError(
+            f"this is a folder; {expected}",
+            place=str(path),
+            remedy=f"name its files, as in {inside}",
+        )
+    return InputError(expected, place=str(path))

@@ -49,7 +49,8 @@ def words_of_action(action: Action, command: str, model: str = "", *, file: bool
     if action.kind != "call":
         return str(action)
     if action.function in ("load", "load_robot", "identify_joints"):
-        action = _of_reading(action)
+        several = action.arguments.get("joints") == "all" and command != "identify"
+        action = _of_reading(action, "identify" if several else "load")
     if action.function == "Robot.from_urdf":
         facts = ", ".join(f"{name} = {_fact(value)}" for name, value in action.arguments.items())
         purpose = f" ({action.text})" if action.text else ""
@@ -82,11 +83,11 @@ def _fact(value: Any) -> str:
     return "..." if value is ... else str(value)
 
 
-def _of_reading(action: Action) -> Action:
+def _of_reading(action: Action, function: str) -> Action:
     """Which joint of a file is an option of its own: `--joint` is a joint file."""
     names = {"joint": "joints"}
     arguments = {names.get(name, name): value for name, value in action.arguments.items()}
-    return Action("call", arguments, action.text, "load")
+    return Action("call", arguments, action.text, function)
 
 
 def option_with_value(option: str, key: str, value: Any) -> str:

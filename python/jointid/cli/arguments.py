@@ -17,6 +17,22 @@ if TYPE_CHECKING:
 _MOST_WINDOWS = 1_000_000_000
 
 
+class Once(argparse.Action):
+    """An option that keeps one value: given twice, it is refused instead of the first one's loss."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,  # noqa: ARG002
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,  # noqa: ARG002
+    ) -> None:
+        """Keep the value."""
+        if getattr(namespace, self.dest) is not None:
+            raise argparse.ArgumentError(self, "it is given twice, and one file is written")
+        setattr(namespace, self.dest, values)
+
+
 def file_kinds() -> str:
     """The endings of the files that can be read, for a sentence."""
     from jointid.recording.readers.registry import endings_text

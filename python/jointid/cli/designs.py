@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.arguments import decimal, pair, whole, whole_seed
 from jointid.cli.outputs import check_folder, check_page
 
 if TYPE_CHECKING:
     from jointid.design.design import Design
+    from jointid.estimate.estimate import Estimate
 
 _PICTURES = (".png", ".pdf", ".svg")
 
@@ -30,14 +31,15 @@ def add_design(design: argparse.ArgumentParser) -> None:
         "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
         'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
     )
-    # -60deg,60deg is a value, and no option: none of ours begins with a digit.
-    design._negative_number_matcher = re.compile(r"-\.?\d")
     design.add_argument("joint", type=Path, help="joint file (.toml)")
     design.add_argument(
         "--after",
         type=Path,
         metavar="ESTIMATE",
         help="the .json file of an estimate: what to record next, given what its recordings tell",
+    )
+    design.add_argument(
+        "--after-joint", metavar="NAME", help="of the estimates of several joints: which one"
     )
     design.add_argument(
         "--duration", type=decimal, default=12.0, help="of the motion [s] (default 12)"
@@ -162,7 +164,6 @@ def _designed(arguments: argparse.Namespace) -> Design:
     from jointid.cli.progress import MotionProgress
     from jointid.design.design_search import DesignSearch
     from jointid.design.designing import design_excitation
-    from jointid.estimate.estimate import Estimate
 
     joint, bench = joint_and_bench(arguments.joint)
     limits = limits_of(arguments, joint, bench)
@@ -179,7 +180,7 @@ def _designed(arguments: argparse.Namespace) -> Design:
     period = arguments.control_period
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
-    estimate = None if arguments.after is None else Estimate.load(arguments.after)
+    estimate = _estimate(arguments)
     sensors = sensors_for(arguments.sensor, limits, joint, bench)
     with MotionProgress(enabled=not arguments.quiet) as progress:
         settings: dict[str, Any] = {
@@ -198,6 +199,34 @@ def _designed(arguments: argparse.Namespace) -> Design:
         settings["sensors"] = sensors_after(arguments.sensor, sensors, estimate)
         found: Design = estimate.next_motion(limits, arguments.duration, joint=joint, **settings)
         return found
+
+
+def _estimate(arguments: argparse.Namespace) -> Estimate | None:
+    """The estimate of --after, of several joints that of --after-joint."""
+    from jointid.joints.reading import load_estimate
+
+    joint = arguments.after_joint
+    if arguments.after is None:
+        if joint is not None:
+            raise InputError("it names a joint of --after", argument="after_joint", value=joint)
+        return None
+    try:
+        return load_estimate(arguments.after, joint)
+    except InputError as error:
+        remedies = tuple(
+            Action("call", {"after_joint": each.arguments["joint"]}, each.text, each.function)
+            if isinstance(each, Action) and "joint" in each.arguments
+            else each
+            for each in error.remedy
+        )
+        of_joint = error.argument == "joints"
+        raise InputError(
+            error.reason,
+            argument="after_joint" if of_joint else error.argument,
+            value=error.value,
+            place=error.place,
+            remedy=remedies,
+        ) from None
 
 
 def _say(found: Design, arguments: argparse.Namespace) -> int:

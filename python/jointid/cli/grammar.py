@@ -6,6 +6,7 @@ from pathlib import Path
 
 from jointid._core import model_names
 from jointid.cli.arguments import (
+    Once,
     file_kinds,
     pair,
     reading_arguments,
@@ -212,7 +213,7 @@ def _identification_arguments(command: CommandParser, *, method: str) -> None:
 def _output_arguments(command: CommandParser) -> None:
     command.add_argument("--report", type=Path, help="write the HTML report to this file")
     command.add_argument(
-        "--save", type=Path, help="write the estimate to a joint file (.toml) or .json"
+        "--save", type=Path, action=Once, help="write the estimate to a joint file (.toml) or .json"
     )
     command.add_argument("--json", action="store_true", help="print the result as JSON")
     command.add_argument("--quiet", action="store_true", help="no progress bar")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
@@ -96,7 +98,10 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
     else:
         from jointid.joints.tables import text_report
 
-        print(text_report(found, action=wording.of_action, error=wording.of_error))
+        def of_joint(action: Action, joint: str) -> str:
+            return replace(wording, joint=joint).of_action(action)
+
+        print(text_report(found, action=of_joint, error=wording.of_error))
         lines = [
             f"{what}: {path}"
             for what, path in (("report", arguments.report), ("estimates", arguments.save))

@@ -110,8 +110,9 @@ def _filled(advised: Mapping[str, Any]) -> dict[str, Any] | None:
 def _of_all_joints(error: InputError, merged: Mapping[str, Any]) -> tuple[str | Action, ...]:
     """The other advice of a file with several joints: all of them, with their ratios where one needs its own."""
     ratio = {name: merged[name] for name in ("gear_ratio",) if name in merged}
+    own = "; one ratio for each, comma-separated" * bool(ratio)
     return tuple(
-        Action("call", {**each.arguments, **ratio}, each.text, each.function)
+        Action("call", {**each.arguments, **ratio}, f"{each.text}{own}", each.function)
         for each in error.remedy[1:]
         if isinstance(each, Action) and each.function == _OF_SEVERAL
     )

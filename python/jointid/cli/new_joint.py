@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import shlex
 import sys
 from collections.abc import Mapping
@@ -38,7 +37,6 @@ def add_new(new: CommandParser) -> None:
         "  jointid new elbow.toml arm.csv --joints 3 --gear-ratio -48 --name elbow\n"
         "at a terminal it asks for what most joints need; Enter leaves a fact out, as a comment in the file"
     )
-    new._negative_number_matcher = re.compile(r"-\d")  # -60deg,60deg is a value, and no option
     new.add_argument("file", type=Path, help="joint file to write (.toml); it must not exist")
     recording = new.add_argument("recording", type=Path, nargs="?", help="recording of the joint")
     new.help_later(

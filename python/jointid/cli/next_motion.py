@@ -17,7 +17,7 @@ _LIMITS = {
 }
 
 
-def words_of_next_motion(action: Action, joint: str, estimate: str) -> str:
+def words_of_next_motion(action: Action, joint: str, estimate: str, of_joint: str = "") -> str:
     """An action that designs a motion, as a command.
 
     Parameters
@@ -26,8 +26,12 @@ def words_of_next_motion(action: Action, joint: str, estimate: str) -> str:
         Of kind "record", with the function "next_motion".
     joint, estimate : str
         The joint file and the saved estimate, or what stands for them.
+    of_joint : str
+        The joint, where the estimate is of several. Default: it is of one.
     """
     command = ["jointid", "design", joint, "--after", estimate]
+    if of_joint:
+        command.append(f"--after-joint {behind_option(of_joint)}")
     limits: Mapping[str, Any] = action.arguments.get("limits", {})
     for name, value in limits.items():
         option, unknown = _LIMITS[name]

@@ -109,6 +109,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
     "design": {
         **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
         "after": "--after",
+        "after_joint": "--after-joint",
         "position": "--position",
         "velocity": "--velocity",
         "acceleration": "--acceleration",

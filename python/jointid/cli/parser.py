@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 
 from jointid.cli.command_table import HELP, options_of
 from jointid.cli.exit_codes import BAD_INPUT
@@ -30,6 +31,13 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.RawDescriptionHelpFormatter(prog, width=(columns or 80) - 2)
 
 
+# What another command has, and this one may do otherwise.
+_ELSEWHERE = {"--by": "--where COLUMN=VALUE reads one run; identify reads a servo's with --by"}
+_NEGATIVE = re.compile(
+    r"-\.?\d"
+)  # -1, -.5, -60deg,60deg: values, for no option begins with a digit
+
+
 class CommandParser(argparse.ArgumentParser):
     """One line on bad usage, not a page; the options of a command are added when they are needed.
 
@@ -42,8 +50,10 @@ class CommandParser(argparse.ArgumentParser):
     """
 
     def __init__(self, command: str = "", **options: Any) -> None:
-        plain = {"formatter_class": _formatter, "exit_on_error": False}
+        # Without abbreviations: --joint, a file, is not --joints where a command has only these.
+        plain = {"formatter_class": _formatter, "exit_on_error": False, "allow_abbrev": False}
         super().__init__(**options | plain)
+        self._negative_number_matcher = _NEGATIVE
         self._command = command
         self._later: list[tuple[argparse.Action, Callable[[], str]]] = []
 
@@ -81,6 +91,8 @@ class CommandParser(argparse.ArgumentParser):
         for argument in arguments:
             if argument.startswith("--"):
                 option = argument.partition("=")[0]
+                if option in _ELSEWHERE:
+                    return f"there is no option {option}; {_ELSEWHERE[option]}"
                 close = closest(option, self._option_string_actions, cutoff=0.8)
                 return f"there is no option {option}" + (
                     f"; did you mean {close}?" if close else ""

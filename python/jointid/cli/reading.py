@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.arguments import by_name, number_or_text, numbers_by_name
 
@@ -71,11 +70,14 @@ def load_all(
             recordings.append(read(path, {}))
         except InputError as error:
             from jointid.cli.looking_ahead import looked_ahead
+            from jointid.cli.torque_column import torque_or_servo
 
             further = looked_ahead(
                 error,
                 partial(read, path),
-                lambda changes, path=path: _torque_of(path, with_changes(reading, changes)),  # type: ignore[misc]
+                lambda changes, path=path: torque_or_servo(  # type: ignore[misc]
+                    path, with_changes(reading, changes)
+                ),
             )
             raise as_given(_of_joints(further), arguments) from None
     return recordings
@@ -88,36 +90,6 @@ def with_changes(reading: Mapping[str, Any], changes: Mapping[str, Any]) -> dict
         both = isinstance(value, Mapping) and changed.get(name)
         changed[name] = {**changed[name], **value} if both else value
     return changed
-
-
-def _torque_of(path: Path, reading: Mapping[str, Any]) -> Action | None:
-    """The call with a column that may hold the torque of a file in which no header says so."""
-    from jointid.recording.column_lookup import column_index
-    from jointid.recording.likely_torque import torque_column
-    from jointid.recording.matching import match_columns
-    from jointid.recording.readers.loading import table_of
-
-    if reading["joint"] is not None:  # the headers of several joints say whose torque it is
-        return None
-    parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
-    table = table_of(path, **parts)
-    columns = reading["columns"]
-    found = match_columns(table, columns=columns, units=None, scale=None, kind=None).found
-    taken = {column.index for column in found.values()}
-    taken |= {column_index(table, header, "where") for header in reading["where"] or ()}
-    index = torque_column(table, taken, found["position"].index)
-    if index is None:
-        return None
-    header = table.headers[index]
-    return Action(
-        "call",
-        {
-            "columns": {"torque": header if table.headers.count(header) == 1 else index},
-            "scale": {"torque": 1.0},
-        },
-        "if that column is proportional to the torque, with the factor to SI instead of 1",
-        "load",
-    )
 
 
 def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> dict[str, Any]:

@@ -36,6 +36,8 @@ class Wording:
         The joint file that the command reads. Default: it reads none.
     saved : str
         The .json file that the command saves its estimate to. Default: it saves none.
+    joint : str
+        The joint that is spoken of, of several in one file. Default: there is one.
     """
 
     command: str
@@ -43,6 +45,7 @@ class Wording:
     grid: frozenset[str] = frozenset()
     joint_file: str = "the joint file"
     saved: str = "ESTIMATE"
+    joint: str = ""
 
     @classmethod
     def of(cls, arguments: argparse.Namespace) -> Wording:
@@ -73,7 +76,7 @@ class Wording:
             joint = (
                 "JOINT" if self.joint_file == "the joint file" else behind_option(self.joint_file)
             )
-            return words_of_next_motion(action, joint, behind_option(self.saved))
+            return words_of_next_motion(action, joint, behind_option(self.saved), self.joint)
         named = self.joint_file != "the joint file"
         words = words_of_action(action, self.command, self.model, file=named)
         return words.replace("the joint file", self.joint_file)

@@ -5,13 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from jointid.base.error_text import printable
+from jointid.base.frames import data_frame
 from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import residual_text
 from jointid.joint.model import Model
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SCHEMA = 1
 """Increased when a reader of the earlier format would misread the new one."""
@@ -124,6 +128,27 @@ class Comparison:
         )
         text = f"<p>{escape(self.setting())}</p><p>{escape(self.reason)}</p>"
         return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{text}</div>"
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a row for each model, in the order of the call, as a data frame; needs pandas.
+
+        Returns
+        -------
+        DataFrame
+            Indexed by the model's text; scores relative to the measured signal, as in `rows`.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+
+        Examples
+        --------
+        >>> comparison.to_pandas().loc["stribeck", "eligible"]
+        True
+        """
+        rows = [{name: getattr(row, name) for name in _PLAIN} for row in self.rows]
+        return data_frame(rows, index="model")
 
     def to_json(self) -> str:
         """Return everything as JSON with a schema version; the winner's estimate as in `Estimate.to_json`."""

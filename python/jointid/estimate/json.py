@@ -29,6 +29,13 @@ SCHEMA = 3
 error is of chance alone, its systematic parts are beside it."""
 
 _KIND = "jointid estimate"
+_OTHERS = {
+    "jointid servo": "a servo's estimate",
+    "jointid robot": "the estimate of a whole robot",
+    "jointid joints": "the estimates of several joints",
+    "jointid comparison": "a comparison of models",
+    "jointid robot comparison": "a comparison of a robot's models",
+}
 
 
 def write_estimate(estimate: Estimate) -> str:
@@ -55,6 +62,9 @@ def read_estimate(text: str) -> Estimate:
     """
     document = read_json(text)
     if not isinstance(document, dict) or document.get("kind") != _KIND:
+        kind = document.get("kind") if isinstance(document, dict) else None
+        if isinstance(kind, str) and kind in _OTHERS:
+            raise InputError(f"this is {_OTHERS[kind]}, and the estimate of one joint is expected")
         raise InputError(
             f"this JSON is not a jointid estimate: its field 'kind' is not '{_KIND}'",
             remedy="save one with identify",

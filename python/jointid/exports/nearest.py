@@ -105,11 +105,14 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
                 value=each.value,
             )
     if lost and not approximate:
+        needed = {"approximate": True} | (
+            {"speed": ...} if friction and subject.speed is None else {}
+        )
         raise InputError(
             f"{target} has Coulomb and viscous friction only; lost would be {' and '.join(lost)}",
             argument="model",
             value=subject.model,
-            remedy=Action("call", {"approximate": True}, "the nearest of that kind", "export"),
+            remedy=Action("call", needed, "the nearest of that kind", "export"),
         )
     if not friction:  # it is Coulomb and viscous friction
         return Nearest(

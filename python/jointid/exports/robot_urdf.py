@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.exports.robot_inertia import with_link_inertias
 from jointid.exports.urdf_model import is_joint, with_children
@@ -40,7 +41,7 @@ def robot_in_urdf(
                 f"URDF has Coulomb and viscous friction of single joints; {joint.name} has {' and '.join(lost)}",
                 argument="approximate",
                 value=False,
-                remedy="pass approximate=True to lose that",
+                remedy=Action("call", {"approximate": True}, "to lose that", "export"),
             )
         content = _with_dynamics(content, place, joint)
     return with_link_inertias(estimate, content, place) if inertia else content

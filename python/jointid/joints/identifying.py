@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.identification.identification import identify
@@ -108,14 +109,35 @@ def identify_joints(
             described = _described(known[name], name, robot, recording)
             estimate = identify(recording, described, **options)  # type: ignore[arg-type]
         except InputError as error:
-            results[name] = JointResult(
-                name=name, status=FAILED, error=error.at(f"joint {name}"), side=side
-            )
+            failed = _of_each(error, len(names)).at(f"joint {name}")
+            results[name] = JointResult(name=name, status=FAILED, error=failed, side=side)
             continue
         results[name] = JointResult(name=name, status=IDENTIFIED, estimate=estimate, side=side)
     if couplings and len(recordings) > 1:
         results = _with_couplings(results, recordings)
     return JointEstimates(results=results, name=robot.name, seconds=time.perf_counter() - started)
+
+
+def _of_each(error: InputError, joints: int) -> InputError:
+    """Return an error whose advice asks for one gear ratio a joint: joints have different gears."""
+    remedies = tuple(
+        Action(
+            "call",
+            each.arguments,
+            f"{each.text}; one for each joint, comma-separated",
+            each.function,
+        )
+        if isinstance(each, Action) and joints > 1 and each.arguments.keys() == {"gear_ratio"}
+        else each
+        for each in error.remedy
+    )
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=remedies,
+    )
 
 
 def _with_couplings(

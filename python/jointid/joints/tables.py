@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from jointid import _core
 from jointid.base.advice import Action
@@ -93,7 +94,7 @@ def couplings(result: JointEstimates) -> list[str]:
 
 def text_report(
     result: JointEstimates,
-    action: Callable[[Action], str] = str,
+    action: Callable[[Action, str], str] = lambda action, _: str(action),
     error: Callable[[InputError], str] = str,
 ) -> str:
     """The result as text.
@@ -102,7 +103,7 @@ def text_report(
     ----------
     result : JointEstimates
     action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
+        Words the advice of a finding of a joint, by its name. Default: as at a Python prompt.
     error : callable
         Words why a joint failed. Default: as Python does.
     """
@@ -113,8 +114,14 @@ def text_report(
         if each.error is not None:
             lines.append(f"joint {each.name} failed: {error(each.error)}")
         if each.estimate is not None:
+            worded = partial(_of_joint, action, each.name)
             lines += [
-                f"joint {each.name}, {found.severity} ({found.code}): {found.worded(action)}"
+                f"joint {each.name}, {found.severity} ({found.code}): {found.worded(worded)}"
                 for found in each.estimate.findings
+                if found.code != "motor_side"  # said once, of all
             ]
     return printable("\n".join(lines).rstrip())
+
+
+def _of_joint(worded: Callable[[Action, str], str], joint: str, action: Action) -> str:
+    return worded(action, joint)

@@ -11,12 +11,13 @@ from jointid.recording.headers import plain, understood
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
 
-# The words of a header, the likeliest first; the last are what makes a torque without being one.
+# The words of a header, the likeliest first.
 _WORDS = (
     ("torq", "tau", "moment", "effort", "force", "trq"),
     ("curr", "amp", "strom", "iq"),
-    ("duty", "pwm", "volt", "command", "cmd", "output"),
 )
+_COMMAND = ("command", "cmd", "output")
+_DUTY = ("duty", "pwm", "volt")  # what makes a torque without being proportional to one
 _DIMENSIONS = ("torque", "force", "current", "voltage")
 _SUPPLY = ("supply", "battery", "bus", "limit", "max", "min", "enable", "temp")
 _ALIKE = 0.98  # correlation of another position, as of a reference
@@ -26,8 +27,9 @@ _ROWS = 20_000
 def torque_column(table: Table, taken: Collection[int], position: int | None) -> int | None:
     """Return the 0-based number of a column that may be proportional to the torque; None where none stands out.
 
-    It changes, does not follow the position, and its header has a word of torque, current, duty or voltage; without
-    such a word it is the only one of all columns that nobody needs.
+    It changes, does not follow the position, and its header has a word of torque, current or command; without
+    such a word it is the only one of all columns that nobody needs. No duty or voltage is one, nor anything else of
+    a log that has one.
 
     Parameters
     ----------
@@ -37,6 +39,32 @@ def torque_column(table: Table, taken: Collection[int], position: int | None) ->
     position : int or None
         The column of the position, if it is known.
     """
+    found = _candidates(table, taken, position)
+    for group in _WORDS:
+        if (index := _likeliest(table, found, group)) is not None:
+            return index
+    if _likeliest(table, found, _DUTY) is not None:
+        return None
+    index = _likeliest(table, found, _COMMAND)
+    return next(iter(found)) if index is None and len(found) == 1 else index
+
+
+def duty_column(table: Table, taken: Collection[int], position: int | None) -> int | None:
+    """Return the 0-based number of a column that is the duty or voltage of a servo; None where none is.
+
+    Parameters
+    ----------
+    table : Table
+    taken : collection of int
+        Columns that are other signals.
+    position : int or None
+        The column of the position, if it is known.
+    """
+    return _likeliest(table, _candidates(table, taken, position), _DUTY)
+
+
+def _candidates(table: Table, taken: Collection[int], position: int | None) -> dict[int, str]:
+    """The words of the columns that may have to do with the torque, by number."""
     motion = None if position is None else _numbers(table, position)
     found: dict[int, str] = {}
     for index, header in enumerate(table.headers):
@@ -50,11 +78,12 @@ def torque_column(table: Table, taken: Collection[int], position: int | None) ->
         values = _numbers(table, index)
         if values is not None and not _follows(values, motion):
             found[index] = words
-    for group in _WORDS:
-        likely = [k for k, words in found.items() if any(word in words for word in group)]
-        if likely:
-            return min(likely, key=lambda k: (_is_coded(table, k), k))
-    return next(iter(found)) if len(found) == 1 else None
+    return found
+
+
+def _likeliest(table: Table, found: dict[int, str], group: tuple[str, ...]) -> int | None:
+    likely = [k for k, words in found.items() if any(word in words for word in group)]
+    return min(likely, key=lambda k: (_is_coded(table, k), k)) if likely else None
 
 
 def _is_coded(table: Table, index: int) -> bool:

@@ -11,6 +11,7 @@ FILES = (
     "stopped",
     "velocity",
     "delays",
+    "long_shift",
     "speed",
     "torque_balance",
     "constant",
@@ -34,6 +35,7 @@ FILES = (
     "gaps",
     "late",
     "assumed_units",
+    "motor_side",
     "left_out",
     "message_log",
 )

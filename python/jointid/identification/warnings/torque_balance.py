@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -61,8 +61,13 @@ def _torque_with_velocity(evidence: Evidence) -> float | None:
 
 
 def _flip_the_torque(evidence: Evidence) -> tuple[Action, ...]:
-    """The sign of the gear ratio is that of a torque on the motor's side."""
+    """The sign of the gear ratio is that of a torque on the motor's side; another is flipped as it is read."""
     joint = evidence.joint
+    if all(run.torque is not None for run in evidence.recordings):
+        scaled = evidence.recordings[0].metadata.get("scale")
+        factor = scaled.get("torque", 1.0) if isinstance(scaled, Mapping) else 1.0
+        unit = "" if factor != 1.0 else "of a column in SI units; else its factor with a minus"
+        return (Action("call", {"scale": {"torque": -factor}}, unit, "load"),)
     if joint is None or any(run.torque is not None for run in evidence.recordings):
         return ()
     return (Action("call", {"gear_ratio": -joint.gear_ratio}, function="Joint"),)

@@ -22,10 +22,12 @@ from jointid.recording.runs import one_run
 from jointid.recording.signals import Kind, TorqueHold
 from jointid.recording.table import Table
 from jointid.recording.unpacking import allowing
+from jointid.recording.unreadable import read_leniently
 from jointid.recording.wide.choosing import OneJoint, also_joints, one_joint
 from jointid.recording.wide.sides import at_joint, checked_ratio
 
 _SURROGATE = "[\ud800-\udfff]"
+_SORT = "sort the rows by time, or cut the file where a second run begins"
 
 
 @reads_open_files
@@ -110,8 +112,8 @@ def load(
         them that is faster than the drive's bus. A standstill of more than ten rows stays. Default
         False.
     drop_invalid : bool
-        Whether rows are left out that have a value which is not finite or larger than any of a joint (1e15): single
-        damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and longer
+        Whether rows are left out that have a value which is missing, no number, not finite or larger than any of a
+        joint (1e15): single damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and longer
         stretches become gaps. Default False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
@@ -154,8 +156,8 @@ def load(
         ) from None
     one = one_joint(table, joint, columns, extra)
     ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
-    contents = read_contents(
-        one.table,
+    read = partial(
+        read_contents,
         columns=one.columns,
         units=units,
         scale=scale,
@@ -163,12 +165,13 @@ def load(
         kind=kind,
         torque_hold=torque_hold,
     )
+    contents = read_leniently(read, one.table, drop_invalid=drop_invalid)
     rows = contents.rows_where(where) if where else None
     dropped = 0
     if drop_invalid:
         sound, dropped = contents.sound_rows(rows)
         rows = sound if dropped else rows
-    remedy = (lambda: one_run(contents)) if rows is None else tuple
+    remedy = (lambda: one_run(contents) or (_SORT,)) if rows is None else tuple
     fields = contents.fields(rows, time_remedy=remedy)
     if drop_copies:
         try:

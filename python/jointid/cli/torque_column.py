@@ -1,0 +1,66 @@
+"""What is advised for a log without a header of torque: the column that may hold it, or that it is a servo's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+
+
+def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
+    """The call with a column that may hold the torque; None where none does, or where joints have names.
+
+    Parameters
+    ----------
+    path : Path
+    reading : mapping
+        Arguments of `load`, with what is advised so far.
+
+    Raises
+    ------
+    InputError
+        The log has a duty or a voltage in place of a torque: it is a servo's.
+    """
+    from jointid.recording.column_lookup import column_index
+    from jointid.recording.likely_torque import duty_column, torque_column
+    from jointid.recording.matching import match_columns
+    from jointid.recording.readers.loading import table_of
+
+    if reading["joint"] is not None:  # the headers of several joints say whose torque it is
+        return None
+    parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
+    table = table_of(path, **parts)
+    columns = reading["columns"]
+    found = match_columns(table, columns=columns, units=None, scale=None, kind=None).found
+    taken = {column.index for column in found.values()}
+    taken |= {column_index(table, header, "where") for header in reading["where"] or ()}
+    position = found["position"].index
+    if (index := torque_column(table, taken, position)) is None:
+        if (index := duty_column(table, taken, position)) is not None:
+            raise _of_servo(path, table.headers[index], reading["where"])
+        return None
+    header = table.headers[index]
+    return Action(
+        "call",
+        {
+            "columns": {"torque": header if table.headers.count(header) == 1 else index},
+            "scale": {"torque": 1.0},
+        },
+        "if that column is proportional to the torque, with the factor to SI instead of 1",
+        "load",
+    )
+
+
+def _of_servo(path: Path, header: str, where: Mapping[str, Any] | None) -> InputError:
+    """What is said of a log without a torque: a duty times a factor is none, for back-EMF brakes, too."""
+    runs = f" --by {next(iter(where))}" if where else ""
+    return InputError(
+        f"the log has no torque: its column '{header}' is the duty or voltage of a servo, which is no torque",
+        argument="torque",
+        place=str(path),
+        remedy=f'identify with --joint SERVO.toml{runs} (a joint file with input = "voltage" under [drive]; '
+        "docs/servos.md has one)",
+    )
