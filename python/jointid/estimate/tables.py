@@ -53,7 +53,8 @@ def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
         )
         error = f"{two_digits(p.stderr)}{share}"
         interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
-    return shown_name(p.name), number(p.value), error, systematic(p), interval, p.unit, text
+    value = p.shown_value if isinstance(p, ParameterEstimate) else p.value
+    return shown_name(p.name), number(value), error, systematic(p), interval, p.unit, text
 
 
 def systematic(p: ParameterEstimate | DerivedValue) -> str:
