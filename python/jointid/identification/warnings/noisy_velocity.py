@@ -10,7 +10,7 @@ from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
-from jointid.identification.warnings.undetermined import with_partners
+from jointid.identification.warnings.undetermined import HIDES, with_partners
 from jointid.recording.order_statistics import median
 from jointid.recording.velocity_noise import noise_of_velocity
 
@@ -47,8 +47,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if limited:
         share = evidence.residuals.noise_share
         causes.append(
-            f"noise makes up {percent(share)} of the change of the velocity over a window, and no window is long "
-            "enough: the estimated inertia is too small"
+            f"noise makes up {percent(share)} of the change of the velocity over a window, and no admissible one has "
+            f"less than 1 %: the estimated inertia is too small{' by about as much' * (share < HIDES)}"
         )
         measured["noise_share"] = Measured(share)
         inertia = evidence.parameters.get("inertia")
