@@ -8,6 +8,7 @@ from simulated_joint import INERTIA, LINK_INERTIA, TRUTH, simulate
 
 import jointid as jid
 from jointid.cli.demo import data_folder
+from jointid.recording.motion import small_motion
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +88,30 @@ def test_a_joint_that_hardly_moves_is_named_and_nothing_else() -> None:
 def test_a_joint_that_hardly_moves_and_shows_nothing_is_refused_for_that() -> None:
     with pytest.raises(jid.InputError, match=r"hardly moves: 0\.0018 rad in all, 6 steps"):
         jid.identify(hardly_moving(2.0, 3e-4))
+
+
+def standing(noise: float) -> jid.Recording:
+    generator = np.random.default_rng(1)
+    time = np.arange(0.0, 6.0, 1e-3)
+    position = 0.5 + noise * generator.normal(size=time.size)
+    return jid.Recording(time=time, position=position, torque=generator.normal(size=time.size))
+
+
+def test_a_joint_that_moves_by_its_noise_alone_stands_still() -> None:
+    estimate = jid.identify(standing(1e-5))
+    assert codes(estimate) == {"hardly_moves"}
+    (finding,) = estimate.warnings
+    assert finding.severity == "blocking"
+    assert "the joint stands still" in finding.cause
+    assert finding.evidence["noise"].value == pytest.approx(1e-5, rel=0.05)
+
+
+@pytest.mark.parametrize("samples", [2.0, 3.0, 4.0, 5.0, 7.3, 40.0])
+def test_a_motion_of_few_samples_a_period_is_no_noise(samples: float) -> None:
+    time = np.arange(0.0, 6.0, 1e-3)
+    position = np.sin(2.0 * np.pi * time / (samples * 1e-3) + 0.3)
+    recording = jid.Recording(time=time, position=position, torque=position)
+    assert small_motion(recording) is None or not small_motion(recording).noise
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e9, "nanoseconds"), (1e6, "microseconds")])

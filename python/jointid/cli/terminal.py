@@ -24,7 +24,8 @@ _WORD = re.compile(
     r"|\S+"
 )
 _NOTE = re.compile(r" {3,}\(.*\)$")  # behind an example
-_COMMAND = re.compile(r"(?:next: |# )?jointid [a-z]|(?:\w+=\S+ )?pip install ")
+# Not "jointid identify: ..." and "jointid estimate — ...", which are sentences and titles.
+_COMMAND = re.compile(r"(?:next: |# )?jointid [a-z][a-z-]*(?![a-z:-]| —)|(?:\w+=\S+ )?pip install ")
 
 
 def fit_streams() -> None:

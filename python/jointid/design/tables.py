@@ -60,6 +60,9 @@ def limits_held(design: Design) -> list[str]:
             text = f"position: {peaks.position[0]:.4g} to {peaks.position[1]:.4g} of {low:.4g} to {high:.4g} {unit}"
         else:
             text = f"{_TITLES.get(name, name)}: {reached[name]:.4g} of {getattr(design.limits, name):.4g} {unit}"
+        if name == "position" and math.isfinite(high - low):
+            stroke = peaks.position[1] - peaks.position[0]
+            text += f", a stroke of {stroke:.3g} {unit}, {100.0 * stroke / (high - low):.0f} % of the range"
         lines.append(f"{text} ({100.0 * share:.0f} %{', reached' if share >= _REACHED else ''})")
     return lines
 

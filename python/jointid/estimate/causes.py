@@ -10,7 +10,7 @@ from typing import Any
 from jointid.base.advice import Action
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Measured
-from jointid.estimate.wording import percent
+from jointid.estimate.wording import percent, signed_percent
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +39,10 @@ class Cause:
         The same of all values, noticeable or not.
     uncertain : mapping of str to float
         Of values that their own errors leave open: the change in standard errors, where it is a large share.
+    near_zero : mapping of str to str
+        Of values near zero, which have no sensible share: the change in words, "from 0 to 0.12 N·m".
+    effect : str
+        What it does to the values as a part of a sentence, where that is more than a list of changes.
     harmful : bool
         Whether a value moves by more than 5 %, or by more than two of its errors.
     alike : tuple of str
@@ -57,6 +61,8 @@ class Cause:
     relative: Mapping[str, float] = field(default_factory=dict, hash=False)
     shares: Mapping[str, float] = field(default_factory=dict, hash=False)
     uncertain: Mapping[str, float] = field(default_factory=dict, hash=False)
+    near_zero: Mapping[str, str] = field(default_factory=dict, hash=False)
+    effect: str = ""
     harmful: bool = True
     alike: tuple[str, ...] = ()
     advice: tuple[Action, ...] = field(default=(), hash=False)
@@ -67,6 +73,7 @@ class Cause:
         object.__setattr__(self, "relative", MappingProxyType(dict(self.relative)))
         object.__setattr__(self, "shares", MappingProxyType(dict(self.shares)))
         object.__setattr__(self, "uncertain", MappingProxyType(dict(self.uncertain)))
+        object.__setattr__(self, "near_zero", MappingProxyType(dict(self.near_zero)))
 
     def __str__(self) -> str:
         """The cause in a sentence without its advice."""
@@ -77,7 +84,7 @@ class Cause:
             f" explains {percent(self.share)} of the misfit over windows of {_seconds(self.scale)}"
         )
         if self.relative and self.harmful:
-            text += f"; with it in the model, {self.moves}"
+            text += f"; {self.effect or f'with it in the model, {self.changes}'}"
         elif not self.harmful:
             text += f"; it {self.harmless}"
         if self.alike:
@@ -85,18 +92,27 @@ class Cause:
         return text
 
     @property
+    def changes(self) -> str:
+        """The largest changes with their verb: "inertia changes by +27 %, viscous by −3 %"."""
+        name, _, rest = self.moves.partition(" ")
+        return f"{name} changes {rest}"
+
+    @property
     def moves(self) -> str:
         """The largest changes, as a part of a sentence."""
         known = {name: share for name, share in self.shares.items() if name not in self.uncertain}
         shown = self.relative if self.harmful else known
         moved = sorted(shown.items(), key=lambda entry: -abs(entry[1]))[:3]
-        named = [f"{name} by {_signed(change)}" for name, change in moved]
+        named = [f"{name} {self._change(name, change)}" for name, change in moved]
         if not self.harmful:
             named += [
                 f"{name}, itself uncertain, by {_in_errors(size)}"
                 for name, size in self.uncertain.items()
             ]
         return ", ".join(named)
+
+    def _change(self, name: str, share: float) -> str:
+        return self.near_zero.get(name) or f"by {signed_percent(share)}"
 
     @property
     def harmless(self) -> str:
@@ -113,7 +129,7 @@ class Cause:
     def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping cannot be pickled.
         values: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
-        for name in ("numbers", "shifts", "relative", "shares", "uncertain"):
+        for name in ("numbers", "shifts", "relative", "shares", "uncertain", "near_zero"):
             values[name] = dict(values[name])
         return _rebuilt, (values,)
 
@@ -197,10 +213,6 @@ def _seconds(value: float) -> str:
 
 def _in_errors(size: float) -> str:
     return f"{size:.2g} of its {'error' if size < 1.0 else 'errors'}"
-
-
-def _signed(share: float) -> str:
-    return ("+" if share >= 0.0 else "−") + percent(abs(share))
 
 
 MEANINGS = {

@@ -24,6 +24,8 @@ SYSTEMATIC_PARTS = (
 )
 """What moves a value however long the recording is."""
 
+_NOTHING = 1e-12  # N·m, kg·m², ...: below it a fixed value is what rounding left of 0
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ParameterEstimate:
@@ -78,6 +80,16 @@ class ParameterEstimate:
         bound = f", at its {self.at_bound} bound" if self.at_bound else ""
         fixed = "" if self.vary else ", fixed"
         return f"<ParameterEstimate {self.name}: {self.value:.6g}{error} {self.unit}{bound}{fixed}>"
+
+    @property
+    def shown_value(self) -> float:
+        """The value as it is printed: the bound itself where the search ended there, 0 for what rounding left.
+
+        A search that ends on a bound of 0 leaves 1e-17, and cos 90° is 6e-17.
+        """
+        if self.at_bound is not None:
+            return self.min if self.at_bound == "min" else self.max
+        return 0.0 if abs(self.value) < _NOTHING and not self.stderr else self.value
 
     @property
     def systematic_total(self) -> float:

@@ -11,7 +11,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.window_views import fitted_signal
-from jointid.estimate.wording import number, percent, two_digits
+from jointid.estimate.wording import number, percent, rounded, two_digits
 from jointid.joint.units import velocity_label
 from jointid.recording.order_statistics import distinct
 
@@ -53,7 +53,8 @@ def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
         )
         error = f"{two_digits(p.stderr)}{share}"
         interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
-    return shown_name(p.name), number(p.value), error, systematic(p), interval, p.unit, text
+    value = p.shown_value if isinstance(p, ParameterEstimate) else p.value
+    return shown_name(p.name), number(value), error, systematic(p), interval, p.unit, text
 
 
 def systematic(p: ParameterEstimate | DerivedValue) -> str:
@@ -124,11 +125,14 @@ def _refinements(estimate: Estimate) -> list[tuple[str, str]]:
         lines.append(("delays", f"against the position: {', '.join(each)}"))
     slow = estimate.slow_motion
     if slow is not None and slow.applied:
+        prismatic = estimate.settings["kind"] == "prismatic"
+        length, torque = ("m", "N") if prismatic else ("rad", "N·m")
         lines.append(
             (
                 "slow motion",
-                f"{percent(slow.share)} of the motion, below {number(slow.speed)}, is left out: its friction "
-                f"differs by {number(slow.excess)} ± {two_digits(slow.stderr)} from what faster motion shows",
+                f"{percent(slow.share)} of the motion, below {slow.speed:.3g} {length}/s, is left out: its friction "
+                f"differs by {rounded(slow.excess, slow.stderr)} ± {two_digits(slow.stderr)} {torque} from what "
+                "faster motion shows",
             )
         )
     return lines

@@ -11,6 +11,11 @@ def percent(share: float) -> str:
     return f"{value:.0f} %" if value >= 10.0 else f"{value:.2g} %"
 
 
+def signed_percent(share: float) -> str:
+    """A change in per cent, with its sign."""
+    return ("+" if share >= 0.0 else "−") + percent(abs(share))
+
+
 def number(value: float) -> str:
     """Six significant digits, without an exponent for usual magnitudes."""
     return f"{value:.6g}"

@@ -12,6 +12,7 @@ from jointid.joints.coupling import Share
 from jointid.joints.signals import MEANING
 
 _CODES = ("structured_residual", "poor_fit")
+_OWN = ", which the joint's own motion explains nearly as well"
 _UNEXPLAINED = re.compile(r"none of \d+ known causes explains [^;]+")
 
 
@@ -36,7 +37,7 @@ def cited(estimate: Estimate, shares: Sequence[Share]) -> Estimate:
 def _citing(finding: Finding, shares: Sequence[Share]) -> Finding:
     parts = [
         f"joint {share.joint}'s {share.by} explains {max(1, round(100.0 * share.share))} % of the residual "
-        f"({MEANING[share.by]})"
+        f"({MEANING[share.by]}{_OWN if share.own_too else ''})"
         for share in shares
     ]
     text = " and ".join(parts)

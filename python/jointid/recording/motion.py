@@ -1,4 +1,4 @@
-"""How far a joint moves, in steps of its encoder."""
+"""How far a joint moves, in steps of its encoder and in its noise."""
 
 from __future__ import annotations
 
@@ -12,18 +12,25 @@ from jointid.recording.recording import Recording
 
 WIDER = "a motion of at least some hundred steps of the encoder"
 _FEWEST = 50.0  # steps from the lowest position to the highest
+_WIDEST = (
+    12.0  # standard deviations from the lowest value of white noise to the highest, of a million
+)
+_LAGS = range(1, 5)  # samples
+_ALIKE = 0.3  # correlation of positions so far apart: white noise has none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmallMotion:
-    """A motion of few steps.
+    """A motion of few steps, or none beside the noise.
 
     Attributes
     ----------
     travel, step : float
-        [rad] or [m].
+        [rad] or [m]; the step of a position that lies on no grid is its smallest change.
     unchanged : float
         Share of the samples without a change of position.
+    noise : float
+        Standard deviation of the position where that is all there is [rad or m]; 0 where it moves by steps.
     text : str
         The same as a sentence.
     """
@@ -31,6 +38,7 @@ class SmallMotion:
     travel: float
     step: float
     unchanged: float
+    noise: float = 0.0
     text: str
 
     @property
@@ -40,7 +48,7 @@ class SmallMotion:
 
 
 def small_motion(recording: Recording) -> SmallMotion | None:
-    """Return the motion of a recording if it is less than 50 steps of the encoder, else None."""
+    """Return the motion of a recording if it is less than 50 steps of the encoder or noise alone, else None."""
     position = recording.position
     travel = float(position.max() - position.min())
     changes = np.abs(np.diff(position))
@@ -48,10 +56,20 @@ def small_motion(recording: Recording) -> SmallMotion | None:
     if not len(changes):
         return None
     step = float(changes.min())
-    if travel >= _FEWEST * step:
-        return None
     unchanged = 1.0 - len(changes) / (len(position) - 1)
     unit = recording.unit("position")
+    noise = _noise_alone(recording, travel)
+    if noise > 0.0:
+        return SmallMotion(
+            travel=travel,
+            step=step,
+            unchanged=unchanged,
+            noise=noise,
+            text=f"the joint stands still: its position varies by {travel:.2g} {unit} in all, which is noise (standard "
+            f"deviation {noise:.2g} {unit})",
+        )
+    if travel >= _FEWEST * step:
+        return None
     return SmallMotion(
         travel=travel,
         step=step,
@@ -61,8 +79,22 @@ def small_motion(recording: Recording) -> SmallMotion | None:
     )
 
 
+def _noise_alone(recording: Recording, travel: float) -> float:
+    """The position's standard deviation if it is white noise, else 0.
+
+    A motion with few samples a period looks as large beside what neighbours differ by, but returns after some.
+    """
+    found = recording.derived.position_noise
+    if found.quantum > 0.0 or travel >= _WIDEST * found.sigma:
+        return 0.0
+    position = recording.position - recording.position.mean()
+    variance = float(np.mean(position**2))
+    alike = [float(np.mean(position[lag:] * position[:-lag])) / variance for lag in _LAGS]
+    return float(np.sqrt(variance)) if max(map(abs, alike)) < _ALIKE else 0.0
+
+
 def raise_if_hardly_moving(recordings: Iterable[Recording]) -> None:
-    """Raise `InputError` if one of the recordings is a motion of less than 50 steps of the encoder."""
+    """Raise `InputError` if one of the recordings is a motion of less than 50 steps of the encoder or noise."""
     for number, recording in enumerate(recordings):
         small = small_motion(recording)
         if small is not None:

@@ -141,7 +141,7 @@ def _undetermined(p: ParameterEstimate) -> ParameterEstimate:
 
 def head() -> list[str]:
     """The table's head."""
-    return ["parameter", "value", "standard error", "95 % interval", "unit", "meaning"]
+    return ["parameter", "value", "± std. error", "95 % interval", "unit", "meaning"]
 
 
 def rows(estimate: ServoEstimate) -> list[list[str]]:
@@ -165,7 +165,7 @@ def _error(p: ParameterEstimate) -> str:
 def _interval(p: ParameterEstimate) -> str:
     if p.interval is None or np.isinf(p.interval[1]):
         return ""
-    return f"{p.interval[0]:.3g} to {p.interval[1]:.3g}"
+    return f"{p.interval[0]:.3g} … {p.interval[1]:.3g}"
 
 
 def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) -> str:

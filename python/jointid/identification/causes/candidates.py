@@ -244,8 +244,8 @@ def _offset(fit: Fitted) -> Iterator[Candidate]:
 
 
 def _scale(fit: Fitted) -> Iterator[Candidate]:
-    """A given inertia that does not fit the torque's scale."""
-    if "inertia" in fit.names and fit.names.index("inertia") not in fit.free:
+    """A given inertia that does not fit the torque's scale; one at its bound was not given."""
+    if "inertia" in fit.given:
         column = fit.columns[:, fit.names.index("inertia")]
         yield Candidate(name="wrong_scale", columns=column[:, None])
 

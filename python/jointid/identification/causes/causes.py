@@ -17,6 +17,7 @@ from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent
 from jointid.identification.causes.attribution import Attributed, attribute
 from jointid.identification.causes.candidates import FILTERED, inertia_basis, listed_candidates
+from jointid.identification.causes.changes import from_to, of_a_scale
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.remedies import advice_against
 from jointid.problem.problem import Problem
@@ -133,14 +134,11 @@ def _fitted(
     filtered: bool = False,
     most: int | None = None,
 ) -> Fitted:
-    names = list(penalty.names)
-    best = np.array([parameters[name].value for name in names])
-    free = tuple(
-        index
-        for index, name in enumerate(names)
-        if parameters[name].vary and parameters[name].at_bound is None
-    )
-    return Fitted.of(problem, penalty, best, free, signals, prompt, filtered, most)
+    found = [parameters[name] for name in penalty.names]
+    best = np.array([p.value for p in found])
+    free = tuple(index for index, p in enumerate(found) if p.vary and p.at_bound is None)
+    given = frozenset(p.name for p in found if not p.vary)
+    return Fitted.of(problem, penalty, best, free, signals, prompt, filtered, most, given)
 
 
 def attributed(
@@ -219,6 +217,8 @@ def _cause(
     shifts = {
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
     }
+    wrong = each.candidate.name == "wrong_scale"
+    effect = of_a_scale(parameters, shifts, _off_scale(fit, each)) if wrong else ""
     shifts |= _of_itself(fit, each)
     shares = {
         name: shift / scale
@@ -236,6 +236,7 @@ def _cause(
         )
         for name, share in shares.items()
     }
+    known = {name: _error_of(parameters[name]) for name in shifts}
     detail, size, numbers = _described(fit, each, delays)
     return Cause(
         name=each.candidate.name,
@@ -248,10 +249,12 @@ def _cause(
         relative={name: share for name, share in shares.items() if harm[name] > _NOTICED},
         shares=shares,
         uncertain={
-            name: abs(shifts[name]) / _error_of(parameters[name])
+            name: abs(shifts[name]) / known[name]
             for name, share in shares.items()
-            if abs(share) > _MOVED and harm[name] <= 1.0 and _error_of(parameters[name]) > 0.0
+            if abs(share) > _MOVED and harm[name] <= 1.0 and known[name] > 0.0
         },
+        near_zero=from_to(parameters, shifts, shares, known, before=more is not None),
+        effect=effect,
         harmful=max(harm.values(), default=0.0) > 1.0,
         alike=each.alike,
         advice=advice_against(fit, each),

@@ -51,6 +51,8 @@ class Fitted:
         Signals that are known not to be late.
     filtered : bool
         Whether the velocity was late against the position: a filter does more than that.
+    given : frozenset of str
+        Parameters that were not searched for.
     """
 
     problem: Problem
@@ -64,6 +66,7 @@ class Fitted:
     signals: Mapping[str, Array] = field(default_factory=dict)
     prompt: frozenset[str] = frozenset()
     filtered: bool = False
+    given: frozenset[str] = frozenset()
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
@@ -190,6 +193,7 @@ class Fitted:
         prompt: frozenset[str] = frozenset(),
         filtered: bool = False,
         most: int | None = None,
+        given: frozenset[str] = frozenset(),
     ) -> Fitted:
         """Return the fit at a minimum, on the torque's side whatever the penalty compares.
 
@@ -218,6 +222,7 @@ class Fitted:
             signals=signals or {},
             prompt=prompt,
             filtered=filtered,
+            given=given,
         )
         fit = replace(fit, residual=fit.summed(residual), jacobian=fit.summed(jacobian))
         jacobian = fit.jacobian

@@ -139,7 +139,7 @@ class Excitation:
             return self._angle(base)
         return None
 
-    def longer(self, error: float, wanted: float) -> Lack:
+    def longer(self, name: str, error: float, wanted: float) -> Lack:
         """What is missing where only noise limits: time."""
         duration = float(self.evidence.table.duration.sum())
         needed = duration * min((error / wanted) ** 2, 1e6)
@@ -151,11 +151,11 @@ class Excitation:
         measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
         if needed > _LONGEST * duration:
             text = (
-                f"the noise hides it: {_two(duration)} s of motion would have to be {_two(needed / duration)} times as "
-                "long"
+                f"the noise hides {name}: the log has {_two(duration)} s of motion, and it would take "
+                f"{_two(needed / duration)} times as long to see it"
             )
             measured["duration.factor"] = Measured(float(_two(needed / duration)))
-            motion = "with less noise, or with motion that this parameter shows in more"
+            motion = f"a motion in which {name} shows more, or one with less noise"
         return Lack("duration", text, motion, measured, needed)
 
     def noise(self) -> Lack:
@@ -306,11 +306,17 @@ class Excitation:
             return None
         return Lack(
             "travel",
-            f"the log's angles cover {_two(self.travel)} rad, and {_two(needed)} are needed",
+            f"the log's angles cover {_below(self.travel, needed)} rad, and {_two(needed)} rad are needed",
             f"motion through {_two(needed)} rad or more",
             {"travel": Measured(self.travel, "rad"), "travel.needed": Measured(needed, "rad")},
             needed,
         )
+
+
+def _below(value: float, needed: float) -> str:
+    """A value that is too small, with as many digits as show that."""
+    shown = (f"{float(f'{value:.{digits}g}'):g}" for digits in range(2, 7))
+    return next((text for text in shown if float(text) < float(_two(needed))), f"{value!r}")
 
 
 def _two(value: float) -> str:

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
-from jointid.estimate.wording import percent
+from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
-from jointid.identification.warnings.undetermined import with_partners
+from jointid.identification.warnings.undetermined import HIDES, with_partners
 from jointid.recording.order_statistics import median
 from jointid.recording.velocity_noise import noise_of_velocity
 
@@ -24,6 +24,7 @@ NOISY_VELOCITY = FindingType(
 )
 _MOVED = 0.02  # of the value: two of them are what `undetermined` calls wide
 _OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
+_MANY = 10.0  # of the value: a larger share is no size
 _QUIETER = 0.5  # of the recorded velocity's noise
 _JITTER = 0.02  # sample periods between position and stamps
 _FINER = Action("record", text="the position with a finer resolution, or for longer")
@@ -46,15 +47,17 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if limited:
         share = evidence.residuals.noise_share
         causes.append(
-            f"noise makes up {percent(share)} of the change of the velocity over a window, and no window is long "
-            "enough: the estimated inertia is too small"
+            f"noise makes up {percent(share)} of the change of the velocity over a window, and no admissible one has "
+            f"less than 1 %: the estimated inertia is too small{' by about as much' * (share < HIDES)}"
         )
         measured["noise_share"] = Measured(share)
         inertia = evidence.parameters.get("inertia")
         if inertia is not None and inertia.vary and "inertia" not in named:
             named.insert(0, "inertia")
     if moved:
-        sizes = ", ".join(f"{name} by {percent(share)}" for name, share in moved.items())
+        sizes = ", ".join(
+            f"{name} by {_size(evidence, name, each)}" for name, each in moved.items()
+        )
         causes.append(
             f"noise of the velocity moves {sizes}, found by measuring once more"
             + _resolution(evidence)
@@ -92,6 +95,16 @@ def moved_by_noise(evidence: Evidence) -> dict[str, float]:
         if parameter.vary and size > _MOVED * level > 0.0:
             shares[parameter.name] = size / level
     return shares
+
+
+def _size(evidence: Evidence, name: str, share: float) -> str:
+    """How far the noise moves a value: a share of it, or an amount where it is near zero."""
+    p, effect = evidence.parameters[name], evidence.velocity_effect
+    usual = p.at_bound is None and abs(p.value) >= p.uncertainty and share <= _MANY
+    if effect is None or usual:
+        return percent(share)
+    size = float(effect.size[list(evidence.penalty.names).index(name)])
+    return f"{two_digits(size)} {p.unit}".rstrip()
 
 
 def _resolution(evidence: Evidence) -> str:

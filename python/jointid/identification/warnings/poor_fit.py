@@ -41,7 +41,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     limit = _NOTHING if evidence.white else POORLY_EXPLAINED
     if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence, 'the rest')}",
+            f"the model explains only {100.0 * explained:.1f} % of the variance of what was measured (R²)"
+            f"{excluded(evidence, 'the rest')}",
             *actions,
             evidence=measured | excluded_number(evidence),
         )

@@ -77,7 +77,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         harmful = cause is None or cause.harmful
         moves = "biases gain and static friction" if cause is None else cause.harmless
         if cause is not None and harmful:
-            moves = f"moves values (with it in the model, {cause.moves})"
+            moves = f"moves values (with it in the model, {cause.changes})"
         measured = {
             "multiple": Measured(peak.multiple),
             "amplitude": Measured(peak.amplitude, "N·m"),

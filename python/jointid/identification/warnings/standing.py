@@ -7,7 +7,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
-from jointid.recording.motion import WIDER, small_motion
+from jointid.recording.motion import WIDER, SmallMotion, small_motion
 
 STANDING = FindingType(
     code="standing",
@@ -17,7 +17,8 @@ STANDING = FindingType(
 HARDLY_MOVES = FindingType(
     code="hardly_moves",
     severity="blocking",
-    meaning="the whole motion is less than 50 steps of the encoder: what else would be found follows from that",
+    meaning="the whole motion is less than 50 steps of the encoder, or noise alone: what else would be found follows "
+    "from that",
     advice="record a wider motion",
 )
 _MUCH = 0.35
@@ -31,12 +32,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             yield HARDLY_MOVES.finding(
                 small.text,
                 Action("record", text=WIDER),
-                evidence={
-                    "travel": Measured(small.travel, unit),
-                    "step": Measured(small.step, unit),
-                    "steps": Measured(small.steps),
-                    "unchanged": Measured(small.unchanged),
-                },
+                evidence={"travel": Measured(small.travel, unit)} | _of(small, unit),
                 parameters=tuple(name for name, each in evidence.parameters.items() if each.vary),
             )
     share = evidence.residuals.standing
@@ -47,6 +43,16 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             other_motion(evidence, "more motion"),
             evidence={"standing": Measured(share)},
         )
+
+
+def _of(small: SmallMotion, unit: str) -> dict[str, Measured]:
+    if small.noise > 0.0:
+        return {"noise": Measured(small.noise, unit)}
+    return {
+        "step": Measured(small.step, unit),
+        "steps": Measured(small.steps),
+        "unchanged": Measured(small.unchanged),
+    }
 
 
 CHECK = Check(_find, (STANDING, HARDLY_MOVES))

@@ -31,10 +31,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if not uncertain and (correlation <= _CORRELATED or harmless(evidence)):
         return
     makes = f"; uncertain: {listed(uncertain)}" if uncertain else ""
+    sign = f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
+    if correlation <= _CORRELATED:  # what is uncertain is all that shows it
+        sign = (
+            f"values are uncertain without a lack of motion, and the residuals are hardly autocorrelated (r = "
+            f"{correlation:.2f}): the model misses something, or the windows are too long to show it"
+        )
     # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
     yield STRUCTURED_RESIDUAL.finding(
-        f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
-        f"{excluded(evidence)}{makes}",
+        f"{sign}{excluded(evidence)}{makes}",
         Action("inspect", text="the residuals over time and over velocity"),
         evidence={"autocorrelation": Measured(correlation)} | excluded_number(evidence),
         parameters=uncertain,

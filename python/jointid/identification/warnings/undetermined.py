@@ -37,6 +37,7 @@ _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
 _NEARLY = 0.5  # of the limit: so uncertain is what moves with a parameter beyond it
 _LOAD_FRICTION = 0.05
+HIDES = 0.5  # noise in the velocity's change over a window: more of it than of the motion
 _PAIRS = 5
 _LOW_SPEED = ("static", "stribeck", "stribeck_velocity", "stribeck_exponent")
 _FEW = 3  # names in a sentence
@@ -142,7 +143,7 @@ def _lack(p: ParameterEstimate, evidence: Evidence, excitation: Excitation) -> L
     error, wanted = _half_width(p), _LARGE_ERROR * scale_of(p, evidence)
     if math.isinf(error) or error <= wanted or wanted == 0.0:
         return None
-    return excitation.longer(error, wanted)
+    return excitation.longer(p.name, error, wanted)
 
 
 def wide(evidence: Evidence) -> tuple[str, ...]:
@@ -232,7 +233,14 @@ def scale_of(p: ParameterEstimate, evidence: Evidence) -> float:
 
 def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]:
     if _hidden(p, evidence):
-        return [_Reason("inertia is hidden by the noise of the velocity, whatever the windows", {})]
+        share = evidence.residuals.noise_share
+        # The noise adds its share to the variance that the inertia's slope is divided by.
+        text = (
+            "inertia is hidden by the noise of the velocity, whatever the windows"
+            if share > HIDES
+            else f"the noise of the velocity makes inertia about {percent(share)} too small, whatever the windows"
+        )
+        return [_Reason(text, {})]
     if p.stderr is None:
         return []
     scale = scale_of(p, evidence)
