@@ -100,7 +100,7 @@ FOLDERS: dict[str, Folder] = {
     "identification/warnings": Folder(
         may_use={*_FOUND, "identification/inference"}, packages={"numpy"}
     ),
-    "comparison": Folder(may_use={*_SOUGHT, "servo"}, packages={"numpy"}),
+    "comparison": Folder(may_use={*_SOUGHT, "servo"}, packages={"numpy", "pandas"}),
     "joints": Folder(
         may_use={*_SOUGHT, "recording/wide", "identification/causes"}, packages={"numpy"}
     ),

@@ -113,8 +113,8 @@ def load(
         False.
     drop_invalid : bool
         Whether rows are left out that have a value which is missing, no number, not finite or larger than any of a
-        joint (1e15): single damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and longer
-        stretches become gaps. Default False.
+        joint (1e15): single damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and
+        longer stretches become gaps. Default False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
     topic : str, optional
