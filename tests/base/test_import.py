@@ -195,7 +195,7 @@ COMMANDS: dict[str, tuple[list[str], set[str], set[str]]] = {
         WRITING,
     ),
     "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, {"html"}),
-    "info": (["info", "RUN"], READING, set()),
+    "info": (["info", "RUN"], IDENTIFYING, set()),
 }
 
 

@@ -33,7 +33,10 @@ def test_the_summary_has_each_error_the_weakest_and_the_limits() -> None:
         assert shown in row
     assert "weakest: sensor_gain, 0.36 % at worst; the velocity is at its limit" in lines
     assert "reaches velocity: 3.38 of 3.4 rad/s (99 %, reached)" in lines
-    assert "reaches position: -0.7 to 0.9 of -1 to 1 rad (90 %)" in lines
+    assert (
+        "reaches position: -0.7 to 0.9 of -1 to 1 rad, a stroke of 1.6 rad, 80 % of the range (90 %)"
+        in lines
+    )
     assert "seed 3" in lines[-1]
 
 

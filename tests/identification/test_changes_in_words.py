@@ -12,7 +12,7 @@ from jointid.identification.causes.changes import from_to
 
 
 @pytest.fixture(scope="module")
-def recording():
+def recording() -> jid.Recording:
     """The torque and the position, and nothing else."""
     full = jid.load(data_folder() / "well_excited.csv.gz")
     return jid.Recording(time=full.time, position=full.position, torque=full.torque)
@@ -44,7 +44,10 @@ def estimated(value: float, error: float = 0.1, at_bound: str | None = None) -> 
     ],
     ids=["at its bound", "less than its error", "more than ten times"],
 )
-def test_a_change_of_a_value_near_zero_is_no_share(parameter, words):
+def test_a_change_of_a_value_near_zero_is_no_share(
+    parameter: ParameterEstimate, words: str
+) -> None:
+    assert parameter.stderr is not None
     share = 0.5 / parameter.value
     found = from_to(
         {"coulomb": parameter}, {"coulomb": 0.5}, {"coulomb": share}, {"coulomb": parameter.stderr}
@@ -57,13 +60,13 @@ def test_a_change_of_a_value_near_zero_is_no_share(parameter, words):
     assert "%" not in str(cause).partition(";")[2]
 
 
-def test_a_change_of_a_known_value_is_a_share():
+def test_a_change_of_a_known_value_is_a_share() -> None:
     assert not from_to(
         {"coulomb": estimated(2.0)}, {"coulomb": 0.5}, {"coulomb": 0.25}, {"coulomb": 0.1}
     )
 
 
-def test_what_was_taken_away_had_changed_the_value_before():
+def test_what_was_taken_away_had_changed_the_value_before() -> None:
     found = from_to(
         {"coulomb": estimated(0.05)},
         {"coulomb": 0.5},
@@ -74,9 +77,9 @@ def test_what_was_taken_away_had_changed_the_value_before():
     assert found == {"coulomb": "from -0.45 to 0.05 N·m"}
 
 
-def test_a_wrong_inertia_is_told_with_what_it_did_to_the_friction(recording):
+def test_a_wrong_inertia_is_told_with_what_it_did_to_the_friction(recording: jid.Recording) -> None:
     """Without the given inertia the friction hardly changes; if the torque is wrong, all of it does."""
-    model = "stribeck:gravity=free"
+    model = jid.Model("stribeck", gravity="free")
     free = jid.identify(recording, model=model).parameters
     given = 1.04 * free["inertia"].value
     wrong = jid.identify(
@@ -94,15 +97,21 @@ def test_a_wrong_inertia_is_told_with_what_it_did_to_the_friction(recording):
     assert "if the torque is wrong instead, the friction changes by +4 %" in text
 
 
-def test_an_inertia_at_its_bound_was_not_given(recording):
-    inertia = jid.identify(recording, model="stribeck:gravity=free").parameters["inertia"].value
+def test_an_inertia_at_its_bound_was_not_given(recording: jid.Recording) -> None:
+    inertia = (
+        jid.identify(recording, model=jid.Model("stribeck", gravity="free"))
+        .parameters["inertia"]
+        .value
+    )
     held = jid.identify(
-        recording, model="stribeck:gravity=free", parameters={"inertia": {"max": 0.95 * inertia}}
+        recording,
+        model=jid.Model("stribeck", gravity="free"),
+        parameters={"inertia": {"max": 0.95 * inertia}},
     )
     assert held.parameters["inertia"].at_bound == "max"
     assert "wrong_scale" not in held.causes().tried
 
 
-def test_the_table_has_the_bound_and_not_what_rounding_left_of_it():
+def test_the_table_has_the_bound_and_not_what_rounding_left_of_it() -> None:
     assert estimated(2.7e-17, at_bound="min").shown_value == 0.0
     assert estimated(2.7e-17).shown_value == 2.7e-17

@@ -111,7 +111,8 @@ def test_a_motion_of_few_samples_a_period_is_no_noise(samples: float) -> None:
     time = np.arange(0.0, 6.0, 1e-3)
     position = np.sin(2.0 * np.pi * time / (samples * 1e-3) + 0.3)
     recording = jid.Recording(time=time, position=position, torque=position)
-    assert small_motion(recording) is None or not small_motion(recording).noise
+    found = small_motion(recording)
+    assert found is None or not found.noise
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e9, "nanoseconds"), (1e6, "microseconds")])

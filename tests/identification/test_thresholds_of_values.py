@@ -249,7 +249,7 @@ def test_hardly_more_windows_than_parameters(windows: int, few: bool) -> None:
 
 @pytest.mark.parametrize(("times", "said"), [(3.1, "about 96 s like it"), (3.2, "times as long")])
 def test_nobody_records_ten_times_as_long(times: float, said: str) -> None:
-    lack = Excitation(_moved()).longer(times, 1.0)
+    lack = Excitation(_moved()).longer("viscous", times, 1.0)
     assert said in lack.text
     assert lack.wanted == pytest.approx(10.0 * times**2)
 

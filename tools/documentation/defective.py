@@ -228,6 +228,10 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
         "other_signal": Case(recording=warm, joint=None, identify={"model": "coulomb_viscous"}),
         "poor_fit": Case(recording=foreign, joint=None),
         "late_samples": Case(recording=defects.changed(good, late=late)),
+        "motor_side": Case(
+            recording=defects.changed(given, metadata={"side": "motor"}), joint=None
+        ),
+        "long_shift": Case(recording=good, identify={"shift": {"torque": 0.5}}),
     }
 
 

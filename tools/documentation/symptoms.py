@@ -207,6 +207,10 @@ SYMPTOMS: Mapping[str, Symptom] = {
             "velocity", caption="Some of these samples came three cycles late; no window uses them."
         ),
     ),
+    "motor_side": Symptom(
+        "Friction and inertia are as small as a motor's: the square of the gear ratio is missing."
+    ),
+    "long_shift": Symptom("A delay was stated that is longer than a filter or a bus makes one."),
     "assumed_units": Symptom("A header has no unit."),
     "left_out": Symptom("A column of the file is not used."),
     "interpolated": Symptom("One channel has fewer samples than the others."),

@@ -32,7 +32,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     makes = f"; uncertain: {listed(uncertain)}" if uncertain else ""
     sign = f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
-    if correlation <= _CORRELATED:  # what is uncertain is all that shows it
+    if not correlation > _CORRELATED:  # what is uncertain is all that shows it
         sign = (
             f"values are uncertain without a lack of motion, and the residuals are hardly autocorrelated (r = "
             f"{correlation:.2f}): the model misses something, or the windows are too long to show it"
