@@ -208,9 +208,13 @@ SYMPTOMS: Mapping[str, Symptom] = {
         ),
     ),
     "motor_side": Symptom(
-        "Friction and inertia are as small as a motor's: the square of the gear ratio is missing."
+        "Friction and inertia are as small as a motor's: the square of the gear ratio is missing.",
+        friction,
     ),
-    "long_shift": Symptom("A delay was stated that is longer than a filter or a bus makes one."),
+    "long_shift": Symptom(
+        "A delay was stated that is longer than a filter or a bus makes one; the torque no longer fits the motion.",
+        windows,
+    ),
     "assumed_units": Symptom("A header has no unit."),
     "left_out": Symptom("A column of the file is not used."),
     "interpolated": Symptom("One channel has fewer samples than the others."),
