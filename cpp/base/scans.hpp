@@ -28,7 +28,7 @@ double largest_height(const double* x, std::size_t width, std::size_t places);
 
 /// Whether no sample is infinite or no number.
 bool all_finite(const double* x, std::size_t count);
-/// Whether each of `steps` steps is upwards.
+/// Whether each of `steps` steps is upwards; of finite samples.
 bool increases(const double* x, std::size_t steps);
 
 }  // namespace jointid::base

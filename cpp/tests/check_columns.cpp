@@ -124,6 +124,11 @@ CHECK_CASE("decays: sums by series are those of single exponentials") {
     }
     nodes.first.push_back(nodes.speed.size());
   }
+  for (int i = 0; i < 12; ++i) {  // squares that are next to nothing, or nothing
+    nodes.speed.push_back(1e-155 * std::pow(0.3, i));
+    nodes.weight.push_back(1e-3);
+  }
+  nodes.first.push_back(nodes.speed.size());
   identify::DecayRates group;
   for (double rate = -0.05; rate < 2000.0; rate = rate < 0.01 ? rate + 0.03 : 1.4 * rate) {
     group.rates.push_back(rate);

@@ -1,8 +1,10 @@
 """The recordings in the page of an estimate: their signals, what was left out, the residual over the position."""
 
+import ast
 import re
 from pathlib import Path
 
+import defects
 import numpy as np
 import pytest
 import report_pages
@@ -11,6 +13,7 @@ from drawn_pictures import Picture, corners
 import jointid as jid
 from jointid.report.recorded_signals import left_out
 from jointid.report.saving import report_page, save_report
+from jointid.report.values_to_copy import program
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +109,13 @@ def test_the_copied_program_finds_the_same_values(
             assert again[name].value == pytest.approx(parameter.value, rel=1e-9)
         assert again.settings["seed"] == found.settings["seed"]
         assert again.settings["ga"] == found.settings["ga"]
+
+
+def test_no_name_becomes_a_line_of_the_program() -> None:
+    named = defects.changed(report_pages.good(), name="x\nimport os\n# y")
+    lines = program(jid.identify(named, jid.thesis_joint())).splitlines()
+    assert [line for line in lines if line.startswith("import")] == ["import jointid as jid"]
+    assert len(ast.parse("\n".join(lines)).body) == 2
 
 
 def test_values_are_a_table_for_spreadsheets(estimate: jid.Estimate) -> None:

@@ -15,8 +15,18 @@ from simulated_servo import (
 )
 
 import jointid as jid
+from jointid.servo.findings import findings_of
+from jointid.servo.solving import Sought
 
 TRUTH = Truth()
+DIVIDED = Sought(
+    separable=True,
+    load_friction=True,
+    held=False,
+    torque_constant=None,
+    resistance=None,
+    fixed={},
+)
 
 
 @pytest.fixture(scope="module")
@@ -202,3 +212,25 @@ def test_the_identified_joint_has_the_values(estimate: jid.ServoEstimate) -> Non
     assert joint.parameters["load_friction"].value == estimate["load_friction"]
     again = jid.identify_servo(bench_runs(TRUTH, seed=1), with_truth(TRUTH, servo_joint()))
     assert again["torque_constant"] == TRUTH.torque_constant
+
+
+def test_the_verdict_minds_wide_intervals_and_missing_errors(
+    runs: list[jid.Recording], estimate: jid.ServoEstimate
+) -> None:
+    assert estimate.verdict.level == "usable"
+    wide = dict(estimate.parameters)
+    value = wide["inertia"].value
+    wide["inertia"] = replace(wide["inertia"], interval=(0.7 * value, 1.3 * value))
+    vague = replace(estimate, parameters=wide)
+    found = [each for each in findings_of(vague, DIVIDED) if each.code == "undetermined"]
+    assert [each.parameters for each in found] == [("inertia",)]
+    bare = jid.identify_servo(runs, servo_joint(), draws=0)
+    assert bare.verdict.level == "usable with care"
+    assert "errors were not asked for" in bare.verdict.reasons[0]
+
+
+def test_without_a_link_no_swing_is_claimed(runs: list[jid.Recording]) -> None:
+    found = jid.identify_servo(without_free_runs(runs), replace(servo_joint(), link=None))
+    (said,) = (each for each in found.findings if each.code == "inseparable_back_emf")
+    assert "swing is nearest" not in said.cause
+    assert "for want of a load that swings" in said.cause

@@ -52,7 +52,8 @@ constexpr std::array<double, kDegree + 1> kInverseFactorials = [] {
 JOINTID_CLONES void take_moments(const double* x, const double* weight, Run& run) {
   std::array<double, kNodes> place{};
   std::array<double, kNodes> power{};
-  const double scale = run.half > 0.0 ? 1.0 / run.half : 0.0;
+  // A range that is next to nothing has no inverse; its nodes lie in the middle.
+  const double scale = run.half > 1e-300 ? 1.0 / run.half : 0.0;
   for (std::size_t i = 0; i < run.end - run.begin; ++i) {
     place[i] = (x[run.begin + i] - run.middle) * scale;
     power[i] = weight[run.begin + i];

@@ -82,7 +82,7 @@ JOINTID_CLONES void solve_all(const Systems& of) {
   }
 }
 
-/// result -= factor * (first * found), lane by lane.
+/// result -= factor * products * first * second, lane by lane.
 JOINTID_CLONES void take_away(double factor, const double* products, const double* first,
                               const double* second, std::size_t lanes, double* result) {
   for (std::size_t l = 0; l < lanes; ++l) {

@@ -62,7 +62,8 @@ class Eliminated {
   void settle(const Eigen::VectorXd& theta, SeparableResult& result) const {
     const double value = penalty_(theta, &pool_.cancel());
     ++result.evaluations;
-    if (result.best.size() > 0 && value > result.penalty * (1.0 + kRounding)) return;
+    // Also a value that is no number is no better one.
+    if (result.best.size() > 0 && !(value <= result.penalty * (1.0 + kRounding))) return;
     result.best = theta;
     result.penalty = value;
   }

@@ -8,6 +8,7 @@ from typing import Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.cli.values import behind_option
 
 
 def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
@@ -56,7 +57,7 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
 
 def _of_servo(path: Path, header: str, where: Mapping[str, Any] | None) -> InputError:
     """What is said of a log without a torque: a duty times a factor is none, for back-EMF brakes, too."""
-    runs = f" --by {next(iter(where))}" if where else ""
+    runs = f" --by {behind_option(next(iter(where)))}" if where else ""
     return InputError(
         f"the log has no torque: its column '{header}' is the duty or voltage of a servo, which is no torque",
         argument="torque",

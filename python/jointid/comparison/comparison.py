@@ -179,6 +179,7 @@ def compare_models(
             torque_hold=torque_hold,
             mask_standstill=mask_standstill,
             shift=shift,
+            min_speed=min_speed,
         )
         specs = tuple(spec.replace(gravity=gravity) for spec in specs)
     if isinstance(folds, bool) or not isinstance(folds, int | np.integer) or folds < 2:

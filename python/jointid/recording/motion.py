@@ -65,8 +65,8 @@ def small_motion(recording: Recording) -> SmallMotion | None:
             step=step,
             unchanged=unchanged,
             noise=noise,
-            text=f"the joint stands still: its position varies by {travel:.2g} {unit} in all, which is noise (standard "
-            f"deviation {noise:.2g} {unit})",
+            text="the joint stands still, or moves too fast for these samples: its position varies by "
+            f"{travel:.2g} {unit} in all, as noise does (standard deviation {noise:.2g} {unit})",
         )
     if travel >= _FEWEST * step:
         return None

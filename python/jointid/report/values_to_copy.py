@@ -59,7 +59,10 @@ def program(estimate: Estimate) -> str:
     windows = "cumulative" if settings.get("cumulative") else settings["windows"]
     runs = settings["recordings"]
     what = "recording" if len(runs) == 1 else "recordings"
-    named = ", ".join(f"{run['name'] or 'unnamed'} ({run['fingerprint']})" for run in runs)
+    # In one line: a name must not become a line of the program.
+    named = ", ".join(
+        f"{' '.join(str(run['name'] or 'unnamed').split())} ({run['fingerprint']})" for run in runs
+    )
     stated = {
         "model": str(model_of(settings)),
         "residual": settings["residual"],

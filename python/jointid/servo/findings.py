@@ -12,7 +12,7 @@ from jointid.estimate.wording import percent, two_digits
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.solving import Sought
 
-_VAGUE = 0.25  # a standard error, of the value
+_VAGUE = 0.25  # half of an interval, of the value
 _MOTOR = ("back_emf", "viscous", "torque_constant", "resistance")
 _POOR = 0.35  # of the load's torque
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
@@ -46,12 +46,18 @@ def _inseparable(estimate: ServoEstimate, sought: Sought) -> Iterator[Finding]:
         evidence={"sum": Measured(total, "N·m·s/rad")},
         cause="the motor is driven throughout, so back-EMF and viscous friction brake alike and only their sum, "
         f"{total:.3g} N·m·s/rad, is known: k_t and R are not identifiable, only k_t / R; {percent(sought.share)} of "
-        "the sum is taken as back-EMF, whose free swing is nearest to those of all other shares, at worst",
+        f"the sum is taken as back-EMF, {_chosen(estimate)}",
         advice=(
             Action("record", text="runs in which the torque is switched off while the load swings"),
             Action("inspect", text="the winding's resistance, and state it in the joint's drive"),
         ),
     )
+
+
+def _chosen(estimate: ServoEstimate) -> str:
+    if estimate.joint.link is None:
+        return "for want of a load that swings"
+    return "whose free swing is nearest to those of all other shares, at worst"
 
 
 def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
@@ -88,15 +94,19 @@ def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
 
 def _vague(estimate: ServoEstimate) -> Iterator[Finding]:
     for name, p in estimate.parameters.items():
-        if p.stderr is None or np.isinf(p.stderr) or p.stderr <= _VAGUE * abs(p.value):
+        if p.stderr is None or np.isinf(p.stderr) or p.interval is None:
+            continue
+        # The interval has what chance does not make: other windows, another lead, a held command.
+        size = 0.5 * (p.interval[1] - p.interval[0])
+        if size <= _VAGUE * abs(p.value):
             continue
         yield Finding(
             code="undetermined",
             severity="info" if name == "viscous" else "warning",
             parameters=(name,),
-            evidence={"stderr": Measured(p.stderr, p.unit)},
-            cause=f"{name.replace('_', ' ')} may be off by {two_digits(p.stderr)} {p.unit}".rstrip()
-            + f" (standard error); its value is {two_digits(p.value)}",
+            evidence={"stderr": Measured(p.stderr, p.unit), "size": Measured(size, p.unit)},
+            cause=f"{name.replace('_', ' ')} may be off by {two_digits(size)} {p.unit}".rstrip()
+            + f" (half of its 95 % interval); its value is {two_digits(p.value)}",
             advice=(Action("record", text="more runs, with other gains and motions"),),
         )
 

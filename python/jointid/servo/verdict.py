@@ -22,7 +22,8 @@ def judged_servo(estimate: ServoEstimate) -> Verdict:
     """Judge a servo's estimate by its findings.
 
     Not usable: a blocking finding, or less than 90 % of the load's squared torque explained. Usable with care: a
-    warning. Usable: else. Compensation needs friction and what turns a torque into a duty, simulation all values.
+    warning, or no errors (``draws=0``). Usable: else. Compensation needs friction and what turns a torque into a
+    duty, simulation all values.
 
     Parameters
     ----------
@@ -55,6 +56,14 @@ def _objections(estimate: ServoEstimate) -> Iterable[Objection]:
             reason=found.cause,
             blocking=found.severity == "blocking",
             parameters=tuple(name for name in found.parameters if name in estimate.parameters),
+        )
+    sought = [p for p in estimate.parameters.values() if p.vary and p.at_bound is None]
+    if sought and all(p.stderr is None for p in sought):
+        yield Objection(
+            code="errors",
+            reason="errors were not asked for: nothing says how far the values may be off",
+            blocking=False,
+            parameters=tuple(p.name for p in sought),
         )
     explained = 1.0 - estimate.relative_residual**2
     if not explained >= EXPLAINED:

@@ -59,8 +59,10 @@ def of_a_scale(
         if parameters[name].stderr is not None
         and abs(parameters[name].value) > parameters[name].uncertainty
     ]
+    if not moved:
+        return f"if the torque is wrong, the friction changes by {signed_percent(-share / (1.0 + share))}"
     text = f"with the {shown:.3g} {inertia.unit} that the torque shows instead"
-    text += f", {', '.join(moved).replace(' by ', ' changes by ', 1)}" if moved else ""
+    text += f", {', '.join(moved).replace(' by ', ' changes by ', 1)}"
     # A torque that is wrong by a factor has everything else wrong by it.
     scale = f"; if the torque is wrong instead, the friction changes by {signed_percent(-share / (1.0 + share))}"
     return text + (scale if shown > 0.0 else "")

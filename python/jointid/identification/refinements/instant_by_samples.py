@@ -22,6 +22,7 @@ _COARSE = 1.5e-3  # [s]: half of a shorter step moves a gain by little
 _BEFORE = 3  # steps and accelerations that tell of the next ones
 _SLOW = 0.02  # of the peak speed: slower motion may stick within a sample
 _FEWEST = 200  # samples
+_SAME = 1e-10  # of the strongest direction of the instruments
 _REFUTED = 4.0  # deviations of the test below from its mean
 
 
@@ -53,13 +54,17 @@ def by_samples(problem: Problem, half: float) -> tuple[float, float] | None:
     triangle = triangle / size
     instruments = triangle[:, [*range(_KNOWN), *range(_KNOWN + 2, triangle.shape[1] - 1)]]
     regressors, reading = triangle[:, : _KNOWN + 2], triangle[:, -1]
-    basis = np.linalg.qr(instruments)[0]
+    # Motion in one direction makes some of them alike: no direction may be one of rounding.
+    left, strength, _ = np.linalg.svd(instruments, full_matrices=False)
+    basis = left[:, strength > _SAME * strength[0]]
+    more = basis.shape[1] - regressors.shape[1]
+    if more < 1:
+        return None
     projected = basis.T @ regressors
     found = np.linalg.lstsq(projected, basis.T @ reading, rcond=1e-10)[0]
     missed = reading - regressors @ found
     variance = float(missed @ missed) / count
     told = float(np.sum((basis.T @ missed) ** 2))
-    more = instruments.shape[1] - regressors.shape[1]
     if variance == 0.0 or told / variance > more + _REFUTED * np.sqrt(2.0 * more):
         return None
     spread = np.linalg.pinv(projected.T @ projected)[-1, -1]
