@@ -26,6 +26,7 @@ def test_a_residual_is_called_autocorrelated_only_where_it_is(
         penalty=SimpleNamespace(cumulative=False),
         residuals=SimpleNamespace(autocorrelation=correlation),
         causes=causes,
+        velocity_effect=None,
     )
     (finding,) = structured_residual.CHECK.find(seen)
     assert ("the residuals are autocorrelated" in finding.cause) == said

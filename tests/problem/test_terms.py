@@ -292,7 +292,7 @@ def test_the_sensors_zero_and_polarity_are_arbitrary(
 REFUSED = {
     "ripple without a gear": ({"ripple": (2,)}, None, "gear_ratio"),
     "ripple twice": ({"ripple": (2, 2)}, jid.Joint(gear_ratio=9.0), "different orders"),
-    "ripple that is none": ({"ripple": 2}, jid.Joint(gear_ratio=9.0), "orders"),
+    "ripple that is none": ({"ripple": 0}, jid.Joint(gear_ratio=9.0), "orders"),
     "first harmonic is gravity": (
         {"harmonics": (1,)},
         jid.Joint(model=jid.Model(gravity="free")),

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 from jointid.recording.contents import Contents
@@ -30,6 +31,8 @@ def read_leniently(
     try:
         return read(table)
     except InputError as error:
+        if _is_too_large(error):
+            raise
         refused = error
     try:
         read(TolerantTable(table))
@@ -42,6 +45,11 @@ def read_leniently(
         place=refused.place,
         remedy=(*refused.remedy, DROP),
     )
+
+
+def _is_too_large(error: InputError) -> bool:
+    """Whether a file holds more than it may: its cells as text would hold still more."""
+    return any(isinstance(each, Action) and "unpacked" in each.arguments for each in error.remedy)
 
 
 class TolerantTable:
@@ -68,7 +76,9 @@ class TolerantTable:
         """Return columns as numbers; raise `InputError` for one with many cells that are none."""
         try:
             return self._table.numbers(columns)
-        except InputError:
+        except InputError as error:
+            if _is_too_large(error):
+                raise
             return [self._column(column) for column in columns]
 
     def text(self, column: int) -> list[str]:
