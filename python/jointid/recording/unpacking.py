@@ -14,6 +14,12 @@ from jointid.base.errors import InputError
 LEAST = 64_000_000  # bytes that any file may hold
 TIMES = 50  # its size: recorded numbers are packed 2 to 20 times, and repeated ones 1000 times
 _CHUNK = 1 << 20  # bytes
+
+
+class TooLargeError(InputError):
+    """A file holds more than it may: nobody reads it a second time."""
+
+
 _raised: ContextVar[int] = ContextVar("unpacked", default=0)
 
 
@@ -79,7 +85,7 @@ class Room:
         """
         self.left -= size
         if self.left < 0:
-            raise InputError(
+            raise TooLargeError(
                 f"unpacked it is larger than {self._allowed / 1e6:.0f} MB, which is the limit for a file of its size",
                 place=str(self._path),
                 remedy=Action(

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from jointid.base.advice import Action
 from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 from jointid.recording.contents import Contents
 from jointid.recording.damaged_rows import DROP, few
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
+from jointid.recording.unpacking import TooLargeError
 
 
 def read_leniently(
@@ -30,9 +30,9 @@ def read_leniently(
         return read(TolerantTable(table))
     try:
         return read(table)
+    except TooLargeError:  # its cells as text would hold still more
+        raise
     except InputError as error:
-        if _is_too_large(error):
-            raise
         refused = error
     try:
         read(TolerantTable(table))
@@ -45,11 +45,6 @@ def read_leniently(
         place=refused.place,
         remedy=(*refused.remedy, DROP),
     )
-
-
-def _is_too_large(error: InputError) -> bool:
-    """Whether a file holds more than it may: its cells as text would hold still more."""
-    return any(isinstance(each, Action) and "unpacked" in each.arguments for each in error.remedy)
 
 
 class TolerantTable:
@@ -76,9 +71,9 @@ class TolerantTable:
         """Return columns as numbers; raise `InputError` for one with many cells that are none."""
         try:
             return self._table.numbers(columns)
-        except InputError as error:
-            if _is_too_large(error):
-                raise
+        except TooLargeError:
+            raise
+        except InputError:
             return [self._column(column) for column in columns]
 
     def text(self, column: int) -> list[str]:
@@ -92,6 +87,8 @@ class TolerantTable:
     def _column(self, column: int) -> FloatArray:
         try:
             (values,) = self._table.numbers([column])
+        except TooLargeError:
+            raise
         except InputError:
             cells = (number_in(cell) for cell in self._table.text(column))
             values = np.array([np.nan if each is None else float(each) for each in cells])
