@@ -185,3 +185,20 @@ def test_a_spike_beyond_the_range_is_found_at_a_reversal_too() -> None:
     torque[turn] += 1000.0
     hit = jid.Recording(time=run.time, position=run.position, velocity=run.velocity, torque=torque)
     assert "spikes" in codes(jid.identify(hit, JOINT, search="separable"))
+
+
+def test_a_value_on_its_bound_is_not_said_to_be_moved_by_noise() -> None:
+    rng = np.random.default_rng(3)
+    time = np.arange(8000) * 1e-3
+    position = 0.8 * np.sin(2.0 * time) + 0.3 * np.sin(5.3 * time)
+    velocity = 1.6 * np.cos(2.0 * time) + 1.59 * np.cos(5.3 * time)
+    acceleration = -3.2 * np.sin(2.0 * time) - 8.427 * np.sin(5.3 * time)
+    # A balance that wants a negative inertia.
+    torque = 3.0 * np.sign(velocity) + 2.0 * velocity - 0.1 * acceleration
+    noisy = velocity + rng.normal(0.0, 0.4, time.size)
+    recording = jid.Recording(time=time, position=position, velocity=noisy, torque=torque)
+    estimate = jid.identify(recording, jid.Joint(model=jid.Model.parse("coulomb_viscous")))
+    assert estimate.parameters["inertia"].at_bound == "min"
+    (finding,) = [each for each in estimate.findings if each.code == "noisy_velocity"]
+    assert "inertia by" not in finding.message
+    assert "inertia.moved" not in finding.evidence

@@ -82,7 +82,10 @@ def _are_stamps_right(inspected: Inspected) -> bool:
 
 
 def moved_by_noise(evidence: Evidence) -> dict[str, float]:
-    """Return how far, relative to its value, the velocity's noise moves each parameter; only the large ones."""
+    """Return how far, relative to its value, the velocity's noise moves each parameter; only the large ones.
+
+    A value on its bound is left out: `at_bound` names it, and no move is large or small against it.
+    """
     effect = evidence.velocity_effect
     if effect is None:
         return {}
@@ -92,7 +95,8 @@ def moved_by_noise(evidence: Evidence) -> dict[str, float]:
         level = abs(parameter.value)
         if parameter.name.endswith("_offset") or parameter.name.startswith("gravity"):
             level = max(level, _OF_TORQUE * evidence.torque_level)
-        if parameter.vary and size > _MOVED * level > 0.0:
+        inside = parameter.vary and parameter.at_bound is None
+        if inside and size > _MOVED * level > 0.0:
             shares[parameter.name] = size / level
     return shares
 
@@ -100,7 +104,7 @@ def moved_by_noise(evidence: Evidence) -> dict[str, float]:
 def _size(evidence: Evidence, name: str, share: float) -> str:
     """How far the noise moves a value: a share of it, or an amount where it is near zero."""
     p, effect = evidence.parameters[name], evidence.velocity_effect
-    usual = p.at_bound is None and abs(p.value) >= p.uncertainty and share <= _MANY
+    usual = abs(p.value) >= p.uncertainty and share <= _MANY
     if effect is None or usual:
         return percent(share)
     size = float(effect.size[list(evidence.penalty.names).index(name)])
