@@ -111,7 +111,13 @@ EXPECTED = (
     Case(late_torque, GOOD, GOOD, GOOD, "the delay is found and taken away"),
     Case(without_static_friction, CARE, CARE, CARE, "too rich: static friction is not there"),
     Case(as_it_is, CARE, CARE, GOOD, "too poor: no static friction", "coulomb_viscous"),
-    Case(short, CARE, CARE, CARE, "undetermined: half a stroke says little of each speed"),
+    Case(
+        short,
+        BAD,
+        BAD,
+        CARE,
+        "half a stroke, in one direction: Coulomb and offset are one constant",
+    ),
     Case(rippled, CARE, CARE, GOOD, "the gear's ripple is in the values, and next time, too"),
     Case(creeping, CARE, CARE, GOOD, "friction at low speed has another form, also next time"),
     Case(drifting, CARE, CARE, CARE, "values are of a temperature, which is another next time"),
@@ -223,6 +229,40 @@ def test_an_inertia_on_its_bound_simulates_nothing() -> None:
     assert found.verdict.uses["simulation"].level == "not usable"
     assert found.verdict.uses["compensation"].level == "usable"
     assert any("inertia" in reason and "bound" in reason for reason in found.verdict.reasons)
+
+
+def test_motion_in_one_direction_compensates_nothing() -> None:
+    """Coulomb friction and the sensor's offset are one constant there: either may be anything."""
+    whole = good()
+    part = whole.crop(0.0, 0.5)
+    assert np.all(np.asarray(part.velocity)[np.abs(part.velocity) > 0.01] > 0.0)
+    found = jid.identify(part, jid.thesis_joint())
+    merged = ("coulomb", "sensor_offset")
+    assert [found.parameters[name].stderr for name in merged] == [np.inf, np.inf]
+    assert found.verdict.uses["compensation"].level == "not usable"
+    assert found.verdict.uses["simulation"].level == "not usable"
+    assert "needs coulomb and sensor_offset" in found.verdict.reasons[0]
+    assert judged(found, parameters=["viscous"]).uses["compensation"].level == "usable with care"
+
+
+def test_directions_that_differ_need_no_offset_apart() -> None:
+    """Offset and directional Coulomb frictions have infinite errors for any motion; their sums compensate."""
+    time = np.arange(8000) * 1e-3
+    velocity = 1.6 * np.cos(2.0 * time) + 1.5 * np.cos(5.0 * time)
+    acceleration = -3.2 * np.sin(2.0 * time) - 7.5 * np.sin(5.0 * time)
+    friction = np.where(velocity > 0.0, 12.0, -9.0) + 5.0 * velocity
+    noise = np.random.default_rng(1).normal(0.0, 0.05, time.size)
+    recording = jid.Recording(
+        time=time,
+        position=0.8 * np.sin(2.0 * time) + 0.3 * np.sin(5.0 * time),
+        velocity=velocity,
+        torque=2.0 * acceleration + friction + noise,
+    )
+    joint = jid.Joint(model=jid.Model.parse("coulomb_viscous:asymmetric"), torque_offset=True)
+    found = jid.identify(recording, joint)
+    assert "undivided_offset" in [each.code for each in found.findings]
+    assert found.parameters["torque_offset"].stderr == np.inf
+    assert found.verdict.uses["compensation"].level == "usable"
 
 
 def test_no_name_excuses_values_that_miss_everything() -> None:

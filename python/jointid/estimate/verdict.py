@@ -139,9 +139,10 @@ def judged(
     Not usable: a blocking finding, a parameter asked for whose self-test fails, or less
     than 90 % of the windows' variance explained by the model and a cause that a finding names (of held-out torque
     where the model was chosen by it; neither counts where the windows are explained worse than by their mean and more
-    than 10 % of their squares are left); for simulation also an inertia on its bound, or an undetermined one whose
-    95 % interval reaches zero. Usable with care: a warning, or a
-    tolerance of the given facts of more than 5 % that is larger than everything else together. Usable: else.
+    than 10 % of their squares are left); for compensation and simulation also friction or a sensor's value without a
+    finite error; for simulation also an inertia on its bound, or an undetermined one whose 95 % interval reaches zero.
+    Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is larger than everything else
+    together. Usable: else.
 
     Parameters
     ----------
@@ -175,10 +176,11 @@ def judged(
             )
     asked = asked or estimate.free
     objections = [*_objections(estimate, self_test)]
-    hidden = [*_hidden_inertia(estimate, asked)]
     friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
+    merged = [*_inseparable(estimate, asked, friction)]
+    hidden = [*merged, *_hidden_inertia(estimate, asked)]
     uses = {
-        "compensation": use_by(objections, asked, friction.__contains__),
+        "compensation": use_by([*objections, *merged], asked, friction.__contains__),
         "simulation": use_by([*objections, *hidden], asked, lambda _: True),
         "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
@@ -268,14 +270,33 @@ def explained_text(explained: float, of_what: str) -> str:
     return f"the model explains {share} of the variance of {of_what}"
 
 
+def _inseparable(
+    estimate: Estimate, asked: tuple[str, ...], friction: frozenset[str]
+) -> Iterable[Objection]:
+    """Friction that nothing in the recording separates, e.g. a Coulomb friction and an offset in one direction.
+
+    Where friction differs by direction, an offset is one quantity with it for any motion, and need not be separated.
+    """
+    merged = tuple(
+        name
+        for name, p in estimate.parameters.items()
+        if name in friction & _doubted(estimate)
+        and name in asked
+        and p.stderr is not None
+        and math.isinf(p.stderr)
+    )
+    if merged:
+        yield Objection(
+            code="undetermined",
+            reason=f"compensation needs {' and '.join(merged)}, of which this recording determines no single value",
+            blocking=True,
+            parameters=merged,
+        )
+
+
 def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:
     """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
-    doubted = {
-        name
-        for found in estimate.findings
-        if found.code == "undetermined"
-        for name in _free(estimate, found)
-    }
+    doubted = _doubted(estimate)
     for name, p in estimate.parameters.items():
         if name.partition("[")[0] != "inertia":
             continue
@@ -293,6 +314,16 @@ def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Obje
                 blocking=True,
                 parameters=(name,),
             )
+
+
+def _doubted(estimate: Estimate) -> frozenset[str]:
+    """Parameters of which a finding says that they are not well determined."""
+    return frozenset(
+        name
+        for found in estimate.findings
+        if found.code == "undetermined"
+        for name in _free(estimate, found)
+    )
 
 
 def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:
