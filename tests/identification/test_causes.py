@@ -125,7 +125,7 @@ def test_a_signal_of_the_log_is_named_only_if_given(estimates: dict[str, jid.Est
     assert "other_signal" not in {cause.name for cause in estimate.causes().found}
     source = estimate.follow_up
     assert source is not None
-    time = source.problem.recordings[0].time  # type: ignore[attr-defined]
+    time = source.given[0].time  # type: ignore[attr-defined]
     axis = np.sin(5.3 * time + 0.7)
     found = estimate.causes({"axis 2": axis})
     assert found.found[0].detail == "axis 2"
@@ -135,6 +135,22 @@ def test_a_signal_of_the_log_is_named_only_if_given(estimates: dict[str, jid.Est
     axis[7] = np.nan
     with pytest.raises(jid.InputError, match=r"must be finite; 1 of .*, the first at sample 7"):
         estimate.causes({"axis 2": axis})
+
+
+def test_a_signal_has_the_samples_of_the_log_where_a_delay_is_taken_away(
+    estimates: dict[str, jid.Estimate],
+) -> None:
+    source = estimates["other axis"].follow_up
+    assert isinstance(source, EstimateSource)
+    recording = source.given[0]
+    late = jid.identify(recording, jid.thesis_joint(), search="separable", shift={"torque": 0.004})
+    inner = late.follow_up
+    assert isinstance(inner, EstimateSource)
+    assert len(inner.problem.recordings[0]) < len(recording)
+    axis = np.sin(5.3 * recording.time + 0.7)
+    axis[:2] = axis[-6:] = 1e6  # left out, as the samples are
+    (found, *_) = [each for each in late.causes({"axis 2": axis}).found if each.detail == "axis 2"]
+    assert found.name == "other_signal"
 
 
 @pytest.mark.parametrize("late", [-1.0, 1.0])

@@ -31,6 +31,8 @@ class EstimateSource:
     ----------
     problem : Problem
         As it was fitted.
+    given : tuple of Recording
+        As given in the call: those of the problem may lack the samples at which a shifted signal is not known.
     known : tuple of Cause
         Causes that were taken away from the data before.
     domain : SearchDomain
@@ -42,6 +44,7 @@ class EstimateSource:
     """
 
     problem: Problem
+    given: tuple[Recording, ...]
     known: tuple[Cause, ...]
     domain: SearchDomain
     windows: Windows
@@ -68,7 +71,8 @@ class EstimateSource:
         from jointid.identification.causes.causes import attributed
 
         penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
-        found = attributed(self.problem, penalty, estimate, signals)
+        times = self.given[0].time
+        found = attributed(self.problem, penalty, estimate, signals, times)
         return replace(found, found=(*self.known, *found.found))
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:

@@ -111,6 +111,7 @@ class Prepared:
                 estimate, fitted, known = again, other, (drift,)
         source = EstimateSource(
             problem=fitted.problem,
+            given=self.given,
             known=known,
             domain=self.domain,
             windows=self.windows,

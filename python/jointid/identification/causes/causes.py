@@ -146,8 +146,21 @@ def attributed(
     penalty: _core.Penalty,
     estimate: Estimate,
     signals: Mapping[str, ArrayLike],
+    times: Array | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate, with further signals of its recording.
+
+    Parameters
+    ----------
+    problem : Problem
+        As it was fitted.
+    penalty : Penalty
+    estimate : Estimate
+    signals : mapping of str to array-like
+        One value a sample each.
+    times : ndarray, shape (samples,), optional
+        Of the samples that the signals have [s]. Default: those of the problem's recording, which may be fewer than
+        were recorded: where a delay was taken away, samples at the edges are left out.
 
     Raises
     ------
@@ -160,7 +173,10 @@ def attributed(
             argument="signals",
             value=list(signals),
         )
-    length = len(problem.recordings[0])
+    fitted = problem.recordings[0].time
+    times = fitted if times is None else times
+    length = len(times)
+    kept = np.searchsorted(times, fitted)
     found = {}
     for name, values in signals.items():
         series = np.asarray(values, dtype=np.float64)
@@ -177,7 +193,7 @@ def attributed(
                 argument=f"signals.{name}",
                 value=float(series[wrong[0]]),
             )
-        found[name] = series
+        found[name] = series[kept]
     torque = np.asarray(penalty.target) / np.asarray(penalty.usable_duration)
     return find_causes(
         problem,
