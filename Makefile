@@ -134,6 +134,7 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 	@$(BIN)/python benchmarks/conditions_study.py --output docs/conditions.md
 	@$(BIN)/python benchmarks/delays_study.py --output docs/delays.md
 	@$(BIN)/python benchmarks/causes_study.py --joints 100 --output docs/causes.md
+	@$(BIN)/python benchmarks/causes_study.py --joints 30 --seed 7001 --size .1 --output docs/causes.md --append
 	@$(BIN)/python benchmarks/robot_study.py --hour --output docs/robot_accuracy.md
 
 bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md

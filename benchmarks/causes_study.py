@@ -403,7 +403,8 @@ applied), with the gear as one of its possible reasons."""
 _MILDER = """
 ## Milder mismatches
 
-{joints} joints of each plant, seed {seed}, with {size:g} of each mismatch (`--size {size:g}`): most move no value."""
+{joints} joints of each plant, seed {seed}, with {size:g} of each mismatch (`--size {size:g}`). Many move no
+value; of those that do, many move it by little more than two standard errors."""
 
 
 def main() -> None:
@@ -420,6 +421,7 @@ def main() -> None:
     )
     parser.add_argument("--verbose", action="store_true", help="print each joint")
     parser.add_argument("--output", type=Path, help="a file to write instead of printing")
+    parser.add_argument("--append", action="store_true", help="to that file, behind what is there")
     given = parser.parse_args()
     began = time.perf_counter()
     words = given.only.split() or [""]
@@ -435,7 +437,8 @@ def main() -> None:
     if given.output is None:
         print(text)
     else:
-        given.output.write_text(text, encoding="utf-8")
+        before = given.output.read_text(encoding="utf-8") if given.append else ""
+        given.output.write_text(before + text, encoding="utf-8")
     print(f"{time.perf_counter() - began:.0f} s")
 
 

@@ -238,7 +238,7 @@ def main() -> None:
     found = {c.name: outcomes(store, c) for c in chosen}
     chosen = [c for c in chosen if found[c.name]]
     cleans = min((len(found[c.name]) for c in chosen if c.clean), default=0)
-    lines = [_TEXT.format(clean=cleans, one=100.0 / max(cleans, 1))]
+    lines = [_TEXT.format(clean=cleans, one=100.0 / max(cleans, 1), seed=given.seed)]
     for title, clean in (("Clean conditions", True), ("Mismatches and defects", False)):
         lines += [f"\n## {title}\n", HEAD]
         lines += [row(c, found[c.name]) for c in chosen if c.clean == clean]
@@ -263,8 +263,8 @@ _TEXT = """# Accuracy under many conditions
 Written by `benchmarks/conditions_study.py` (`make study`); do not edit. Each condition of `benchmarks/conditions.py`
 has random joints (as many as its row says), simulated by
 `tests/plants`, which shares no code with the package: other inertia, friction, gravity, sensor and motion each time,
-12 s at 1 kHz unless the condition says otherwise. With a sensor the call knows the drive's inertia and the model;
-without one the model with gravity free; "no joint given" is `identify(recording)`.
+12 s at 1 kHz unless the condition says otherwise; seed {seed}. With a sensor the call knows the drive's inertia and
+the model; without one the model with gravity free; "no joint given" is `identify(recording)`.
 
 An error is relative to the true value; that of an offset or a coefficient of gravity, which may be near 0, to the
 larger of the true value and the Coulomb friction. Of a value that drifts, the truth is its mean. Where friction
