@@ -8,7 +8,7 @@ SHELL := bash
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip
 INSTALL := $(PIP) install --quiet --no-input --disable-pip-version-check
-STRICT := -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON
+STRICT := -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON -Ccmake.define.JOINTID_PRECOMPILED=$(if $(shell command -v ccache),OFF,ON)
 
 # What the installed package is made of; outside a git checkout (an unpacked sdist) whatever is there.
 PARTS := cpp python CMakeLists.txt pyproject.toml README.md LICENSE examples/data

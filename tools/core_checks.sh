@@ -26,6 +26,8 @@ esac
 if command -v ccache >/dev/null; then  # where it is installed; its cache outlives `make clean`
   options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
+else
+  options+=(-DJOINTID_PRECOMPILED=ON)
 fi
 
 cmake -S . -B "$build" -G Ninja -DJOINTID_BUILD_CHECKS=ON -DJOINTID_BUILD_EXTENSION=OFF \
