@@ -10,4 +10,12 @@ namespace jointid::base {
 Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left,
                                    const Eigen::Ref<const Eigen::MatrixXd>& right);
 
+/// left' right of a matrix and one column.
+Eigen::VectorXd products(const Eigen::Ref<const Eigen::MatrixXd>& left,
+                         const Eigen::VectorXd& right);
+
+/// Takes a sum of columns, each times its coefficient, from `rest`.
+void subtract_sum(const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                  const Eigen::VectorXd& coefficients, Eigen::VectorXd& rest);
+
 }  // namespace jointid::base

@@ -195,6 +195,15 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("recordings"), py::arg("mask_standstill"),
           "How far the torque rises over each window's usable intervals.")
+      .def(
+          "bending",
+          [](const Penalty& p, const Recordings& recordings, bool mask_standstill,
+             const Eigen::VectorXd& theta) {
+            const py::gil_scoped_release nogil;
+            return p.bending(all_masked(recordings, mask_standstill, nullptr), theta);
+          },
+          py::arg("recordings"), py::arg("mask_standstill"), py::arg("theta"),
+          "What the windows' friction lacks because the trapezoid rule takes it as straight.")
       .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")
       .def_property_readonly("cumulative", &Penalty::cumulative)
       .def_property_readonly("window_count", &Penalty::window_count)

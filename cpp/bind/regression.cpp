@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bind/recording.hpp"
+#include "identify/solve/clustered.hpp"
 #include "identify/solve/folds.hpp"
 #include "search/least_squares.hpp"
 
@@ -43,19 +44,58 @@ void bind_regression(py::module_& m) {
       py::arg("matrix"), py::arg("target"),
       "The solution without negative entries, and the norm of what is left of the target.");
   m.def(
-      "segment_sums",
+      "solve_independent",
+      [](const Matrix& triangle, const std::vector<Eigen::Index>& columns, Eigen::Index target) {
+        const auto outside = [&](Eigen::Index j) { return j < 0 || j >= triangle.cols(); };
+        if (outside(target) || std::any_of(columns.begin(), columns.end(), outside)) {
+          throw std::invalid_argument("the triangle has no such column");
+        }
+        return identify::solve_independent(triangle, columns, target);
+      },
+      py::arg("triangle"), py::arg("columns"), py::arg("target"),
+      "Coefficients of columns for another one, and the norm of what they leave; None unless they "
+      "are clearly independent.");
+  using identify::Clustered;
+  py::class_<Clustered>(m, "Clustered", "The sandwich of one clustering of windows.")
+      .def_readonly("segments", &Clustered::segments)
+      .def_readonly("covariance", &Clustered::covariance)
+      .def_readonly("freedom", &Clustered::freedom, "Behind each parameter's variance.")
+      .def_readonly("size", &Clustered::size, "Of all corrected scores, squared.")
+      .def_readonly("pooled_freedom", &Clustered::pooled_freedom);
+  m.def(
+      "clustered",
       [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
-         const std::vector<std::int64_t>& cuts) {
-        const bool ordered = std::is_sorted(cuts.begin(), cuts.end());
-        if (cuts.size() < 2 || !ordered || cuts.front() < 0 || cuts.back() > jacobian.rows() ||
-            residual.size() != jacobian.rows() || whitening.cols() != jacobian.cols()) {
+         const std::vector<std::vector<std::int64_t>>& cuts) {
+        const auto unfit = [&](const std::vector<std::int64_t>& each) {
+          return each.size() < 2 || !std::is_sorted(each.begin(), each.end()) || each.front() < 0 ||
+                 each.back() > jacobian.rows();
+        };
+        if (std::any_of(cuts.begin(), cuts.end(), unfit) || residual.size() != jacobian.rows() ||
+            whitening.cols() != jacobian.cols()) {
           throw std::invalid_argument("cuts, residual and whitening must fit the Jacobian");
         }
-        auto found = identify::segment_sums(jacobian, residual, whitening, cuts);
-        return std::make_pair(std::move(found.shares), Eigen::MatrixXd(found.scores.transpose()));
+        const py::gil_scoped_release nogil;
+        const Eigen::MatrixXd rows = whitening * jacobian.transpose();
+        std::vector<Clustered> found;
+        for (const auto& each : cuts) {
+          found.push_back(identify::cluster(rows, residual, whitening, each));
+        }
+        return found;
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
-      "Products of whitened rows over segments: with each other, and with the residual.");
+      "The sandwich of each clustering: segments are from one cut to the next.");
+  m.def(
+      "variances_of_rows",
+      [](const Matrix& jacobian, const Eigen::VectorXd& residual,
+         const Eigen::MatrixXd& whitening) {
+        if (residual.size() != jacobian.rows() || whitening.cols() != jacobian.cols()) {
+          throw std::invalid_argument("residual and whitening must fit the Jacobian");
+        }
+        const py::gil_scoped_release nogil;
+        return identify::variances_of_rows(whitening * jacobian.transpose(), residual, whitening);
+      },
+      py::arg("jacobian"), py::arg("residual"), py::arg("whitening"),
+      "White's sandwich: each row a cluster.");
   using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
   py::class_<identify::Folds>(m, "Folds", "Cross-validated least squares on any of many columns.")
       .def(py::init([](const Rows& rows, const std::vector<std::int64_t>& edges) {

@@ -18,11 +18,13 @@ double third(const double* x) {
   return ((x[3] - x[2]) - (x[2] - x[1])) - ((x[2] - x[1]) - (x[1] - x[0]));
 }
 
-Eigen::VectorXd differences(const Signal& signal, double clipped) {
+/// Third differences over their usual size, clipped, and `beyond` zeros.
+Eigen::VectorXd differences(const Signal& signal, double clipped, Eigen::Index beyond = 0) {
   const Eigen::Index count = std::max<Eigen::Index>(0, signal.size() - 3);
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd result(count + beyond);
+  result.tail(beyond).setZero();
   const double size = roughness(signal);
-  if (!(size > 0.0)) return result;
+  if (!(size > 0.0)) return result.setZero();
   const double* x = signal.data();
   const double divisor = std::max(size, 1e-300);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -47,10 +49,10 @@ JOINTID_CLONES void lagged_sums(const double* reading, const double* torque, std
 double roughness(const Signal& signal) {
   const Eigen::Index differences = signal.size() - 3;
   if (differences <= 0) return 0.0;
-  std::vector<double> sizes(static_cast<std::size_t>((differences + 1) / 2));
+  Eigen::VectorXd sizes((differences + 1) / 2);  // not set to zero before
   const double* x = signal.data();
-  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = std::fabs(third(x + 2 * i));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  for (Eigen::Index i = 0; i < sizes.size(); ++i) sizes[i] = std::fabs(third(x + 2 * i));
+  const auto middle = sizes.begin() + sizes.size() / 2;
   std::nth_element(sizes.begin(), middle, sizes.end());
   if (sizes.size() % 2 == 1) return kOfMedian * *middle;
   return kOfMedian * 0.5 * (*middle + *std::max_element(sizes.begin(), middle));
@@ -61,8 +63,7 @@ Eigen::MatrixXd noise_products(const Signal& reading, const Signal& torque, Eige
   const Eigen::Index lags = 2 * longest + 1;
   const auto lanes = static_cast<Eigen::Index>(kLanes);
   const Eigen::VectorXd first = differences(reading, clipped);
-  Eigen::VectorXd second = Eigen::VectorXd::Zero(first.size() + lanes);
-  second.head(first.size()) = differences(torque, clipped);
+  const Eigen::VectorXd second = differences(torque, clipped, lanes);
   if (!(first.array() != 0.0).any() || !(second.array() != 0.0).any()) {
     return Eigen::MatrixXd(0, lags);
   }

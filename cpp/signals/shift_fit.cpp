@@ -95,14 +95,14 @@ class Projection {
 
   [[nodiscard]] Index rank() const { return rank_; }
   [[nodiscard]] VectorXd coefficients(const VectorXd& signal) const {
-    const VectorXd matched = weighted().transpose() * signal;
+    const VectorXd matched = base::products(weighted(), signal);
     const VectorXd inner = basis_.transpose() * matched;
     return basis_ * inner;
   }
   /// What the columns leave of a signal.
   void rest(const VectorXd& signal, VectorXd& result) const {
     result = signal;
-    result.noalias() -= columns_ * coefficients(signal);
+    base::subtract_sum(columns_, coefficients(signal), result);
   }
 
  private:
@@ -253,7 +253,9 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
       for (Index part = 0; part < slopes.cols(); ++part) {
         const Index first = part == 0 ? 0 : rows.conservative;
         const Index columns = part == 0 ? rows.conservative : width - rows.conservative;
-        fitted.noalias() = rows.columns.middleCols(first, columns) * found.segment(first, columns);
+        fitted.setZero();
+        base::subtract_sum(rows.columns.middleCols(first, columns), -found.segment(first, columns),
+                           fitted);
         rest -= fitted;
         rates.of(fitted, rate);
         projection->rest(rate, slope);

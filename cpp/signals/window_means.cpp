@@ -34,6 +34,9 @@ JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, st
   }
 }
 
+// As numbers: integers are not made into doubles side by side before AVX-512.
+constexpr std::array<double, kLanes> kPlaces{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
+
 struct Samples {
   const double* velocity;
   const double* smooth;
@@ -46,31 +49,45 @@ struct Samples {
 /// All columns of one sample after the other.
 JOINTID_CLONES void friction_at(const Samples& of, std::size_t count, double* rows) {
   std::array<std::array<double, kLanes>, kColumns> columns;
+  std::array<double, kLanes> decay;
+  std::array<std::array<double, kLanes>, 4> last{};  // samples that do not fill the lanes
   for (std::size_t begin = 0; begin < count; begin += kLanes) {
     const std::size_t lanes = std::min(kLanes, count - begin);
+    std::array<const double*, 4> from{of.velocity + begin, of.smooth + begin, of.cosine + begin,
+                                      of.sine + begin};
+    for (std::size_t k = 0; lanes < kLanes && k < 4; ++k) {
+      for (std::size_t l = 0; l < lanes; ++l) last[k][l] = from[k][l];
+      from[k] = last[k].data();
+    }
+    const auto first = static_cast<double>(begin);
+    const double* velocity = from[0];
+    const double* smooth = from[1];
+    const double* cosine = from[2];
+    const double* sine = from[3];
     for (std::size_t l = 0; l < kLanes; ++l) {
-      const std::size_t i = begin + std::min(l, lanes - 1);
-      const double v = of.velocity[i];
+      const double v = velocity[l];
       const double speed = std::fabs(v);
-      const double sign = v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
-      const double time = static_cast<double>(i) * of.step - 0.5;
-      const double ratio = of.smooth[i] / of.limit;
-      double decay = base::exp_decay(ratio * ratio);
+      const double sign = (v > 0.0 ? 1.0 : 0.0) - (v < 0.0 ? 1.0 : 0.0);
+      const double time = (first + kPlaces[l]) * of.step - 0.5;
+      const double ratio = smooth[l] / of.limit;
+      decay[l] = base::exp_decay(ratio * ratio);
       columns[0][l] = sign;
       columns[1][l] = v;
       columns[2][l] = v * speed;
       columns[3][l] = speed;
-      for (std::size_t k = 0; k < kDecays; ++k) {
-        columns[4 + k][l] = sign * decay;
-        decay = decay * decay;
-        decay = decay * decay;  // of half the speed
-      }
-      columns[kColumns - 6][l] = sign * of.cosine[i];
-      columns[kColumns - 5][l] = sign * of.sine[i];
-      columns[kColumns - 4][l] = v * of.cosine[i];
-      columns[kColumns - 3][l] = v * of.sine[i];
+      columns[kColumns - 6][l] = sign * cosine[l];
+      columns[kColumns - 5][l] = sign * sine[l];
+      columns[kColumns - 4][l] = v * cosine[l];
+      columns[kColumns - 3][l] = v * sine[l];
       columns[kColumns - 2][l] = sign * time;
       columns[kColumns - 1][l] = v * time;
+    }
+    for (std::size_t k = 0; k < kDecays; ++k) {
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        columns[4 + k][l] = columns[0][l] * decay[l];
+        const double square = decay[l] * decay[l];
+        decay[l] = square * square;  // of half the speed
+      }
     }
     for (std::size_t l = 0; l < lanes; ++l) {
       double* row = rows + (begin + l) * kColumns;

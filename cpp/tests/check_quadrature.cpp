@@ -54,6 +54,10 @@ double integral_of(Integral integral, const Recording& r) {
   return integral_of(term_of(integral), r);
 }
 
+double sign(double v) {
+  return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
+}
+
 const identify::Term kStatic = identify::find_term("static");
 
 /// A column and its derivative by the only shape.
@@ -214,6 +218,31 @@ CHECK_CASE("quadrature: windows without a usable interval integrate to zero") {
   CHECK(column.isZero(0.0) && change.isZero(0.0));
   identify::integrate(term_of(Integral::duration), 1.0, r, none, windows, column);
   CHECK(column.isZero(0.0));
+}
+
+CHECK_CASE("quadrature: Simpson's rule less the trapezoid's, where nothing reverses") {
+  const auto r = ramp(40, 1.0, -0.4, 1.0);
+  std::vector<std::uint8_t> usable(39, 1);
+  usable[30] = 0;
+  const std::vector<Window> windows{{0, 12}, {12, 25}, {25, 39}};
+  const double shape = 4.0;
+  const auto friction = [&](double v) { return sign(v) * std::exp(-shape * v * v); };
+  Eigen::VectorXd bent(3);
+  identify::integrate_bending(kStatic, Eigen::VectorXd::Constant(1, shape), r, usable, windows,
+                              bent);
+  for (Eigen::Index w = 0; w < 3; ++w) {
+    double sum = 0.0;
+    const auto& window = windows[static_cast<std::size_t>(w)];
+    for (auto k = window.begin; k < window.end; ++k) {
+      const double before = r.velocity[k];
+      const double after = r.velocity[k + 1];
+      if (usable[static_cast<std::size_t>(k)] == 0 || before * after < 0.0) continue;
+      const double mean = 0.5 * (friction(before) + friction(after));
+      const double simpson = (mean + 2.0 * friction(0.5 * (before + after))) / 3.0;
+      sum += (simpson - mean) * (r.time[k + 1] - r.time[k]);
+    }
+    CHECK_CLOSE(bent[w], sum, 1e-15);
+  }
 }
 
 CHECK_CASE("quadrature: reads the cancel flag") {

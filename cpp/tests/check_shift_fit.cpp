@@ -1,12 +1,16 @@
 // Delays of signals: window means, the shift of a balance, noise that one signal repeats.
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/circle.hpp"
 #include "base/elementary.hpp"
 #include "check.hpp"
+#include "identify/solve/clustered.hpp"
 #include "identify/solve/regression.hpp"
 #include "signals/repeated_noise.hpp"
 #include "signals/shift_fit.hpp"
@@ -137,17 +141,61 @@ CHECK_CASE("circle: the bits of one angle after the other, of any size") {
   }
 }
 
-CHECK_CASE("segments: sums over the rows between two cuts") {
+CHECK_CASE("segments: the sandwich of scores that are corrected for the freedom of the fit") {
   const MatrixXd jacobian = MatrixXd::NullaryExpr(
       50, 3, [](Index i, Index j) { return std::sin(static_cast<double>(i * (j + 2))); });
   const VectorXd residual = jacobian.col(0) + 0.5 * jacobian.col(2);
   MatrixXd whitening(2, 3);
   whitening << 1.0, 0.5, 0.0, -1.0, 0.0, 2.0;
-  const auto sums = identify::segment_sums(jacobian, residual, whitening, {0, 20, 50});
-  const MatrixXd rows = jacobian.bottomRows(30) * whitening.transpose();
-  CHECK(sums.shares.size() == 2);
-  CHECK((sums.shares[1] - rows.transpose() * rows).norm() < 1e-12);
-  CHECK((sums.scores.col(1) - rows.transpose() * residual.tail(30)).norm() < 1e-12);
+  whitening *= 0.05;  // a segment holds a part of each direction
+  const MatrixXd rows = whitening * jacobian.transpose();
+  const auto found = identify::cluster(rows, residual, whitening, {0, 20, 50});
+  MatrixXd covariance = MatrixXd::Zero(3, 3);
+  double size = 0.0;
+  double squares = 0.0;
+  VectorXd even = VectorXd::Zero(3);
+  for (const auto& [first, length] : {std::pair<Index, Index>{0, 20}, {20, 30}}) {
+    const MatrixXd mine = rows.middleCols(first, length);
+    const MatrixXd shares = mine * mine.transpose();
+    const MatrixXd left = MatrixXd::Identity(2, 2) - shares;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(left);
+    CHECK(solver.eigenvalues().minCoeff() > 0.05);
+    const VectorXd scores = solver.operatorInverseSqrt() * (mine * residual.segment(first, length));
+    covariance += whitening.transpose() * scores * scores.transpose() * whitening;
+    size += scores.squaredNorm();
+    squares += shares.squaredNorm();
+    const VectorXd parts = (whitening.transpose() * shares * whitening).diagonal();
+    const VectorXd whole = whitening.colwise().squaredNorm();
+    even += parts.cwiseQuotient(whole).cwiseAbs2();
+  }
+  CHECK(found.segments == 2);
+  CHECK((found.covariance - covariance).norm() < 1e-12 * covariance.norm());
+  CHECK(std::fabs(found.size - size) < 1e-12 * size);
+  CHECK((found.freedom - even.cwiseInverse()).norm() < 1e-9);
+  CHECK(std::fabs(found.pooled_freedom - 4.0 / squares) < 1e-9 * found.pooled_freedom);
+  // Of rows alone nothing is corrected.
+  const VectorXd alone = identify::variances_of_rows(rows, residual, whitening);
+  const MatrixXd effects = residual.asDiagonal() * (rows.transpose() * whitening);
+  CHECK((alone - effects.colwise().squaredNorm().transpose()).norm() < 1e-12 * alone.norm());
+}
+
+CHECK_CASE("triangle: solves for columns only where they are clearly independent") {
+  MatrixXd columns = MatrixXd::NullaryExpr(
+      60, 4, [](Index i, Index j) { return std::cos(static_cast<double>(i * (j + 1))); });
+  columns.col(1) *= 1e9;  // units do not matter
+  columns.col(3) = 2.0 * columns.col(0) - 3e-9 * columns.col(1) + 0.1 * columns.col(3);
+  const MatrixXd triangle = identify::triangle(columns, nullptr);
+  const auto found = identify::solve_independent(triangle, {1, 0}, 3);
+  const Eigen::Vector2d scale(1e-9, 1.0);
+  const MatrixXd two = columns.leftCols(2).rowwise().reverse();
+  const VectorXd expected = two.colPivHouseholderQr().solve(columns.col(3));
+  CHECK(found.has_value());
+  CHECK(((found->first - expected).cwiseQuotient(scale)).norm() < 1e-10);
+  CHECK(std::fabs(found->second - (columns.col(3) - two * expected).norm()) < 1e-10);
+  columns.col(2) = columns.col(0) + 1e-8 * columns.col(2);
+  CHECK(!identify::solve_independent(identify::triangle(columns, nullptr), {0, 2}, 3));
+  columns.col(2).setZero();
+  CHECK(!identify::solve_independent(identify::triangle(columns, nullptr), {0, 2}, 3));
 }
 
 }  // namespace

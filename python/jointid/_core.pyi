@@ -15,6 +15,7 @@ __all__: list[str] = [
     "Agreement",
     "BalanceColumn",
     "BalanceNoise",
+    "Clustered",
     "CompensatedPid",
     "CompressedPenalty",
     "Control",
@@ -72,6 +73,7 @@ __all__: list[str] = [
     "WindowOptions",
     "chi_square_quantile",
     "circle",
+    "clustered",
     "covering_half_width",
     "find_control_character",
     "fit_shift",
@@ -98,18 +100,19 @@ __all__: list[str] = [
     "refine_separable",
     "roll_out_servos",
     "roughness",
-    "segment_sums",
     "shape",
     "shapes",
     "shift_coefficients",
     "simulate_runs",
     "smoothed",
+    "solve_independent",
     "student_quantile",
     "term",
     "terms",
     "timing_errors",
     "triangle",
     "usable_intervals",
+    "variances_of_rows",
     "window_duration",
     "window_integrals",
     "window_means",
@@ -446,6 +449,15 @@ class Penalty(PenaltyFunction):
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
+    def bending(
+        self,
+        recordings: collections.abc.Sequence[Recording],
+        mask_standstill: bool,
+        theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        What the windows' friction lacks because the trapezoid rule takes it as straight.
+        """
     def columns(
         self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -1393,6 +1405,27 @@ class Inspection:
     def timing_errors(self) -> tuple[float, float]:
         """
         Scatter of the samples' times about the stamps and about an even grid [s].
+        """
+
+class Clustered:
+    """
+    The sandwich of one clustering of windows.
+    """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def freedom(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Behind each parameter's variance.
+        """
+    @property
+    def pooled_freedom(self) -> float: ...
+    @property
+    def segments(self) -> int: ...
+    @property
+    def size(self) -> float:
+        """
+        Of all corrected scores, squared.
         """
 
 class Folds:
@@ -3509,6 +3542,18 @@ def circle(
     Cosine and sine.
     """
 
+def clustered(
+    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    cuts: collections.abc.Sequence[
+        collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
+    ],
+) -> list[Clustered]:
+    """
+    The sandwich of each clustering: segments are from one cut to the next.
+    """
+
 def covering_half_width(
     probability: typing.SupportsFloat | typing.SupportsIndex,
     offset: typing.SupportsFloat | typing.SupportsIndex,
@@ -3763,19 +3808,6 @@ def roughness(signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -
     Standard deviation of a signal's third differences.
     """
 
-def segment_sums(
-    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    cuts: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
-) -> tuple[
-    list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]],
-    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
-]:
-    """
-    Products of whitened rows over segments: with each other, and with the residual.
-    """
-
 def shape(name: str) -> Shape:
     """
     The shape parameter of that name.
@@ -3814,6 +3846,15 @@ def smoothed(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
     Weighted sums around each sample.
+    """
+
+def solve_independent(
+    triangle: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    columns: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    target: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float] | None:
+    """
+    Coefficients of columns for another one, and the norm of what they leave; None unless they are clearly independent.
     """
 
 def student_quantile(
@@ -3857,6 +3898,15 @@ def usable_intervals(
 ) -> numpy.typing.NDArray[numpy.uint8]:
     """
     One flag per sample interval: 1 where the joint moves and the recording has no gap.
+    """
+
+def variances_of_rows(
+    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    White's sandwich: each row a cluster.
     """
 
 def window_duration(

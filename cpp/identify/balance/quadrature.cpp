@@ -13,47 +13,102 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kShort = 256;  // samples of a window whose nodes are made at once
+constexpr std::size_t kShort = 256;   // samples of a window whose nodes are made at once
+constexpr std::size_t kBlock = 1024;  // intervals whose values are made at once
 
-/// Whether every interval of a window is usable.
-bool whole(const std::vector<std::uint8_t>& usable, const Window& window) {
-  const std::uint8_t* flags = usable.data() + window.begin;
-  const auto count = static_cast<std::size_t>(window.end - window.begin);
-  if (count > 16) return std::memchr(flags, 0, count) == nullptr;
-  if (count < 8) return std::all_of(flags, flags + count, [](std::uint8_t f) { return f != 0; });
-  // The usual window, without a call: eight flags at either end, which may overlap.
-  const auto has_zero = [&](std::size_t from) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, flags + from, sizeof eight);
-    return ((eight - 0x0101010101010101U) & ~eight & 0x8080808080808080U) != 0;
-  };
-  return !has_zero(0) && !has_zero(count - 8);
-}
+/// Whether windows have usable intervals only. They come in order: what is known of one run of
+/// usable intervals serves all windows in it.
+class Whole {
+ public:
+  Whole(const std::vector<std::uint8_t>& usable, std::span<const Window> windows)
+      : flags_(usable.data()), last_(windows.empty() ? 0 : windows.back().end) {}
 
-/// Sum over a window's usable intervals of value(k), k the interval k -> k+1.
-template <class Value>
+  bool operator()(const Window& window) {
+    if (window.begin < from_ || window.begin > until_) {
+      from_ = window.begin;
+      const auto count = static_cast<std::size_t>(std::max(last_, window.end) - from_);
+      const void* found = std::memchr(flags_ + from_, 0, count);
+      until_ = found == nullptr ? from_ + static_cast<std::int64_t>(count)
+                                : static_cast<const std::uint8_t*>(found) - flags_;
+    }
+    return window.end <= until_;
+  }
+
+ private:
+  const std::uint8_t* flags_;
+  std::int64_t last_;
+  std::int64_t from_ = 0;
+  std::int64_t until_ = -1;  ///< the intervals from_ .. until_ - 1 are usable
+};
+
+/// Sum over a window's usable intervals of values that `fill(k, count, values)` gives for the
+/// intervals from k on.
+template <class Fill>
 void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
-                   Eigen::Ref<Eigen::VectorXd> result, Value value) {
+                   Eigen::Ref<Eigen::VectorXd> result, Fill fill) {
+  if (windows.empty()) return;
+  Whole whole(usable, windows);
+  std::array<double, kBlock> values;
+  const std::int64_t last = windows.back().end;
+  std::int64_t from = 0;
+  std::int64_t to = 0;  // of the intervals in `values`
   for (std::size_t w = 0; w < windows.size(); ++w) {
+    const bool all = whole(windows[w]);
     double sum = 0.0;
-    if (whole(usable, windows[w])) {
-      for (auto k = windows[w].begin; k < windows[w].end; ++k) sum += value(k);
-    } else {
-      for (auto k = windows[w].begin; k < windows[w].end; ++k) {
-        if (usable[static_cast<std::size_t>(k)] != 0) sum += value(k);
+    for (auto k = windows[w].begin; k < windows[w].end;) {
+      if (k < from || k >= to) {
+        from = k;
+        to = std::min(k + static_cast<std::int64_t>(kBlock), std::max(last, windows[w].end));
+        fill(from, static_cast<std::size_t>(to - from), values.data());
+      }
+      const auto stop = std::min(windows[w].end, to);
+      const double* value = values.data() - from;
+      if (all) {
+        for (; k < stop; ++k) sum += value[k];
+      } else {
+        for (; k < stop; ++k) {
+          if (usable[static_cast<std::size_t>(k)] != 0) sum += value[k];
+        }
       }
     }
     result[static_cast<Eigen::Index>(w)] = sum;
   }
 }
 
+/// Of signals between samples: by the trapezoid rule, and held.
+JOINTID_CLONES void trapezoids(const double* signal, const double* time, std::size_t count,
+                               double* values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    values[i] = 0.5 * (signal[i] + signal[i + 1]) * (time[i + 1] - time[i]);
+  }
+}
+
+JOINTID_CLONES void rectangles(const double* signal, const double* time, std::size_t count,
+                               double* values) {
+  for (std::size_t i = 0; i < count; ++i) values[i] = signal[i] * (time[i + 1] - time[i]);
+}
+
+/// Nodes of a whole window in which the velocity keeps one sign: the same without a question a
+/// sample.
+JOINTID_CLONES void whole_nodes(const double* time, const double* velocity, std::size_t count,
+                                double direction, double* speeds, double* weights) {
+  for (std::size_t i = 0; i <= count; ++i) speeds[i] = std::fabs(velocity[i]);
+  weights[0] = 0.5 * (time[1] - time[0]) * direction;
+  for (std::size_t i = 1; i < count; ++i) {
+    weights[i] =
+        0.5 * (time[i] - time[i - 1]) * direction + 0.5 * (time[i + 1] - time[i]) * direction;
+  }
+  weights[count] = 0.5 * (time[count] - time[count - 1]) * direction;
+}
+
 /// The change of a signal over each window's usable intervals.
 void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uint8_t>& usable,
                  std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  Whole whole(usable, windows);
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const auto [begin, end] = windows[w];
     double sum = 0.0;
-    if (whole(usable, windows[w])) {
+    if (whole(windows[w])) {
       sum = signal[end] - signal[begin];
     } else {
       for (auto k = begin; k < end; ++k) {
@@ -82,11 +137,24 @@ const RecordingView::Signal& own_series(const RecordingView& r, const std::strin
   throw std::invalid_argument("the term '" + name + "' needs a recording with its series");
 }
 
-template <class Sample>
-void trapezoid(const RecordingView& r, const std::vector<std::uint8_t>& usable,
-               std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result, Sample sample) {
-  sum_intervals(usable, windows, result, [&](Eigen::Index k) {
-    return 0.5 * (sample(k) + sample(k + 1)) * (r.time[k + 1] - r.time[k]);
+/// The trapezoid rule for a function of the position.
+template <class Function>
+void integrate_position(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                        std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result,
+                        Function function) {
+  std::array<double, kBlock + 1> samples;
+  sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
+    for (std::size_t i = 0; i <= count; ++i) samples[i] = function(r.position.data()[k + i]);
+    trapezoids(samples.data(), r.time.data() + k, count, values);
+  });
+}
+
+/// The trapezoid rule for a signal.
+void integrate_signal(const RecordingView::Signal& signal, const RecordingView& r,
+                      const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
+                      Eigen::Ref<Eigen::VectorXd> result) {
+  sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
+    trapezoids(signal.data() + k, r.time.data() + k, count, values);
   });
 }
 
@@ -112,10 +180,11 @@ void integrate_sign(const Term& term, const RecordingView& r,
                     const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                     Eigen::Ref<Eigen::VectorXd> result) {
   FrictionNodes nodes;
+  Whole whole(usable, windows);
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const auto row = static_cast<Eigen::Index>(w);
     const double direction = common_sign(r.velocity, windows[w]);
-    if (direction == 0.0 || !whole(usable, windows[w])) {
+    if (direction == 0.0 || !whole(windows[w])) {
       nodes.clear();
       append_nodes(r, usable, windows.subspan(w, 1), nodes);
       integrate_friction(term, nodes_of(term.direction, nodes), nullptr, nullptr,
@@ -153,15 +222,15 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
       sum_changes(r.time, usable, windows, result);
       return;
     case Integral::cosine:
-      trapezoid(r, usable, windows, result,
-                [&](Eigen::Index k) { return base::cos(frequency * r.position[k]); });
+      integrate_position(r, usable, windows, result,
+                         [&](double angle) { return base::cos(frequency * angle); });
       return;
     case Integral::sine:
-      trapezoid(r, usable, windows, result,
-                [&](Eigen::Index k) { return base::sin(frequency * r.position[k]); });
+      integrate_position(r, usable, windows, result,
+                         [&](double angle) { return base::sin(frequency * angle); });
       return;
     case Integral::sensor:
-      trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.sensor[k]; });
+      integrate_signal(r.sensor, r, usable, windows, result);
       return;
     case Integral::own:
       sum_changes(own_series(r, term.name), usable, windows, result);
@@ -192,11 +261,12 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
 void integrate_torque(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
   if (r.torque_hold == Hold::linear) {
-    trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.torque[k]; });
-  } else {
-    sum_intervals(usable, windows, result,
-                  [&](Eigen::Index k) { return r.torque[k] * (r.time[k + 1] - r.time[k]); });
+    integrate_signal(r.torque, r, usable, windows, result);
+    return;
   }
+  sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
+    rectangles(r.torque.data() + k, r.time.data() + k, count, values);
+  });
 }
 
 void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& usable,
@@ -204,30 +274,47 @@ void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& u
   sum_changes(r.torque, usable, windows, result);
 }
 
+void integrate_bending(const Term& term, const Eigen::VectorXd& shapes, const RecordingView& r,
+                       const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
+                       Eigen::Ref<Eigen::VectorXd> result) {
+  sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
+    const auto intervals = static_cast<Eigen::Index>(count);
+    const Eigen::VectorXd velocity = r.velocity.segment(k, intervals + 1);
+    const auto before = velocity.head(intervals);
+    const auto after = velocity.tail(intervals);
+    const Eigen::VectorXd at = friction_basis(term, velocity, shapes);
+    const Eigen::VectorXd between = friction_basis(term, 0.5 * (after + before), shapes);
+    const auto bent =
+        (2.0 * between.array() - at.tail(intervals).array() - at.head(intervals).array()) / 3.0;
+    const auto lasting = (r.time.segment(k + 1, intervals) - r.time.segment(k, intervals)).array();
+    Eigen::Map<Eigen::ArrayXd>(values, intervals) =
+        (after.array() * before.array() > 0.0).select(bent * lasting, 0.0);
+  });
+}
+
 void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                   std::span<const Window> windows, FrictionNodes& nodes) {
-  std::array<double, kShort + 1> speeds;
-  std::array<double, kShort + 1> weights;
+  std::array<double, kBlock> speeds;
+  std::array<double, kBlock> weights;
+  std::size_t made = 0;  // nodes that wait in the two
+  const auto store = [&] {
+    nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.begin() + made);
+    nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.begin() + made);
+    made = 0;
+  };
+  Whole whole(usable, windows);
   for (const auto& window : windows) {
     const auto count = static_cast<std::size_t>(window.end - window.begin);
     const double direction = count <= kShort ? common_sign(r.velocity, window) : 0.0;
-    if (direction != 0.0 && whole(usable, window)) {  // the same without a question a sample
-      const double* time = r.time.data() + window.begin;
-      const double* velocity = r.velocity.data() + window.begin;
-      double left = 0.0;
-      for (std::size_t i = 0; i < count; ++i) {
-        const double half = 0.5 * (time[i + 1] - time[i]) * direction;
-        speeds[i] = std::fabs(velocity[i]);
-        weights[i] = left + half;
-        left = half;
-      }
-      speeds[count] = std::fabs(velocity[count]);
-      weights[count] = left;
-      nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.begin() + count + 1);
-      nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.begin() + count + 1);
-      nodes.first.push_back(nodes.speed.size());
+    if (direction != 0.0 && whole(window)) {
+      if (made + count + 1 > kBlock) store();
+      whole_nodes(r.time.data() + window.begin, r.velocity.data() + window.begin, count, direction,
+                  speeds.data() + made, weights.data() + made);
+      made += count + 1;
+      nodes.first.push_back(nodes.speed.size() + made);
       continue;
     }
+    store();
     double carried = 0.0;  // weight that the previous interval left on this interval's first sample
     const auto push = [&](double speed, double weight) {
       if (weight == 0.0) return;
@@ -254,6 +341,7 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
     push(std::fabs(r.velocity[window.end]), carried);
     nodes.first.push_back(nodes.speed.size());
   }
+  store();
 }
 
 FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes) {

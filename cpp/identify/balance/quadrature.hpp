@@ -46,6 +46,13 @@ void integrate_torque(const RecordingView& recording, const std::vector<std::uin
 void sum_torque_steps(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
+/// By how much Simpson's rule, on a velocity that is straight between samples, exceeds the
+/// trapezoid's for a friction term with shapes: over each window's usable intervals without a
+/// reversal.
+void integrate_bending(const Term& term, const Eigen::VectorXd& shapes,
+                       const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
+
 /// The friction column of a term for given shapes. `cancel` is read once a block of nodes; it may
 /// be null.
 void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -90,8 +91,8 @@ void Penalty::sum_decays(const FrictionNodes& nodes, const Stretch& windows,
     const auto begin = static_cast<std::size_t>(windows_[w].begin);
     const std::size_t count = nodes.first[w + 1] - nodes.first[w];
     if (known == nullptr || count != static_cast<std::size_t>(windows_[w].end) - begin + 1 ||
-        !std::equal(known->speed.data() + begin, known->speed.data() + begin + count,
-                    nodes.speed.data() + nodes.first[w])) {
+        std::memcmp(known->speed.data() + begin, nodes.speed.data() + nodes.first[w],
+                    count * sizeof(double)) != 0) {
       continue;  // cut, or with a reversal
     }
     sum_others(w);

@@ -169,7 +169,8 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
 
 void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool) {
   const auto rows = static_cast<Eigen::Index>(windows_.size());
-  columns_.setZero(rows, static_cast<Eigen::Index>(terms_.size()));
+  columns_.resize(rows, static_cast<Eigen::Index>(terms_.size()));
+  for (const auto& shaped : shaped_) columns_.col(shaped.coefficient).setZero();
   target_.resize(rows);
   usable_duration_.resize(rows);
   std::vector<std::vector<std::uint8_t>> backward;
@@ -342,8 +343,9 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
     return;
   }
   if (jacobian != nullptr) {
-    jacobian->setZero(window_count(), parameters());
+    jacobian->resize(window_count(), parameters());
     jacobian->leftCols(p) = -columns_;
+    jacobian->rightCols(parameters() - p).setZero();
   }
   residual = target_;
   residual.noalias() -= columns_ * theta.head(p);

@@ -99,6 +99,10 @@ class Penalty final : public PenaltyFunction {
   /// How far the torque rises over each window's usable intervals; `recordings` are those it was
   /// cut from.
   [[nodiscard]] Eigen::VectorXd torque_steps(const Masked& recordings) const;
+  /// What the windows' friction lacks because the trapezoid rule takes it as straight between
+  /// samples.
+  [[nodiscard]] Eigen::VectorXd bending(const Masked& recordings,
+                                        const Eigen::VectorXd& theta) const;
   [[nodiscard]] const Eigen::VectorXd& usable_duration() const {
     return usable_duration_;
   }  ///< [s] a window
@@ -112,6 +116,9 @@ class Penalty final : public PenaltyFunction {
   void add_term(const std::string& key);
   friend class PenaltyParts;
   void weigh_link();
+  /// Calls work(recording, its windows, the first of their rows) for each recording.
+  template <class Work>
+  void each_recording(const Masked& recordings, Work work) const;
   Penalty(const Masked& recordings, const std::vector<std::string>& terms, Residual residual,
           double gear_ratio);  ///< terms only; no windows yet
   void cut(const Masked& recordings, WindowOptions options);

@@ -16,18 +16,44 @@ Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> Penalty::window_bounds() const {
   return bounds;
 }
 
-Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
-  Eigen::VectorXd steps(window_count());
+template <class Work>
+void Penalty::each_recording(const Masked& recordings, Work work) const {
   for (std::size_t from = 0; from < windows_.size();) {
     std::size_t to = from;
     while (to < windows_.size() && recording_of_[to] == recording_of_[from]) ++to;
-    const auto& masked = *recordings.at(static_cast<std::size_t>(recording_of_[from]));
-    sum_torque_steps(
-        masked.recording(), masked.usable(), std::span(windows_).subspan(from, to - from),
-        steps.segment(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to - from)));
+    work(*recordings.at(static_cast<std::size_t>(recording_of_[from])),
+         std::span(windows_).subspan(from, to - from), static_cast<Eigen::Index>(from));
     from = to;
   }
+}
+
+Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
+  Eigen::VectorXd steps(window_count());
+  each_recording(recordings, [&](const MaskedRecording& masked, std::span<const Window> windows,
+                                 Eigen::Index first) {
+    sum_torque_steps(masked.recording(), masked.usable(), windows,
+                     steps.segment(first, static_cast<Eigen::Index>(windows.size())));
+  });
   return steps;
+}
+
+Eigen::VectorXd Penalty::bending(const Masked& recordings, const Eigen::VectorXd& theta) const {
+  check(theta);
+  Eigen::VectorXd bent = Eigen::VectorXd::Zero(window_count());
+  Eigen::VectorXd column(window_count());
+  for (const auto& shaped : shaped_) {
+    Eigen::VectorXd shapes(static_cast<Eigen::Index>(shaped.shapes.size()));
+    for (Eigen::Index i = 0; i < shapes.size(); ++i) {
+      shapes[i] = theta[coefficients() + shaped.shapes[static_cast<std::size_t>(i)]];
+    }
+    each_recording(recordings, [&](const MaskedRecording& masked, std::span<const Window> windows,
+                                   Eigen::Index first) {
+      integrate_bending(shaped.term, shapes, masked.recording(), masked.usable(), windows,
+                        column.segment(first, static_cast<Eigen::Index>(windows.size())));
+    });
+    bent += theta[shaped.coefficient] * column;
+  }
+  return bent;
 }
 
 }  // namespace jointid::identify

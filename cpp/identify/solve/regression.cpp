@@ -1,6 +1,8 @@
 #include "identify/solve/regression.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/householder.hpp"
@@ -16,6 +18,10 @@ constexpr Eigen::Index kTask = 16384;  // rows that one task brings down to one 
 std::size_t tasks(Eigen::Index rows) {
   return static_cast<std::size_t>(std::max<Eigen::Index>(1, (rows + kTask - 1) / kTask));
 }
+
+// Of the condition of columns that are clearly independent: what is rank and what is rounding is
+// then no question, and all ways to solve agree.
+constexpr double kIndependent = 1e6;
 
 }  // namespace
 
@@ -44,21 +50,28 @@ Eigen::MatrixXd triangle(const Eigen::Ref<const Eigen::MatrixXd>& matrix, base::
   return all;
 }
 
-SegmentSums segment_sums(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
-                         const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
-                         const std::vector<std::int64_t>& cuts) {
-  const Eigen::MatrixXd rows = whitening * jacobian.transpose();
-  const auto count = static_cast<Eigen::Index>(cuts.size()) - 1;
-  SegmentSums result;
-  result.scores.resize(whitening.rows(), count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index first = cuts[static_cast<std::size_t>(i)];
-    const Eigen::Index length = cuts[static_cast<std::size_t>(i) + 1] - first;
-    const auto mine = rows.middleCols(first, length);
-    result.shares.emplace_back(mine * mine.transpose());
-    result.scores.col(i).noalias() = mine * residual.segment(first, length);
+std::optional<std::pair<Eigen::VectorXd, double>> solve_independent(
+    const Eigen::Ref<const Eigen::MatrixXd>& triangle, const std::vector<Eigen::Index>& columns,
+    Eigen::Index target) {
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  if (count == 0 || triangle.rows() < count) return std::nullopt;
+  Eigen::MatrixXd regressors(triangle.rows(), count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    regressors.col(j) = triangle.col(columns[static_cast<std::size_t>(j)]);
   }
-  return result;
+  const Eigen::VectorXd norms = regressors.colwise().norm();
+  if (!(norms.minCoeff() > 0.0)) return std::nullopt;
+  const Eigen::VectorXd wanted = triangle.col(target);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(regressors * norms.cwiseInverse().asDiagonal());
+  const auto upper = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd inverse = upper.solve(Eigen::MatrixXd::Identity(count, count));
+  // Both have at least the norms that make the condition; the scaled columns' is the root of
+  // their number.
+  const double condition = std::sqrt(static_cast<double>(count)) * inverse.norm();
+  if (!(condition < kIndependent)) return std::nullopt;
+  const Eigen::VectorXd turned = qr.householderQ().adjoint() * wanted;
+  const Eigen::VectorXd found = upper.solve(turned.head(count)).cwiseQuotient(norms);
+  return std::make_pair(found, (wanted - regressors * found).norm());
 }
 
 }  // namespace jointid::identify

@@ -1,8 +1,10 @@
 #pragma once
-// What least squares over very many windows comes down to: the triangle of a tall matrix, and sums
-// of its rows over segments.
+// What least squares over very many windows comes down to: the triangle of a tall matrix.
 
 #include <Eigen/Core>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/pool.hpp"
 
@@ -12,15 +14,10 @@ namespace jointid::identify {
 /// that least squares needs of the matrix (Golub and Van Loan, 5.2).
 Eigen::MatrixXd triangle(const Eigen::Ref<const Eigen::MatrixXd>& matrix, base::Pool* pool);
 
-/// Products of the directions `whitening` makes of the Jacobian's rows, over each segment of rows.
-struct SegmentSums {
-  std::vector<Eigen::MatrixXd> shares;  ///< with each other
-  Eigen::MatrixXd scores;               ///< with the residual; directions x segments
-};
-
-/// Segments are from one cut to the next.
-SegmentSums segment_sums(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
-                         const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
-                         const std::vector<std::int64_t>& cuts);
+/// Least-squares coefficients of some columns for another one, and the norm of what they leave.
+/// None unless the columns, scaled to unit norm, are clearly independent.
+std::optional<std::pair<Eigen::VectorXd, double>> solve_independent(
+    const Eigen::Ref<const Eigen::MatrixXd>& triangle, const std::vector<Eigen::Index>& columns,
+    Eigen::Index target);
 
 }  // namespace jointid::identify

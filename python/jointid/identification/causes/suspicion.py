@@ -25,9 +25,11 @@ def correlations(residual: Array, run: NDArray[np.int64]) -> dict[int, float]:
     for factor in _SCALES:
         series, of = summed(residual, run, factor)
         if len(series) >= _FEWEST:
-            pairs = of[1:] == of[:-1]
-            power = max(inner(series, series), 1e-300)
-            found[factor] = inner(series[1:][pairs], series[:-1][pairs]) / power
+            later, earlier = series[1:], series[:-1]
+            if of[0] != of[-1]:
+                pairs = of[1:] == of[:-1]
+                later, earlier = later[pairs], earlier[pairs]
+            found[factor] = inner(later, earlier) / max(inner(series, series), 1e-300)
     return found
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.inference.segments import Cuts, Segments
+from jointid.identification.inference.segments import Segments
 
 Array = NDArray[np.float64]
 
@@ -22,8 +22,6 @@ _CERTAIN_NORMAL = 2.326
 _OPPOSED = 0.2  # correlation of neighbours; by their noise alone it is -0.5
 # A parameter that fewer segments determine borrows the missing degrees of freedom from the others.
 _FEWEST = 5.0
-# What is left of a direction's freedom outside a segment that determines it all.
-_LEAST = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,8 +69,10 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     variance = float(np.einsum("i,i->", residual, residual)) / freedom
     unit = np.einsum("rp,rp->p", whitening, whitening)
     classical = np.where(unit * variance > 0.0, unit * variance, 1.0)
-    clusterings = [_clustered(jacobian, residual, whitening, cuts) for cuts in segments.cuts]
-    count = min(len(each.scores) for each in clusterings)
+    clusterings = _core.clustered(
+        jacobian, residual, whitening, [cuts.tolist() for cuts in segments.cuts]
+    )
+    count = min(each.segments for each in clusterings)
     if variance <= 0.0 or count < 3:
         return Stretch(
             ratio=np.ones(unit.size), freedom=np.full(unit.size, float(freedom)), white=True
@@ -80,13 +80,14 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     pooled = float(np.mean([each.size for each in clusterings])) / (directions * variance)
     pooled_freedom = float(np.mean([each.pooled_freedom for each in clusterings]))
     if not _contradicted(residual, pooled, pooled_freedom):
-        alone = _windows_alone(jacobian, residual, whitening) * rows / freedom
+        alone = np.asarray(_core.variances_of_rows(jacobian, residual, whitening)) * rows / freedom
         return Stretch(
             ratio=np.maximum(alone / classical, 1.0),
             freedom=np.full(unit.size, float(freedom)),
             white=True,
         )
-    ratio = np.mean([each.variance for each in clusterings], axis=0) / classical
+    covariance = np.mean([each.covariance for each in clusterings], axis=0)
+    ratio = np.diag(covariance) / classical
     # One is lost to the mean that the fit took from each direction.
     own = np.maximum(np.mean([each.freedom for each in clusterings], axis=0) - 1.0, 1.0)
     borrowed = np.maximum(_FEWEST - own, 0.0)
@@ -96,7 +97,7 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
         freedom=together,
         white=False,
         correlation=_correlation(
-            np.mean([each.covariance for each in clusterings], axis=0),
+            covariance,
             np.einsum("rp,rq->pq", whitening, whitening),
             float((own / together).min()),
         ),
@@ -126,57 +127,3 @@ def _contradicted(residual: Array, pooled: float, freedom: float) -> bool:
     limit = _core.chi_square_quantile(_CERTAIN, freedom) / freedom
     alike = neighbours * np.sqrt(len(residual))
     return alike > _CERTAIN_NORMAL or neighbours < -_OPPOSED or pooled > limit
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Clustered:
-    """The sandwich of one clustering, and the freedom behind it."""
-
-    scores: Array
-    covariance: Array
-    variance: Array
-    freedom: Array
-    size: float
-    pooled_freedom: float
-
-
-def _clustered(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -> _Clustered:
-    """Sum the scores over each segment, and correct them."""
-    shares, scores = _sums(jacobian, residual, whitening, cuts)
-    values, vectors = np.linalg.eigh(shares)
-    root = 1.0 / np.sqrt(np.maximum(1.0 - values, _LEAST))
-    turned = np.einsum("srk,sr->sk", vectors, scores) * root
-    corrected = np.einsum("srk,sk->sr", vectors, turned)
-    effects = np.einsum("sr,rp->sp", corrected, whitening)
-    # How much of each parameter's variance comes from each segment, were the residuals white.
-    unit = np.einsum("rp,rp->p", whitening, whitening)
-    part = np.einsum("srp,rp->sp", np.einsum("srq,qp->srp", shares, whitening), whitening)
-    part = np.clip(part / np.where(unit > 0.0, unit, 1.0), 0.0, 1.0)
-    even = np.einsum("sp,sp->p", part, part)
-    pooled = float(np.einsum("srq,sqr->", shares, shares))
-    return _Clustered(
-        scores=corrected,
-        covariance=np.einsum("sp,sq->pq", effects, effects),
-        variance=np.einsum("sp,sp->p", effects, effects),
-        freedom=1.0 / np.where(even > 0.0, even, 1.0),
-        size=float(np.einsum("sr,sr->", corrected, corrected)),
-        pooled_freedom=len(whitening) ** 2 / max(pooled, 1e-300),
-    )
-
-
-def _sums(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -> tuple[Array, Array]:
-    """Products of the determined directions over each segment, with each other and with the residual."""
-    shares, scores = _core.segment_sums(jacobian, residual, whitening, cuts.tolist())
-    return np.array(shares), np.asarray(scores)
-
-
-def _windows_alone(jacobian: Array, residual: Array, whitening: Array, most: int = 4096) -> Array:
-    """White's sandwich: each window a cluster."""
-    covariance = np.einsum("rp,rq->pq", whitening, whitening)
-    total = np.zeros(covariance.shape[0])
-    for first in range(0, len(residual), most):
-        piece = slice(first, first + most)
-        effects = np.einsum("ip,pq->iq", jacobian[piece], covariance)
-        effects *= residual[piece, None]
-        total += np.einsum("iq,iq->q", effects, effects)
-    return total

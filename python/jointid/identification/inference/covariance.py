@@ -65,6 +65,9 @@ class Triangle:
 
     def solve(self, columns: list[int], target: int, rcond: float) -> tuple[Array, float]:
         """Return the least-squares coefficients of some columns for another one, and the norm of the residual."""
+        solved = _core.solve_independent(self.matrix, columns, target)
+        if solved is not None:
+            return np.asarray(solved[0]), solved[1]
         regressors, wanted = self.matrix[:, columns], self.matrix[:, target]
         norms = np.linalg.norm(regressors, axis=0)
         scale = np.where(norms > 0.0, norms, 1.0)

@@ -128,38 +128,11 @@ def _of_curvature(
 ) -> Array | None:
     """Return the effect of friction that is not straight between samples: the trapezoid rule takes it as straight."""
     names = list(penalty.names)
-    curved = [
-        (
-            float(best[index]),
-            term.key,
-            np.array([best[names.index(shape)] for shape in term.shapes]),
-        )
-        for index, term in enumerate(penalty.terms)
-        if term.friction and term.shapes and set(term.shapes) <= set(names)
-    ]
-    if not curved or jacobian.shape[1] == 0 or penalty.cumulative:
+    if not any(term.shapes for term in penalty.terms) or jacobian.shape[1] == 0:
         return None
-    bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
-    parts = []
-    for number, recording in enumerate(problem.recordings):
-        velocity = recording.velocity
-        usable = np.asarray(
-            _core.usable_intervals(problem.in_core[number], problem.mask_standstill)
-        )
-        one_way = (usable > 0) & (velocity[1:] * velocity[:-1] > 0.0)
-        middle = 0.5 * (velocity[1:] + velocity[:-1])
-        bent = np.zeros(len(middle))
-        for value, key, shapes in curved:
-            at = np.asarray(_core.friction_basis(key, velocity, shapes))
-            between = np.asarray(_core.friction_basis(key, middle, shapes))
-            # Simpson's rule less the trapezoid's.
-            bent += value * (2.0 * between - at[1:] - at[:-1]) / 3.0
-        total = np.concatenate(
-            [[0.0], np.cumsum(np.where(one_way, bent * np.diff(recording.time), 0.0))]
-        )
-        mine = slice(*np.searchsorted(run, (number, number + 1)))
-        parts.append(total[bounds[mine, 1]] - total[bounds[mine, 0]])
-    lacking = np.concatenate(parts)
+    if penalty.cumulative:
+        return None
+    lacking = np.asarray(penalty.bending(problem.in_core, problem.mask_standstill, best))
     if penalty.residual == _core.Residual.sensor:
         lacking = lacking / float(best[names.index("sensor_gain")])
     count = jacobian.shape[1]

@@ -10,7 +10,6 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from jointid import _core
@@ -51,6 +50,17 @@ class Stretch:
     def unusable_before(self) -> NDArray[np.int64]:
         """How many samples before each are not usable, shape (n + 1,)."""
         return np.concatenate([[0], np.cumsum(~self.usable)])
+
+    @cached_property
+    def turned_before(self) -> NDArray[np.int64]:
+        """How many changes of direction are before each sample, shape (n,)."""
+        # Two comparisons instead of a sign; a sample at rest has a direction of its own.
+        forward, backward = self.velocity > 0.0, self.velocity < 0.0
+        turned = np.empty(len(self.velocity), dtype=np.int64)
+        turned[0] = 0
+        changes = (forward[1:] != forward[:-1]) | (backward[1:] != backward[:-1])
+        np.cumsum(changes, out=turned[1:])
+        return turned
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,8 +116,7 @@ class SmoothWindows:
             before = stretch.unusable_before
             kept = before[self.middles + self.half] == before[self.middles - self.half]
         if self.clear:
-            sign = np.sign(stretch.velocity)
-            turned = np.concatenate([[0], np.cumsum(sign[1:] != sign[:-1])])
+            turned = stretch.turned_before
             kept &= turned[self.middles + self.clear] - turned[self.middles - self.clear] == 0
         return np.asarray(kept)
 
@@ -159,7 +168,9 @@ def half_length(stretch: Stretch, shortest: int = 6) -> int:
         weight = _curvature(half, period) if stretch.derived else _slope(half, period)
         if 4 * len(weight) > len(signal):
             return half
-        rough = sliding_window_view(signal, len(weight))[::half] @ weight
+        each = len(weight) // 2  # samples either side
+        middles = np.arange(each, len(signal) - each, half)
+        rough = np.asarray(_core.window_means(signal, weight, middles))
         if noise**2 * float(weight @ weight) <= _NOISE_SHARE * float(np.var(rough)):
             return half
     return halves[-1]
@@ -181,4 +192,9 @@ def _curvature(half: int, period: float) -> Array:
 
 def _noise(signal: Array) -> float:
     """Standard deviation of white noise on a smooth signal: third differences, few of them large."""
-    return float(1.4826 * median(np.abs(np.diff(signal, 3)[::3])) / np.sqrt(20.0))
+    # Differences of differences, of every third sample only.
+    count = (len(signal) - 1) // 3
+    first, second, third, fourth = (signal[i : i + 3 * count : 3] for i in range(4))
+    change = third - second
+    rough = ((fourth - third) - change) - (change - (second - first))
+    return float(1.4826 * median(np.abs(rough)) / np.sqrt(20.0))

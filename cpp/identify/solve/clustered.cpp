@@ -1,0 +1,74 @@
+#include "identify/solve/clustered.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace jointid::identify {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// What is left of a direction's freedom outside a segment that determines it all.
+constexpr double kLeast = 0.05;
+
+}  // namespace
+
+Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd& whitening,
+                  const std::vector<std::int64_t>& cuts) {
+  const auto count = static_cast<Index>(cuts.size()) - 1;
+  const Index parameters = whitening.cols();
+  const VectorXd unit = whitening.colwise().squaredNorm();
+  Clustered result;
+  result.segments = count;
+  result.covariance.setZero(parameters, parameters);
+  VectorXd even = VectorXd::Zero(parameters);
+  double pooled = 0.0;
+  Eigen::SelfAdjointEigenSolver<MatrixXd> solver(rows.rows());
+  MatrixXd shares;
+  MatrixXd whitened;
+  VectorXd scores;
+  VectorXd corrected;
+  VectorXd effect;
+  for (Index i = 0; i < count; ++i) {
+    const Index first = cuts[static_cast<std::size_t>(i)];
+    const Index length = cuts[static_cast<std::size_t>(i) + 1] - first;
+    const auto mine = rows.middleCols(first, length);
+    shares.noalias() = mine * mine.transpose();
+    scores.noalias() = mine * residual.segment(first, length);
+    solver.compute(shares);
+    corrected.noalias() = solver.eigenvectors().transpose() * scores;
+    corrected.array() /= (1.0 - solver.eigenvalues().array()).max(kLeast).sqrt();
+    scores.noalias() = solver.eigenvectors() * corrected;
+    effect.noalias() = whitening.transpose() * scores;
+    result.covariance.noalias() += effect * effect.transpose();
+    result.size += scores.squaredNorm();
+    pooled += shares.squaredNorm();
+    // How much of each parameter's variance comes from this segment, were the residuals white.
+    whitened.noalias() = shares * whitening;
+    for (Index p = 0; p < parameters; ++p) {
+      const double part = whitened.col(p).dot(whitening.col(p));
+      const double share = std::clamp(unit[p] > 0.0 ? part / unit[p] : part, 0.0, 1.0);
+      even[p] += share * share;
+    }
+  }
+  result.freedom = even.unaryExpr([](double value) { return value > 0.0 ? 1.0 / value : 1.0; });
+  const auto directions = static_cast<double>(rows.rows());
+  result.pooled_freedom = directions * directions / std::max(pooled, 1e-300);
+  return result;
+}
+
+VectorXd variances_of_rows(const MatrixXd& rows, const VectorXd& residual,
+                           const MatrixXd& whitening) {
+  VectorXd total = VectorXd::Zero(whitening.cols());
+  VectorXd effect;
+  for (Index i = 0; i < rows.cols(); ++i) {
+    effect.noalias() = whitening.transpose() * rows.col(i);
+    total.array() += (effect * residual[i]).array().square();
+  }
+  return total;
+}
+
+}  // namespace jointid::identify

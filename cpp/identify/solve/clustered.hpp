@@ -1,0 +1,29 @@
+#pragma once
+// Variances of a least-squares estimate from the scores of segments of windows.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace jointid::identify {
+
+/// The sandwich of one clustering, its scores corrected for the freedom that the fit took from them
+/// (CR2: Bell and McCaffrey 2002).
+struct Clustered {
+  std::int64_t segments = 0;
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd freedom;  ///< behind each parameter's variance (Satterthwaite)
+  double size = 0.0;        ///< of all corrected scores, squared
+  double pooled_freedom = 0.0;
+};
+
+/// `rows` are the directions that `whitening` makes of the Jacobian's rows, a column each; segments
+/// are from one cut to the next.
+Clustered cluster(const Eigen::MatrixXd& rows, const Eigen::VectorXd& residual,
+                  const Eigen::MatrixXd& whitening, const std::vector<std::int64_t>& cuts);
+
+/// White's variances: each row a segment, its scores as they are.
+Eigen::VectorXd variances_of_rows(const Eigen::MatrixXd& rows, const Eigen::VectorXd& residual,
+                                  const Eigen::MatrixXd& whitening);
+
+}  // namespace jointid::identify
