@@ -141,6 +141,21 @@ def test_a_slow_disk_does_not_delay_the_session(
     assert path.read_text().endswith('# jointid session {"stop": null}\n')
 
 
+def test_a_row_is_in_the_file_at_once(tmp_path: Path) -> None:
+    """Not before a flush is due: of several the quickest, as the machine stands still now and then."""
+    recorder = Recorder(tmp_path / "run.csv", {})
+    waits = []
+    try:
+        for number in range(4):
+            recorder.sample((1e-3 * number, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0))
+            began = time.monotonic()
+            until(lambda: recorder.path.read_text().count("4.0,5.0,0.0\n") == len(waits) + 1)
+            waits.append(time.monotonic() - began)
+    finally:
+        recorder.close()
+    assert min(waits[1:]) < 0.5
+
+
 def test_rows_reach_the_disk_while_the_session_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
