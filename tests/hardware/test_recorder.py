@@ -144,7 +144,7 @@ def test_a_slow_disk_does_not_delay_the_session(
 def test_a_row_is_in_the_file_at_once(tmp_path: Path) -> None:
     """Not before a flush is due: of several the quickest, as the machine stands still now and then."""
     recorder = Recorder(tmp_path / "run.csv", {})
-    waits = []
+    waits: list[float] = []
     try:
         for number in range(4):
             recorder.sample((1e-3 * number, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0))
