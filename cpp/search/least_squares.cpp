@@ -63,7 +63,6 @@ Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen
         const double target = part[static_cast<Eigen::Index>(j)];
         if (target <= 0.0) reach = std::min(reach, x[set[j]] / (x[set[j]] - target));
       }
-      if (!std::isfinite(reach)) reach = 0.0;
       for (std::size_t j = 0; j < set.size(); ++j) {
         double& value = x[set[j]];
         value += reach * (part[static_cast<Eigen::Index>(j)] - value);

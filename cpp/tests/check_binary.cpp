@@ -75,6 +75,8 @@ CHECK_CASE("binary: crossing exchanges one tail, or one stretch, and loses no bi
     }
     const auto children = children_of(options, parents, Eigen::VectorXd::LinSpaced(2000, 1.0, 2.0));
     std::vector<int> cuts(24, 0);
+    int unlike = 0;
+    int uncut = 0;
     for (Eigen::Index i = 0; i < parents.cols(); i += 2) {
       int changes = 0;
       bool previous = false;
@@ -94,7 +96,12 @@ CHECK_CASE("binary: crossing exchanges one tail, or one stretch, and loses no bi
       }
       CHECK(changes < 0 || changes <= (kind == BitCrossover::one_point ? 1 : 2));
       if (kind == BitCrossover::one_point) CHECK(changes < 0 || changes == 1);
+      unlike += changes < 0 ? 0 : 1;
+      uncut += changes == 0 ? 1 : 0;
     }
+    // Two points of 23 places, drawn in any order, are the same once in 23 times.
+    const double expected = kind == BitCrossover::one_point ? 0.0 : 1.0 / 23.0;
+    CHECK_CLOSE(static_cast<double>(uncut) / unlike, expected, 4.0 * std::sqrt(expected / unlike));
     for (std::size_t position = 1; position < 24; ++position) CHECK(cuts[position] > 0);
   }
 }

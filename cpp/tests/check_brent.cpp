@@ -1,6 +1,8 @@
 // The minimum of a function of one variable.
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "check.hpp"
 #include "search/brent.hpp"
@@ -28,6 +30,22 @@ CHECK_CASE("brent: a parabola takes few evaluations, and none at the ends") {
   };
   CHECK_CLOSE(minimise_brent(counted, {2.0, 5.0}, 1e-9), 3.0, 1e-8);
   CHECK_WITH(evaluations < 20, std::to_string(evaluations));
+}
+
+CHECK_CASE("brent: evaluates no two points nearer to each other than the tolerance") {
+  constexpr double kTolerance = 1e-6;
+  for (const double lowest : {0.1, 0.3, 0.62}) {
+    std::vector<double> places;
+    const auto watched = [&](double x) {
+      places.push_back(x);
+      return std::fabs(x - lowest) * (x - lowest) * (x - lowest) + (x - lowest) * (x - lowest);
+    };
+    CHECK_CLOSE(minimise_brent(watched, {0.0, 1.0}, kTolerance), lowest, 2.0 * kTolerance);
+    std::sort(places.begin(), places.end());
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      CHECK(places[i] - places[i - 1] >= 0.999 * kTolerance);
+    }
+  }
 }
 
 CHECK_CASE("brent: without a minimum inside it approaches the lower end") {

@@ -40,6 +40,24 @@ CHECK_CASE("mutation: genes, or one gene of an individual, at the asked rate") {
   }
 }
 
+CHECK_CASE("mutation: the steps of both shrinking operators are as long as their formulas say") {
+  GaOptions options;
+  options.elite = 0;
+  options.generations = 4;
+  options.crossover_probability = 0.0;
+  options.mutation_probability = 1.0;
+  options.mutation_exponent = 2.0;
+  const Eigen::MatrixXd parents = Eigen::MatrixXd::Constant(4, 20'000, 0.5);
+  const auto length = [&](search::Mutation mutation) {  // mean share of the way to a bound
+    options.mutation = mutation;
+    const auto children = children_of(options, parents, Eigen::VectorXd::Ones(20'000), 2);
+    return 2.0 * (children.array() - 0.5).abs().mean();
+  };
+  const double reach = 0.25;                                            // (1 - progress)^exponent
+  CHECK_CLOSE(length(search::Mutation::shrinking), 0.5 * reach, 1e-3);  // of u reach
+  CHECK_CLOSE(length(search::Mutation::non_uniform), reach / (1.0 + reach), 3e-3);  // 1 - u^reach
+}
+
 CHECK_CASE("uncrossed pairs: mates are selected, places are not") {
   GaOptions options;
   options.elite = 0;

@@ -82,6 +82,22 @@ CHECK_CASE("least squares: the units of the data change nothing") {
   }
 }
 
+CHECK_CASE("least squares: the units of a parameter change nothing") {
+  const Eigen::Vector3d unit(1e-12, 1.0, 1e12);
+  for (std::uint32_t trial = 0; trial < 100; ++trial) {
+    base::Random random(11, 0, 0, trial);
+    const Eigen::MatrixXd a = drawn(random, 12, 3);
+    const Eigen::VectorXd b = drawn(random, 12, 1);
+    const Eigen::VectorXd lower = drawn(random, 3, 1);
+    const Eigen::VectorXd upper = lower + 0.3 * (drawn(random, 3, 1).array() + 1.01).matrix();
+    const auto [g, h] = box(lower.cwiseQuotient(unit), upper.cwiseQuotient(unit));
+    const auto found = constrained_least_squares(a * unit.asDiagonal(), b, g, h);
+    CHECK_WITH(found.feasible, "trial " + std::to_string(trial));
+    const Eigen::VectorXd expected = box_reference(a, b, lower, upper);
+    CHECK_CLOSE((found.x.cwiseProduct(unit) - expected).norm(), 0.0, 1e-8);
+  }
+}
+
 CHECK_CASE("least squares: thin boxes, near the plain answer and far from it") {
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
     base::Random random(10, 0, 0, trial);

@@ -182,6 +182,36 @@ CHECK_CASE("motion: a joint that is turned round within a step gains what fine s
   CHECK_CLOSE(coarse.position, fine.position, 0.02 * std::fabs(fine.position));
 }
 
+CHECK_CASE("motion: bristles that a step resolves keep their energy") {
+  Joint joint;
+  joint.inertia = 2.0;
+  joint.bristles = true;
+  joint.bristle_stiffness = 2e4;  // without damping: it swings at 100 rad/s
+  joint.coulomb_positive = joint.coulomb_negative = 1e6;
+  Motion motion;
+  motion.velocity = 1e-3;
+  const double period = 4.0 * kHalfPi / 100.0;
+  motion = moved(joint, motion, 10.0 * period, 400, [](double) { return 0.0; });
+  const double left = motion.velocity * motion.velocity + 1e4 * motion.bristle * motion.bristle;
+  CHECK_CLOSE(left, 1e-6, 1e-9);
+}
+
+CHECK_CASE("motion: the friction of bristles follows the speed within a coarse step") {
+  Joint joint = thesis();
+  joint.weights.clear();
+  joint.bristles = true;
+  joint.bristle_stiffness = 2e3;
+  joint.bristle_damping = 50.0;
+  const auto push = [](double) { return 100.0; };
+  for (const double speed : {0.05, 0.2, 1.0}) {
+    Motion start;
+    start.velocity = speed;
+    start.bristle = 12.5 / joint.bristle_stiffness;
+    const double coarse = moved(joint, start, 0.04, 4, push).velocity;
+    CHECK_CLOSE(coarse, moved(joint, start, 0.04, 40'000, push).velocity, 1e-3);
+  }
+}
+
 CHECK_CASE("motion: stiff bristles do not blow up and hold the load") {
   Joint joint = thesis();
   joint.bristles = true;

@@ -286,6 +286,28 @@ CHECK_CASE("quadrature: directions apart add up to both") {
   CHECK_CLOSE(integral_of(identify::find_term("viscous_negative"), r), -0.245, 1e-5);
 }
 
+CHECK_CASE("quadrature: Coulomb friction of one direction is there in that direction alone") {
+  for (const double v : {0.7, -0.7}) {
+    const auto r = ramp(101, 2.0, v, 0.0);
+    const auto of = [&](const char* key) { return integral_of(identify::find_term(key), r); };
+    CHECK_CLOSE(of("coulomb_positive"), v > 0.0 ? 2.0 : 0.0, 1e-14);
+    CHECK_CLOSE(of("coulomb_negative"), v > 0.0 ? 0.0 : -2.0, 1e-14);
+  }
+}
+
+CHECK_CASE("quadrature: a sample at rest has no direction, wherever it stands in a window") {
+  for (const double side : {1.0, -1.0}) {
+    for (const Eigen::Index rest : {0, 4, 10}) {
+      auto r = ramp(11, 1.0, 0.5 * side, 0.0);
+      r.velocity[rest] = 0.0;
+      // Half of each interval beside it is without friction.
+      const double time = rest == 4 ? 0.9 : 0.95;
+      CHECK_CLOSE(integral_of(Integral::friction, r), side * time, 1e-14);
+      CHECK_CLOSE(friction_of(r, 3.0), side * time * std::exp(-0.75), 1e-14);
+    }
+  }
+}
+
 CHECK_CASE("quadrature: harmonics count turns of the joint or of the motor") {
   const auto r = ramp(20001, 2.0, 0.7, 0.0);
   const auto integral = [](double frequency) {

@@ -141,6 +141,43 @@ def test_a_slow_disk_does_not_delay_the_session(
     assert path.read_text().endswith('# jointid session {"stop": null}\n')
 
 
+def test_a_row_is_in_the_file_at_once(tmp_path: Path) -> None:
+    """Not before a flush is due: of several the quickest, as the machine stands still now and then."""
+    recorder = Recorder(tmp_path / "run.csv", {})
+    waits: list[float] = []
+    try:
+        for number in range(4):
+            recorder.sample((1e-3 * number, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0))
+            began = time.monotonic()
+            until(lambda: recorder.path.read_text().count("4.0,5.0,0.0\n") == len(waits) + 1)
+            waits.append(time.monotonic() - began)
+    finally:
+        recorder.close()
+    assert min(waits[1:]) < 0.5
+
+
+def test_rows_reach_the_disk_while_the_session_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Less than a second of them may be lost with the power; thrice that for a machine that stands still.
+    synced: list[Path] = []
+    sync = AppendedFile.sync
+
+    def watched(self: AppendedFile) -> None:
+        sync(self)
+        if threading.current_thread().name == "recorder disk":
+            synced.append(self.path)
+
+    monkeypatch.setattr(AppendedFile, "sync", watched)
+    began = time.monotonic()
+    recorder = Recorder(tmp_path / "run.csv", {})
+    try:
+        until(lambda: {recorder.path, recorder.log} <= set(synced))
+        assert time.monotonic() - began < 3.0
+    finally:
+        recorder.close()
+
+
 def test_files_and_folder_are_on_the_disk_before_the_motor_is_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -169,6 +206,26 @@ def full() -> Iterator[int]:
     descriptor = os.open("/dev/full", os.O_WRONLY)
     yield descriptor
     os.close(descriptor)
+
+
+@pytest.mark.parametrize(
+    ("name", "there", "said"),
+    [
+        ("run.txt", None, "a session writes .csv"),
+        ("none/run.csv", None, "its folder does not exist"),
+        ("run.csv", "run.csv", "a session overwrites nothing"),
+        ("run.csv", "run.log", "a session overwrites nothing"),
+    ],
+)
+def test_a_name_that_cannot_be_used_is_refused(
+    name: str, there: str | None, said: str, tmp_path: Path
+) -> None:
+    if there is not None:
+        (tmp_path / there).write_text("mine")
+    with pytest.raises(jid.InputError, match=said):
+        Recorder(tmp_path / name, {})
+    left = [each.name for each in tmp_path.iterdir()]
+    assert left == ([] if there is None else [there])
 
 
 @needs_full
@@ -209,6 +266,8 @@ def test_a_disk_that_fills_up_is_one_stop(
         files[path.suffix] = self.descriptor
 
     monkeypatch.setattr(AppendedFile, "__init__", noted)
+    # Linux's full device takes no sync either, and says so in other words: writing is to meet it first.
+    monkeypatch.setattr("jointid.hardware.session.recorder._SYNC", PATIENCE)
 
     cycles = 0
 

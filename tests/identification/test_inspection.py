@@ -228,6 +228,19 @@ def test_a_signal_is_fine_from_thirty_steps(steps: float, fine: bool) -> None:
     assert facts.fine == fine
 
 
+@pytest.mark.parametrize(("steps", "fine"), [(57.0, False), (61.0, True)])
+def test_between_two_middle_changes_a_signal_is_fine_by_their_mean(
+    steps: float, fine: bool
+) -> None:
+    """As many changes of one smallest step as of the others: the median is halfway."""
+    change = np.where(np.arange(3999) % 2 == 0, steps, 1.0)
+    change[0] = 0.0
+    signal = np.concatenate(
+        [[0.0], np.cumsum(change * np.where(np.arange(3999) % 4 < 2, 1.0, -1.0))]
+    )
+    assert seen(signal, _core.SpikeRule.other).facts[0].fine == fine
+
+
 def test_moving_is_faster_than_a_share_of_the_peak() -> None:
     signal = np.sin(7.0 * _WAVE)
     facts = seen(signal, _core.SpikeRule.other).facts[0]

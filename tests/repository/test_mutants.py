@@ -14,7 +14,7 @@ sys.path.insert(0, str(TOOLS))
 
 from mutants.catalogue import Mutant, MutantError, check_places, read  # noqa: E402
 from mutants.kept import Kept  # noqa: E402
-from mutants.page import complaints, summary, written  # noqa: E402
+from mutants.page import ASKED, complaints, row, summary, written  # noqa: E402
 from mutants.running import Verdict  # noqa: E402
 from mutants.switched_sources import SWITCH, switched  # noqa: E402
 
@@ -161,6 +161,27 @@ def test_a_justified_survivor_passes_and_stands_in_the_page() -> None:
     page = written(verdicts[1:], [verdicts[0].mutant])
     assert "| core | 11 | 9 | 0 | 1 | 0 | 1 |" in page
     assert "cpp/toy.cpp: `10` becomes `y` | the same |" in page
+
+
+def test_the_page_is_of_these_lists() -> None:
+    """A run writes it: after a list has changed there must be another."""
+    lines = (TOOLS.parent / "docs" / "mutants.md").read_text(encoding="utf-8").splitlines()
+    mutants = read()
+    rooms = {each.room for each in mutants}
+    counts = {
+        cells[1]: [int(cell) for cell in cells[2:-1]]
+        for cells in ([part.strip() for part in line.split("|")] for line in lines)
+        if len(cells) > 2 and cells[1] in {*rooms, "all"}
+    }
+    for room in rooms:
+        assert counts[room][0] == sum(each.room == room for each in mutants), room
+    total, killed, _, justified, survived, missing = counts["all"]
+    assert total == len(mutants) == killed + justified + survived + missing
+    assert survived == 0
+    assert killed >= ASKED * (total - missing)
+    said = [line for line in lines if line.startswith(("| cpp/", "| python/"))]
+    assert set(said) <= {row(each) for each in mutants if each.justified}
+    assert len(said) == justified
 
 
 TOY = """#include <cstdio>

@@ -82,11 +82,12 @@ def written(verdicts: Sequence[Verdict], untried: Sequence[Mutant] = ()) -> str:
     left = sorted(_left(verdicts), key=lambda each: not each.mutant.justified)
     if left:
         lines += ["", "## Those that no test notices", "", "| change | why |", "|---|---|"]
-        lines += [_row(each.mutant) for each in left]
+        lines += [row(each.mutant) for each in left]
     return "\n".join(lines) + "\n"
 
 
-def _row(mutant: Mutant) -> str:
+def row(mutant: Mutant) -> str:
+    """The line of one that no test notices."""
     was, becomes = (text.replace("|", "\\|") for text in (mutant.was, mutant.becomes))
     changed = f"`{was}` becomes `{becomes}`" if becomes else f"without `{was}`"
     return f"| {mutant.path}: {changed} | {mutant.justified or '**not justified**'} |"

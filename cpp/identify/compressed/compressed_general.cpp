@@ -22,8 +22,7 @@ void CompressedPenalty::build_general(const Penalty& penalty, const search::Doma
   const double* low = domain.lower.data() + coefficients_;
   const double* high = domain.upper.data() + coefficients_;
   for (const auto& one : shaped) {
-    if (one.term.basis == shaped.front().term.basis && one.shapes == shaped.front().shapes)
-      continue;
+    if (one.shapes == shaped.front().shapes) continue;
     reason_ = "its decaying terms have shapes of their own";
     return;
   }

@@ -128,7 +128,7 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
   const auto& shaped = penalty.shaped();
   const Eigen::Index p = penalty.coefficients();
   for (const auto& one : shaped) {
-    if (one.term.basis != shaped.front().term.basis || one.shapes != shaped.front().shapes) {
+    if (one.shapes != shaped.front().shapes) {  // each belongs to one decay
       reason = "its decaying terms have shapes of their own";
       return std::nullopt;
     }
