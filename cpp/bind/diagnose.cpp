@@ -20,12 +20,10 @@ diagnose::Signal signal(const Array& array) {
 }  // namespace
 
 void bind_diagnose(py::module_& m) {
-  py::native_enum<SpikeRule>(m, "SpikeRule", "enum.Enum",
-                             "What a spike of a signal is held against.")
-      .value("position", SpikeRule::position)
-      .value("command", SpikeRule::command)
-      .value("other", SpikeRule::other)
-      .finalize();
+  enumeration<SpikeRule>(m, "SpikeRule", "What a spike of a signal is held against.",
+                         {{"position", SpikeRule::position},
+                          {"command", SpikeRule::command},
+                          {"other", SpikeRule::other}});
   py::class_<Limit>(m, "Limit", "Samples at one of a signal's extremes.")
       .def_readonly("there", &Limit::there, "On it.")
       .def_readonly("moving", &Limit::moving, "On it while the joint moves.")

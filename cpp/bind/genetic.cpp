@@ -201,11 +201,10 @@ void bind_trials(py::module_& m) {
 }  // namespace
 
 void bind_genetic(py::module_& m) {
-  py::native_enum<Stop>(m, "Stop", "enum.Enum", "Why a search ended.")
-      .value("generations", Stop::generations)
-      .value("converged", Stop::converged)
-      .value("observer", Stop::observer)
-      .finalize();
+  enumeration<Stop>(m, "Stop", "Why a search ended.",
+                    {{"generations", Stop::generations},
+                     {"converged", Stop::converged},
+                     {"observer", Stop::observer}});
   bind_options(m);
   py::class_<Generation>(m, "Generation", "One generation, as the callback sees it.")
       .def_readonly("number", &Generation::number)

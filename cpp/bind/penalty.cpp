@@ -33,12 +33,10 @@ Penalty::Masked all_masked(const Recordings& recordings, bool mask_standstill, b
 }  // namespace
 
 void bind_penalty(py::module_& m) {
-  py::native_enum<Residual>(m, "Residual", "enum.Enum",
-                            "What a window's residual is compared with.")
-      .value("sensor", Residual::sensor)
-      .value("torque", Residual::torque)
-      .value("instruments", Residual::instruments)
-      .finalize();
+  enumeration<Residual>(m, "Residual", "What a window's residual is compared with.",
+                        {{"sensor", Residual::sensor},
+                         {"torque", Residual::torque},
+                         {"instruments", Residual::instruments}});
   py::class_<PenaltyFunction>(m, "PenaltyFunction",
                               "What every form of the penalty offers to a search.")
       .def(

@@ -64,10 +64,8 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
 }
 
 void bind_recording(py::module_& m) {
-  py::native_enum<Hold>(m, "Hold", "enum.Enum", "The torque signal between samples.")
-      .value("zero_order", Hold::zero_order)
-      .value("linear", Hold::linear)
-      .finalize();
+  enumeration<Hold>(m, "Hold", "The torque signal between samples.",
+                    {{"zero_order", Hold::zero_order}, {"linear", Hold::linear}});
   using Array = SharedRecording::Array;
   py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
       m, "Recording", "Signals of one run; arrays of floats are kept, not copied.")

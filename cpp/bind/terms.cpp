@@ -11,12 +11,10 @@ using identify::Shape;
 using identify::Term;
 
 void bind_terms(py::module_& m) {
-  py::native_enum<identify::Control>(m, "Control", "enum.Enum",
-                                     "What a model-based controller does about a term.")
-      .value("refused", identify::Control::refused)
-      .value("feedback", identify::Control::feedback)
-      .value("compensated", identify::Control::compensated)
-      .finalize();
+  enumeration<identify::Control>(m, "Control", "What a model-based controller does about a term.",
+                                 {{"refused", identify::Control::refused},
+                                  {"feedback", identify::Control::feedback},
+                                  {"compensated", identify::Control::compensated}});
   py::class_<Term>(m, "Term", "One term of the torque balance: a coefficient times a basis.")
       .def_readonly("key", &Term::key, "What a model lists; unique.")
       .def_readonly("name", &Term::name, "The parameter's name.")

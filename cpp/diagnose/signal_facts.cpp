@@ -83,9 +83,9 @@ JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
     const double slower = next < here ? next : here;
     const double near =
         x[i] - rules.lowest < rules.highest - x[i] ? x[i] - rules.lowest : rules.highest - x[i];
-    large += (step > 0.0) & (step / rules.smallest >= kFine) ? 1 : 0;
+    large += ((step > 0.0) & (step / rules.smallest >= kFine)) ? 1 : 0;
     moving += slower > rules.fair ? 1 : 0;
-    odd += (step == 0.0) | (near <= rules.close) ? 1 : 0;
+    odd += ((step == 0.0) | (near <= rules.close)) ? 1 : 0;
   }
   return {large, moving, odd};
 }

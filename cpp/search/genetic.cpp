@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "base/digits.hpp"
 #include "base/input_error.hpp"
 #include "search/breeder.hpp"
 
@@ -180,11 +180,10 @@ class Run {
                : !std::isfinite(again[0])) {
       return;
     }
-    std::ostringstream text;
-    text.precision(10);
-    text << "the state's best has penalty " << state_.penalty << " there and " << again[0]
-         << " here; it belongs to another recording, model or windows";
-    throw base::InputError(text.str(), "resume");
+    throw base::InputError("the state's best has penalty " + base::with_digits(state_.penalty, 10) +
+                               " there and " + base::with_digits(again[0], 10) +
+                               " here; it belongs to another recording, model or windows",
+                           "resume");
   }
 
   const Objective& objective_;

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <sstream>
+#include <string>
 #include <type_traits>
 
+#include "base/digits.hpp"
 #include "base/input_error.hpp"
 
 namespace jointid::search {
@@ -122,10 +123,16 @@ void require_whole(const GaState& s) {
 
 template <class Number>
 std::string difference(const std::string& what, Number then, Number now) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "resume: the state was made with " << what << " " << then << ", not " << now;
-  return text.str();
+  const auto shown = [](Number number) {
+    if constexpr (std::is_floating_point_v<Number>) {
+      return base::with_digits(number, 17);
+    } else if constexpr (std::is_integral_v<Number>) {
+      return std::to_string(number);
+    } else {
+      return std::string(number);
+    }
+  };
+  return "resume: the state was made with " + what + " " + shown(then) + ", not " + shown(now);
 }
 
 }  // namespace

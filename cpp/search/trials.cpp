@@ -15,12 +15,15 @@ std::int64_t budget(const GaOptions& options) {
   return std::int64_t{options.population} * options.islands * (options.generations + 1);
 }
 
-/// Longest first: the last ones then fill the gaps.
+/// Longest first: the last ones then fill the gaps. Of equal ones the first is first; a stable sort
+/// would need a buffer, which clang with an older library calls deprecated.
 std::vector<std::size_t> by_length(const std::vector<Trial>& trials) {
   std::vector<std::size_t> order(trials.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return budget(trials[a].options) > budget(trials[b].options);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const std::int64_t one = budget(trials[a].options);
+    const std::int64_t other = budget(trials[b].options);
+    return one == other ? a < b : one > other;
   });
   return order;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/choices.hpp"
+#include "base/digits.hpp"
 #include "base/require.hpp"
 #include "check.hpp"
 #include "model/joint.hpp"
@@ -46,6 +47,14 @@ CHECK_CASE("input error: an unknown word lists the known ones") {
 CHECK_CASE("input error: a sentence without argument or value is the reason") {
   CHECK(std::string(InputError("nothing moves").what()) == "nothing moves");
   CHECK(std::string(InputError("too long", "windows").what()) == "windows: too long");
+}
+
+CHECK_CASE("input error: numbers have so many digits as asked for, and no zeros behind") {
+  CHECK(base::with_digits(-2.5, 15) == "-2.5");
+  CHECK(base::with_digits(1e-14, 2) == "1e-14");
+  CHECK(base::with_digits(1.0 / 3.0, 10) == "0.3333333333");
+  CHECK(base::with_digits(0.1, 17) == "0.10000000000000001");
+  CHECK(base::with_digits(123456.0, 2) == "1.2e+05");
 }
 
 }  // namespace

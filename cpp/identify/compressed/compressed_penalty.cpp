@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include "base/clones.hpp"
+#include "base/digits.hpp"
 
 namespace jointid::identify {
 
@@ -187,11 +188,10 @@ void CompressedPenalty::compare(const Eigen::MatrixXd& found, const Eigen::Matri
                       difference.bottomRows(difference.rows() - size).maxCoeff() / scale);
   }
   exact_ = error_ <= kTolerance;
-  std::ostringstream text;
-  text.precision(2);
-  text << "the shapes' functions could not be interpolated to " << kTolerance << ": " << error_
-       << " is left after " << passes_ << " shapes";
-  reason_ = exact_ ? "" : text.str();
+  reason_ = exact_ ? ""
+                   : "the shapes' functions could not be interpolated to " +
+                         base::with_digits(kTolerance, 2) + ": " + base::with_digits(error_, 2) +
+                         " is left after " + std::to_string(passes_) + " shapes";
 }
 
 void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes,
