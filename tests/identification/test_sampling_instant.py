@@ -29,6 +29,7 @@ def with_sensor(run: jid.Recording, sensor: np.ndarray) -> jid.Estimate:
 def test_the_error_is_what_half_a_step_moves(run: jid.Recording) -> None:
     """The reading is taken before the step; halfway through it the link has half of its share."""
     assert run.sensor is not None
+    assert run.torque is not None
     share = LINK_INERTIA / (INERTIA + LINK_INERTIA) / TRUTH["sensor_gain"]
     half = 0.5 * share * np.diff(run.torque, prepend=run.torque[0])
     before, amid = with_sensor(run, run.sensor), with_sensor(run, run.sensor + half)
