@@ -44,10 +44,22 @@ def generate() -> str:
     for pattern, replacement in REWRITES:
         text = re.sub(pattern, replacement, text, flags=re.MULTILINE)
     text = re.sub(r"^class (\w+):\n(?:(?:    .*)?\n)*", keywords, text, flags=re.MULTILINE)
+    text = re.sub(
+        r"^class \w+\(enum\.Enum\):\n(?:(?:    .*)?\n)*", members, text, flags=re.MULTILINE
+    )
+    if "builtins." not in text:
+        text = text.replace("import builtins\n", "")
     formatter = [sys.executable, "-m", "ruff", "format", "--stdin-filename", str(STUB), "-"]
     return subprocess.run(
         formatter, input=HEADER + text, cwd=REPOSITORY, capture_output=True, text=True, check=True
     ).stdout
+
+
+def members(found: re.Match[str]) -> str:
+    """Write an enumeration without what Python's own class has: its head and text, and its members."""
+    head, text = re.match(r'(.*\n)((?:    """\n(?:    .*\n)*?    """\n)?)', found[0]).groups()  # type: ignore[union-attr]
+    names = re.findall(r"^    ([a-z]\w*) = \.\.\.$", found[0], flags=re.MULTILINE)
+    return head + text + "".join(f"    {name} = ...\n" for name in names) + "\n"
 
 
 def keywords(found: re.Match[str]) -> str:

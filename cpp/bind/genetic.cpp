@@ -1,5 +1,7 @@
 #include "search/genetic.hpp"
 
+#include <utility>
+
 #include "bind/bind.hpp"
 #include "bind/choices.hpp"
 #include "identify/penalty/penalty_function.hpp"

@@ -1,5 +1,7 @@
 #include "identify/penalty/penalty.hpp"
 
+#include <utility>
+
 #include "bind/recording.hpp"
 #include "diagnose/ripple.hpp"
 #include "identify/compressed/compressed_penalty.hpp"

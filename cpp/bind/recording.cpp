@@ -1,6 +1,7 @@
 #include "bind/recording.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include "identify/recording/windows.hpp"
 

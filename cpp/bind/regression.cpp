@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "bind/recording.hpp"
 #include "identify/solve/clustered.hpp"
@@ -75,7 +78,7 @@ void bind_regression(py::module_& m) {
           throw std::invalid_argument("cuts, residual and whitening must fit the Jacobian");
         }
         const py::gil_scoped_release nogil;
-        const Eigen::MatrixXd rows = whitening * jacobian.transpose();
+        const Eigen::MatrixXd rows = identify::whitened_rows(jacobian, whitening);
         std::vector<Clustered> found;
         for (const auto& each : cuts) {
           found.push_back(identify::cluster(rows, residual, whitening, each));
@@ -92,7 +95,8 @@ void bind_regression(py::module_& m) {
           throw std::invalid_argument("residual and whitening must fit the Jacobian");
         }
         const py::gil_scoped_release nogil;
-        return identify::variances_of_rows(whitening * jacobian.transpose(), residual, whitening);
+        return identify::variances_of_rows(identify::whitened_rows(jacobian, whitening), residual,
+                                           whitening);
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("whitening"),
       "White's sandwich: each row a cluster.");

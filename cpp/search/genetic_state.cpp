@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "base/digits.hpp"
 #include "base/input_error.hpp"

@@ -83,7 +83,7 @@ CHECK_CASE("least squares: the units of the data change nothing") {
 }
 
 CHECK_CASE("least squares: the units of a parameter change nothing") {
-  const Eigen::Vector3d unit(1e-12, 1.0, 1e12);
+  const Eigen::VectorXd unit{{1e-12, 1.0, 1e12}};
   for (std::uint32_t trial = 0; trial < 100; ++trial) {
     base::Random random(11, 0, 0, trial);
     const Eigen::MatrixXd a = drawn(random, 12, 3);

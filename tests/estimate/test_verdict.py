@@ -241,7 +241,7 @@ def test_motion_in_one_direction_compensates_nothing() -> None:
     assert [found.parameters[name].stderr for name in merged] == [np.inf, np.inf]
     assert found.verdict.uses["compensation"].level == "not usable"
     assert found.verdict.uses["simulation"].level == "not usable"
-    assert "needs coulomb and sensor_offset" in found.verdict.reasons[0]
+    assert "need coulomb and sensor_offset" in found.verdict.reasons[0]
     assert judged(found, parameters=["viscous"]).uses["compensation"].level == "usable with care"
 
 

@@ -143,12 +143,12 @@ def test_a_signal_has_the_samples_of_the_log_where_a_delay_is_taken_away(
     source = estimates["other axis"].follow_up
     assert isinstance(source, EstimateSource)
     recording = source.given[0]
-    late = jid.identify(recording, jid.thesis_joint(), search="separable", shift={"torque": 0.004})
+    late = jid.identify(recording, jid.thesis_joint(), search="separable", shift={"torque": -0.004})
     inner = late.follow_up
     assert isinstance(inner, EstimateSource)
     assert len(inner.problem.recordings[0]) < len(recording)
     axis = np.sin(5.3 * recording.time + 0.7)
-    axis[:2] = axis[-6:] = 1e6  # left out, as the samples are
+    axis[:4] = 1e6  # left out, as the samples are
     (found, *_) = [each for each in late.causes({"axis 2": axis}).found if each.detail == "axis 2"]
     assert found.name == "other_signal"
 

@@ -51,6 +51,8 @@ def written(verdicts: Sequence[Verdict], untried: Sequence[Mutant] = ()) -> str:
     rooms = sorted({each.mutant.room for each in verdicts} | {each.room for each in untried})
     minutes = sum(each.seconds for each in verdicts) / 60.0
     named = [each for each in verdicts if each.mutant.named]
+    skipped = sum(each.named for each in untried)
+    dead = sum(each.killed for each in named)
     lines = [
         "# Mutants",
         "",
@@ -63,9 +65,9 @@ def written(verdicts: Sequence[Verdict], untried: Sequence[Mutant] = ()) -> str:
         "ends and says so. C++ is compiled once, with all mutants in it, and a number in the environment chooses one.",
         "CI tries those that are marked `ci`.",
         "",
-        f"**{summary(verdicts)}** ({minutes:.0f} minutes on one processor, without the compiler's). Of "
-        f"{len(named)} places that",
-        f"survived when mutants were first tried by hand, {sum(each.killed for each in named)} die now.",
+        f"Of {len(verdicts) + len(untried)} mutants in the lists these were tried: **{summary(verdicts)}**",
+        f"({minutes:.0f} minutes on one processor, without the compiler's). Of {len(named) + skipped} places",
+        f"that survived when mutants were first tried by hand, {dead} die now and {skipped} were not tried again.",
         "",
         "| list | mutants | killed | of these without an end | justified | survived | not tried |",
         "|---|---:|---:|---:|---:|---:|---:|",

@@ -62,12 +62,12 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
         fill(from, static_cast<std::size_t>(to - from), values.data());
       }
       const auto stop = std::min(windows[w].end, to);
-      const double* value = values.data() - from;
+      const double* value = values.data() + (k - from);
       if (all) {
-        for (; k < stop; ++k) sum += value[k];
+        for (; k < stop; ++k) sum += *value++;
       } else {
-        for (; k < stop; ++k) {
-          if (usable[static_cast<std::size_t>(k)] != 0) sum += value[k];
+        for (; k < stop; ++k, ++value) {
+          if (usable[static_cast<std::size_t>(k)] != 0) sum += *value;
         }
       }
     }
@@ -306,7 +306,7 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
   for (const auto& window : windows) {
     const auto count = static_cast<std::size_t>(window.end - window.begin);
     const double direction = count <= kShort ? common_sign(r.velocity, window) : 0.0;
-    if (direction != 0.0 && whole(window)) {
+    if (direction != 0.0 && count > 0 && whole(window)) {
       if (made + count + 1 > kBlock) store();
       whole_nodes(r.time.data() + window.begin, r.velocity.data() + window.begin, count, direction,
                   speeds.data() + made, weights.data() + made);

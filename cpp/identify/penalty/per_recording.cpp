@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "identify/penalty/penalty.hpp"

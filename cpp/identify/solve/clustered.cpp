@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cstddef>
 
 namespace jointid::identify {
 
@@ -16,6 +17,10 @@ constexpr double kLeast = 0.05;
 
 }  // namespace
 
+MatrixXd whitened_rows(const Eigen::Ref<const MatrixXd>& jacobian, const MatrixXd& whitening) {
+  return whitening * jacobian.transpose();
+}
+
 Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd& whitening,
                   const std::vector<std::int64_t>& cuts) {
   const auto count = static_cast<Index>(cuts.size()) - 1;
@@ -24,6 +29,8 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
   Clustered result;
   result.segments = count;
   result.covariance.setZero(parameters, parameters);
+  result.freedom = VectorXd::Ones(parameters);
+  if (rows.rows() == 0) return result;  // nothing is determined
   VectorXd even = VectorXd::Zero(parameters);
   double pooled = 0.0;
   Eigen::SelfAdjointEigenSolver<MatrixXd> solver(rows.rows());

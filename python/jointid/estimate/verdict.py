@@ -139,8 +139,10 @@ def judged(
     Not usable: a blocking finding, a parameter asked for whose self-test fails, or less
     than 90 % of the windows' variance explained by the model and a cause that a finding names (of held-out torque
     where the model was chosen by it; neither counts where the windows are explained worse than by their mean and more
-    than 10 % of their squares are left); for compensation and simulation also friction or a sensor's value without a
-    finite error; for simulation also an inertia on its bound, or an undetermined one whose 95 % interval reaches zero.
+    than 10 % of their squares are left); for compensation and simulation also friction or a sensor's value that
+    `undetermined` names and that has no finite error (where friction differs by direction, offset and directional
+    Coulomb frictions have none for any motion, and need none); for simulation also an inertia on its bound, or an
+    undetermined one whose 95 % interval reaches zero.
     Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is larger than everything else
     together. Usable: else.
 
@@ -288,7 +290,8 @@ def _inseparable(
     if merged:
         yield Objection(
             code="undetermined",
-            reason=f"compensation needs {' and '.join(merged)}, of which this recording determines no single value",
+            reason=f"compensation and simulation need {' and '.join(merged)}, of which this recording determines no "
+            "single value",
             blocking=True,
             parameters=merged,
         )

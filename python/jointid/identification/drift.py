@@ -47,7 +47,7 @@ def without_drift(
         return None
     from jointid.identification.causes.causes import attributed
 
-    first = attributed(problem, penalty, estimate, {}).found[:1]
+    first = attributed(problem, penalty, estimate, {}, problem.recordings[0].time).found[:1]
     cause = first[0] if first else None
     if cause is None or cause.name != "drift" or cause.share < _SHARE or cause.alike:
         return None

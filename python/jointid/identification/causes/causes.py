@@ -118,9 +118,8 @@ def cause_of(
             coefficients=-steps[len(fit.free) :],
             shifts=steps[: len(fit.free)],
         )
-        more: dict[str, float] | None = None
-        if removed and size is not None:
-            more = fit.errors_beside(size * each.columns[:, 0])
+        beside = removed and size is not None
+        more = fit.errors_beside((size or 0.0) * each.columns[:, 0]) if beside else None
         return _cause(fit, found, parameters, torque_level, {}, _LEAST_OF_MEASURED, more=more)
     return None
 
@@ -146,21 +145,11 @@ def attributed(
     penalty: _core.Penalty,
     estimate: Estimate,
     signals: Mapping[str, ArrayLike],
-    times: Array | None = None,
+    times: Array,
 ) -> Causes:
     """Attribute the misfit of an estimate, with further signals of its recording.
 
-    Parameters
-    ----------
-    problem : Problem
-        As it was fitted.
-    penalty : Penalty
-    estimate : Estimate
-    signals : mapping of str to array-like
-        One value a sample each.
-    times : ndarray, shape (samples,), optional
-        Of the samples that the signals have [s]. Default: those of the problem's recording, which may be fewer than
-        were recorded: where a delay was taken away, samples at the edges are left out.
+    They have a value at each of `times` [s], the recorded ones, or at each that was fitted.
 
     Raises
     ------
@@ -173,14 +162,12 @@ def attributed(
             argument="signals",
             value=list(signals),
         )
-    fitted = problem.recordings[0].time
-    times = fitted if times is None else times
-    length = len(times)
-    kept = np.searchsorted(times, fitted)
+    fitted = problem.recordings[0].time  # without samples at the edges where a delay is taken away
+    length, kept = len(times), np.searchsorted(times, fitted)
     found = {}
     for name, values in signals.items():
         series = np.asarray(values, dtype=np.float64)
-        if series.shape != (length,):
+        if series.shape not in ((length,), (len(fitted),)):
             raise InputError(
                 f"one value for each of the {length} samples is expected",
                 argument=f"signals.{name}",
@@ -193,7 +180,7 @@ def attributed(
                 argument=f"signals.{name}",
                 value=float(series[wrong[0]]),
             )
-        found[name] = series[kept]
+        found[name] = series if len(series) == len(fitted) else series[kept]
     torque = np.asarray(penalty.target) / np.asarray(penalty.usable_duration)
     return find_causes(
         problem,

@@ -69,14 +69,17 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     variance = float(np.einsum("i,i->", residual, residual)) / freedom
     unit = np.einsum("rp,rp->p", whitening, whitening)
     classical = np.where(unit * variance > 0.0, unit * variance, 1.0)
+    known = Stretch(
+        ratio=np.ones(unit.size), freedom=np.full(unit.size, float(freedom)), white=True
+    )
+    if directions == 0 or variance <= 0.0:
+        return known
     clusterings = _core.clustered(
         jacobian, residual, whitening, [cuts.tolist() for cuts in segments.cuts]
     )
     count = min(each.segments for each in clusterings)
-    if variance <= 0.0 or count < 3:
-        return Stretch(
-            ratio=np.ones(unit.size), freedom=np.full(unit.size, float(freedom)), white=True
-        )
+    if count < 3:
+        return known
     pooled = float(np.mean([each.size for each in clusterings])) / (directions * variance)
     pooled_freedom = float(np.mean([each.pooled_freedom for each in clusterings]))
     if not _contradicted(residual, pooled, pooled_freedom):
