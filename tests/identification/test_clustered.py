@@ -39,3 +39,10 @@ def test_a_share_that_changes_from_segment_to_segment_is_found() -> None:
             refused[size] += bool(spread.freedom[0] < 0.5 * ROWS)
     assert refused[0.0] <= 0.05 * trials
     assert refused[0.2] >= 0.5 * trials
+
+
+def test_columns_of_zeros_determine_no_direction() -> None:
+    """Friction of a direction in which the joint never moves: no error, and nothing to take apart."""
+    noise = np.random.default_rng(5).normal(size=ROWS)
+    spread = spread_of(np.zeros((ROWS, 2)), noise, 8)
+    assert np.isinf(spread.stderr).all()

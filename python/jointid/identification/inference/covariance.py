@@ -157,7 +157,7 @@ def parameter_covariance(
     centred /= np.where(centred_norms > 0.0, centred_norms, 1.0)
     _, values, vectors = np.linalg.svd(centred, full_matrices=False)
     # A floor, so that two identical columns are fully correlated.
-    inverse = 1.0 / np.maximum(values, 1e-12 * values[0] + 1e-300)
+    inverse = 1.0 / np.maximum(values, 1e-12 * values[0] + 1e-150)
     spread = (vectors.T * inverse**2) @ vectors
     deviation = np.sqrt(np.diag(spread))
     correlation = np.clip(spread / np.outer(deviation, deviation), -1.0, 1.0)
