@@ -279,13 +279,11 @@ def _inseparable(
 
     Where friction differs by direction, an offset is one quantity with it for any motion, and need not be separated.
     """
+    doubted = friction & _doubted(estimate) & frozenset(asked)
     merged = tuple(
         name
         for name, p in estimate.parameters.items()
-        if name in friction & _doubted(estimate)
-        and name in asked
-        and p.stderr is not None
-        and math.isinf(p.stderr)
+        if name in doubted and p.stderr is not None and math.isinf(p.stderr)
     )
     if merged:
         yield Objection(
