@@ -1,6 +1,7 @@
 #pragma once
-// Four doubles side by side, for extremes: compilers vectorise sums in lanes, but not the smaller
-// and the larger of two. All by reference, since vectors as arguments depend on the host's width.
+// Four doubles side by side, for what compilers leave scalar: the smaller and the larger of two,
+// lanes that live through a loop. All by reference, since vectors as arguments depend on the
+// host's width.
 
 #include <array>
 #include <cmath>
@@ -16,7 +17,25 @@ inline constexpr std::size_t kFour = 4;
 #if defined(__GNUC__)
 using Four = double __attribute__((vector_size(32)));
 #else
-using Four = std::array<double, kFour>;
+struct Four {
+  double lane[kFour];
+  double operator[](std::size_t l) const { return lane[l]; }
+  double& operator[](std::size_t l) { return lane[l]; }
+  double* begin() { return lane; }
+  double* end() { return lane + kFour; }
+};
+inline Four operator+(const Four& a, const Four& b) {
+  return {{a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}};
+}
+inline Four operator-(const Four& a, const Four& b) {
+  return {{a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]}};
+}
+inline Four operator*(const Four& a, const Four& b) {
+  return {{a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]}};
+}
+inline Four operator*(const Four& a, double factor) {
+  return {{a[0] * factor, a[1] * factor, a[2] * factor, a[3] * factor}};
+}
 #endif
 
 /// All of them one value.
@@ -28,13 +47,26 @@ using Four = std::array<double, kFour>;
   std::memcpy(&four, x, sizeof four);
 }
 
+[[gnu::always_inline]] inline void store(double* x, const Four& four) {
+  std::memcpy(x, &four, sizeof four);
+}
+
 /// to -> to - from.
 [[gnu::always_inline]] inline void subtract(Four& to, const Four& from) {
-#if defined(__GNUC__)
   to = to - from;
-#else
-  for (std::size_t l = 0; l < kFour; ++l) to[l] = to[l] - from[l];
-#endif
+}
+
+/// Adds to four numbers in memory.
+[[gnu::always_inline]] inline void add_to(double* x, const Four& four) {
+  Four sum;
+  load(sum, x);
+  sum = sum + four;
+  store(x, sum);
+}
+
+/// ((0 + 1) + (2 + 3)).
+[[gnu::always_inline]] inline double sum_of(const Four& four) {
+  return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
 [[gnu::always_inline]] inline void take_size(Four& four) {

@@ -12,9 +12,7 @@ namespace {
 /// products[j] of a column with `count` others, `stride` apart.
 JOINTID_CLONES void multiply(const double* column, const double* others, std::size_t stride,
                              std::size_t count, std::size_t rows, double* products) {
-  for (std::size_t j = 0; j < count; ++j) {
-    products[j] = inner_product(column, others + j * stride, rows);
-  }
+  inner_products(column, others, stride, count, rows, products);
 }
 
 JOINTID_CLONES void subtract(const double* columns, std::size_t stride, const double* coefficients,

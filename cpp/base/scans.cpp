@@ -101,6 +101,25 @@ JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::si
   return found;
 }
 
+JOINTID_CLONES std::size_t one_sided(const double* x, std::size_t count) {
+  const double side = x[0] > 0.0 ? 1.0 : -1.0;
+  std::size_t i = 0;
+  constexpr std::size_t kTogether = 4 * kFour;
+  for (; i + kTogether <= count; i += kTogether) {
+    Four low;
+    fill(low, kNone);
+    for (std::size_t k = 0; k < kTogether; k += kFour) {
+      Four here;
+      load(here, x + i + k);
+      here = here * side;
+      lower(low, here);
+    }
+    if (!(least_of(low) > 0.0)) break;
+  }
+  while (i < count && side * x[i] > 0.0) ++i;
+  return i;
+}
+
 JOINTID_CLONES bool all_finite(const double* x, std::size_t count) {
   std::array<double, 8> sum{};
   std::size_t i = 0;

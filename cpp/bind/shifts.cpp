@@ -26,8 +26,9 @@ signals::Signal signal(const Array& array) {
 signals::Middles middles_of(const Indices& middles, const Array& signal, const Array& weight) {
   signals::Middles result(middles.data(), middles.data() + middles.size());
   const auto half = static_cast<std::int64_t>(weight.size()) / 2;
+  const auto last = static_cast<std::int64_t>(signal.size()) - 1 - half;
   for (const auto middle : result) {
-    if (middle < half || middle + half >= static_cast<std::int64_t>(signal.size())) {
+    if (middle < half || middle > last) {
       throw std::invalid_argument("a window reaches beyond the signal");
     }
   }

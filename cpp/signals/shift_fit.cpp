@@ -119,24 +119,32 @@ class Projection {
 /// Rates of a fitted signal, from neighbouring windows; zero beside a window left out.
 class Rates {
  public:
-  explicit Rates(const ShiftRows& rows) : rows_(rows) {}
-
-  void of(const VectorXd& level, Eigen::Ref<VectorXd> rate) const {
+  explicit Rates(const ShiftRows& rows) : factor_(VectorXd::Zero(rows.columns.rows())) {
     Index row = 0;
-    for (const auto& each : rows_.stretches) {
+    for (const auto& each : rows.stretches) {
       const double factor = 1.0 / (2.0 * static_cast<double>(each.stride) * each.period);
+      bool before = false;
       for (std::size_t i = 0; i < each.kept.size(); ++i) {
-        if (!each.kept[i]) continue;
-        const bool inside =
-            i > 0 && i + 1 < each.kept.size() && each.kept[i - 1] && each.kept[i + 1];
-        rate[row] = inside ? (level[row + 1] - level[row - 1]) * factor : 0.0;
-        ++row;
+        const bool here = each.kept[i];
+        if (here) {
+          if (before && i + 1 < each.kept.size() && each.kept[i + 1]) factor_[row] = factor;
+          ++row;
+        }
+        before = here;
       }
     }
   }
 
+  void of(const VectorXd& level, Eigen::Ref<VectorXd> rate) const {
+    const Index inner = level.size() - 2;  // the first and the last row have no two neighbours
+    rate[0] = 0.0;
+    rate[inner + 1] = 0.0;
+    rate.segment(1, inner) =
+        (level.tail(inner) - level.head(inner)).cwiseProduct(factor_.segment(1, inner));
+  }
+
  private:
-  const ShiftRows& rows_;
+  VectorXd factor_;  ///< of the difference of both neighbours; 0 where one of them is left out
 };
 
 /// The number of the piece of motion that each row belongs to.

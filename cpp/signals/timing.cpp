@@ -60,6 +60,44 @@ JOINTID_CLONES double largest_speed(const double* time, const double* position, 
   return *std::max_element(most.begin(), most.end());
 }
 
+// Intervals looked at together, and their neighbours: those of the third differences' ends.
+constexpr std::size_t kBlock = 1024;
+
+/// Of the intervals about which an error of the time stamp shows.
+struct Intervals {
+  std::array<double, kBlock + 2> travelled;  ///< beside the speed times a wrong stamp
+  std::array<double, kBlock + 2> speed;      ///< its size
+  std::array<double, kBlock + 2> odd;        ///< 1 where the interval is no ordinary one
+  std::array<double, kBlock> rough;          ///< third differences, from the second interval on
+  std::array<double, kBlock> usual;          ///< the speed; NaN where one of three is odd
+};
+
+/// From `kReach` samples before the first interval on; `count` third differences.
+JOINTID_CLONES void look_at(const double* time, const double* position, double period,
+                            double stamped, std::size_t count, Intervals& result) {
+  const double* t = time + kReach;
+  const double* x = position + kReach;
+  constexpr auto kWide = static_cast<std::size_t>(2 * kReach);
+  for (std::size_t i = 0; i < count + 2; ++i) {
+    const double late = t[i + 1] - t[i] - period;
+    const double speed = (position[i + kWide] - position[i]) / (time[i + kWide] - time[i]);
+    result.travelled[i] = x[i + 1] - x[i] - stamped * speed * late;
+    result.speed[i] = std::fabs(speed);
+    result.odd[i] = std::fabs(late) < 2.5 * period ? 0.0 : 1.0;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* here = result.travelled.data() + i + 1;
+    result.rough[i] = std::fabs((here[1] - here[0]) - (here[0] - here[-1]));
+    const double odd = result.odd[i] + result.odd[i + 1] + result.odd[i + 2];
+    result.usual[i] = odd == 0.0 ? result.speed[i + 1] : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+JOINTID_CLONES void divide(const double* above, const double* below, std::size_t count,
+                           double* result) {
+  for (std::size_t i = 0; i < count; ++i) result[i] = above[i] / below[i];
+}
+
 double median(const std::vector<double>& values) {
   return base::quantile(values.size(), values.size(), 0.5, [&](std::size_t i, double& out) {
     out = values[i];
@@ -81,12 +119,6 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
                            const base::Cancel* cancel) {
   const Eigen::Index intervals = time.size() - 1;
   if (intervals < static_cast<Eigen::Index>(kFewest)) return {};
-  const auto speed = [&](Eigen::Index k) {  // about interval k
-    return (position[k + kReach] - position[k - kReach]) / (time[k + kReach] - time[k - kReach]);
-  };
-  const auto whole = [&](Eigen::Index k) {
-    return std::fabs(time[k + 1] - time[k] - period) < 2.5 * period;
-  };
   const auto parts = stretches(intervals);
   double smallest = std::numeric_limits<double>::infinity();
   double peak = 0.0;
@@ -98,41 +130,43 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
     peak = std::max(peak, largest_speed(time.data() + first, position.data() + first,
                                         static_cast<std::size_t>(part.end - first - 2 * kReach)));
   }
+  Intervals seen;
   std::vector<double> of_time;
   std::vector<double> fast;
   std::vector<double> slow;
   std::vector<double> speeds;
+  std::size_t most = 0;
+  for (const auto& part : parts) most += static_cast<std::size_t>(part.end - part.begin);
   const auto error_of = [&](double stamped) {
-    of_time.clear();
-    fast.clear();
-    slow.clear();
-    speeds.clear();
+    fast.resize(most);
+    slow.resize(most);
+    speeds.resize(most);
+    std::size_t quick = 0;
+    std::size_t still = 0;
     for (const auto& part : parts) {
-      if (cancel != nullptr) cancel->check();
-      const auto travelled = [&](Eigen::Index k) {
-        return position[k + 1] - position[k] -
-               stamped * speed(k) * (time[k + 1] - time[k] - period);
-      };
-      const Eigen::Index first = part.begin + kReach;
-      if (part.end - first <= kReach) continue;
-      double before = travelled(first);
-      double here = travelled(first + 1);
-      for (Eigen::Index k = first + 1; k + kReach < part.end; ++k) {
-        const double after = travelled(k + 1);
-        const double rough = std::fabs((after - here) - (here - before));
-        before = here;
-        here = after;
-        if (!(whole(k - 1) && whole(k) && whole(k + 1))) continue;
-        const double now = std::fabs(speed(k));
-        if (now > kFast * peak) {
-          of_time.push_back(rough / now);
-          fast.push_back(rough);
-          speeds.push_back(now);
-        } else if (now < kSlow * peak) {
-          slow.push_back(rough);
+      // Third differences need one interval more on either side.
+      const Eigen::Index last = part.end - kReach;
+      for (Eigen::Index k = part.begin + kReach + 1; k < last;) {
+        if (cancel != nullptr) cancel->check();
+        const auto count = std::min(kBlock, static_cast<std::size_t>(last - k));
+        look_at(time.data() + (k - 1 - kReach), position.data() + (k - 1 - kReach), period, stamped,
+                count, seen);
+        for (std::size_t i = 0; i < count; ++i) {  // without a branch: each is written, few kept
+          const double now = seen.usual[i];
+          fast[quick] = seen.rough[i];
+          speeds[quick] = now;
+          slow[still] = seen.rough[i];
+          quick += now > kFast * peak ? 1 : 0;
+          still += now < kSlow * peak ? 1 : 0;
         }
+        k += static_cast<Eigen::Index>(count);
       }
     }
+    fast.resize(quick);
+    slow.resize(still);
+    speeds.resize(quick);
+    of_time.resize(quick);
+    divide(fast.data(), speeds.data(), quick, of_time.data());
     if (fast.size() < kFewest) return 0.0;
     const double error = kNormal * median(of_time) / std::sqrt(kThird);
     // Two of four medians need only be held against a limit, which counting does.

@@ -106,18 +106,47 @@ JOINTID_CLONES void sum_rows(const double* rows, const double* weight, std::size
   for (std::size_t c = 0; c < kColumns; ++c) result[c] = sum[c];
 }
 
+/// Sums of `width` weighted samples from each of the firsts on. Windows are short: four of them
+/// share what a loop costs.
+void sum_windows(const double* signal, const double* weight, std::size_t width,
+                 const std::int64_t* first, std::size_t count, double* result) {
+  std::size_t w = 0;
+  for (; w + 4 <= count; w += 4) {
+    const double* one = signal + first[w];
+    const double* two = signal + first[w + 1];
+    const double* three = signal + first[w + 2];
+    const double* four = signal + first[w + 3];
+    double a = 0.0;
+    double b = 0.0;
+    double c = 0.0;
+    double d = 0.0;
+    for (std::size_t k = 0; k < width; ++k) {
+      const double factor = weight[k];
+      a += factor * one[k];
+      b += factor * two[k];
+      c += factor * three[k];
+      d += factor * four[k];
+    }
+    result[w] = a;
+    result[w + 1] = b;
+    result[w + 2] = c;
+    result[w + 3] = d;
+  }
+  for (; w < count; ++w) {
+    const double* x = signal + first[w];
+    double sum = 0.0;
+    for (std::size_t k = 0; k < width; ++k) sum += weight[k] * x[k];
+    result[w] = sum;
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd window_means(const Signal& signal, const Signal& weight, const Middles& middles) {
-  const Eigen::Index half = weight.size() / 2;
   Eigen::VectorXd result(static_cast<Eigen::Index>(middles.size()));
-  Eigen::Index to = 0;
-  for (const auto middle : middles) {
-    const double* x = signal.data() + (middle - half);
-    double sum = 0.0;
-    for (Eigen::Index k = 0; k < weight.size(); ++k) sum += weight[k] * x[k];
-    result[to++] = sum;
-  }
+  sum_windows(signal.data() - weight.size() / 2, weight.data(),
+              static_cast<std::size_t>(weight.size()), middles.data(), middles.size(),
+              result.data());
   return result;
 }
 

@@ -28,15 +28,16 @@ Eigen::MatrixXd scattered(Eigen::Index rows, Eigen::Index columns) {
 
 CHECK_CASE("columns: the triangle has the columns' inner products") {
   for (const Eigen::Index rows : {1, 3, 5, 8, 37, 400}) {
-    Eigen::MatrixXd matrix = scattered(rows, 5);
+    constexpr Eigen::Index kColumns = 11;  // two times four, and three more
+    Eigen::MatrixXd matrix = scattered(rows, kColumns);
     matrix.col(3).setZero();
     matrix.col(1) *= 1e-9;
     const Eigen::MatrixXd products = matrix.transpose() * matrix;
     const Eigen::MatrixXd triangle = base::triangle_of(matrix);
-    CHECK(triangle.rows() == std::min<Eigen::Index>(rows, 5));
+    CHECK(triangle.rows() == std::min<Eigen::Index>(rows, kColumns));
     const Eigen::MatrixXd found = triangle.transpose() * triangle;
-    for (Eigen::Index j = 0; j < 5; ++j) {
-      for (Eigen::Index i = 0; i < 5; ++i) {
+    for (Eigen::Index j = 0; j < kColumns; ++j) {
+      for (Eigen::Index i = 0; i < kColumns; ++i) {
         const double size = std::sqrt(products(i, i) * products(j, j));
         CHECK_CLOSE(found(i, j), products(i, j), 1e-14 * size);
       }
@@ -92,6 +93,35 @@ CHECK_CASE("scans: extremes of samples and steps, wherever they lie") {
       CHECK(steps.positive == least);
       CHECK(steps.any == (place > 0 ? 0.0 : least));
       CHECK(base::largest_height(x.data(), 1, 21) == height);
+    }
+  }
+}
+
+CHECK_CASE("scans: the samples of one sign end at the first other one, wherever it lies") {
+  for (const double side : {1.0, -1.0}) {
+    for (const std::size_t count : {1U, 3U, 16U, 37U}) {
+      std::vector<double> x(count, 0.5 * side);
+      CHECK(base::one_sided(x.data(), count) == count);
+      for (std::size_t place = 0; place < count; ++place) {
+        for (const double other : {0.0, -0.0, -1e-300 * side}) {
+          auto changed = x;
+          changed[place] = other;
+          // The first sample tells the sign, if it has one.
+          const bool alone = place == 0 && other != 0.0;
+          CHECK(base::one_sided(changed.data(), count) == (alone ? 1 : place));
+        }
+      }
+    }
+  }
+}
+
+CHECK_CASE("columns: an inner product has the same bits alone and beside three others") {
+  for (const Eigen::Index rows : {1, 7, 8, 29, 400}) {
+    const Eigen::MatrixXd matrix = scattered(rows, 12);
+    const Eigen::VectorXd together = base::products(matrix, matrix.col(0));
+    for (Eigen::Index j = 0; j < 12; ++j) {
+      const Eigen::VectorXd alone = base::products(matrix.middleCols(j, 1), matrix.col(0));
+      CHECK(alone[0] == together[j]);
     }
   }
 }

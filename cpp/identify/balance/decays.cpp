@@ -8,6 +8,7 @@
 
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
+#include "base/four.hpp"
 
 namespace jointid::identify {
 
@@ -29,7 +30,7 @@ JOINTID_CLONES void powers(const double* speed, double exponent, std::size_t cou
   }
 }
 
-constexpr std::size_t kNodes = 12;  // of a run, at most
+constexpr std::size_t kNodes = 12;  // of a run, at most; three vectors of four
 constexpr std::size_t kDegree = 24;
 
 /// Neighbouring nodes of a window, whose speeds are alike: weight exp(-rate x) is summed over them
@@ -49,7 +50,20 @@ constexpr std::array<double, kDegree + 1> kInverseFactorials = [] {
   return result;
 }();
 
-JOINTID_CLONES void take_moments(const double* x, const double* weight, Run& run) {
+/// As many terms as leave y^(d+1) / (d+1)! below 2^-54, beside the largest decay of a run; kNone
+/// where there are not that many.
+constexpr std::size_t kNone = kDegree + 1;
+std::size_t degree_at(double y) {
+  if (y <= 5.8e-3) return 5;
+  if (y <= 0.107) return 9;
+  if (y <= 0.41) return 13;
+  if (y <= 1.1) return 18;
+  return y <= 2.5 ? kDegree : kNone;
+}
+
+/// The moments up to `degree`: the series of no group of rates has more terms.
+JOINTID_CLONES void take_moments(const double* x, const double* weight, std::size_t degree,
+                                 Run& run) {
   std::array<double, kNodes> place{};
   std::array<double, kNodes> power{};
   // A range that is next to nothing has no inverse; its nodes lie in the middle.
@@ -58,19 +72,22 @@ JOINTID_CLONES void take_moments(const double* x, const double* weight, Run& run
     place[i] = (x[run.begin + i] - run.middle) * scale;
     power[i] = weight[run.begin + i];
   }
-  for (std::size_t j = 0; j <= kDegree; ++j) {
-    std::array<double, 4> sum{};
-    for (std::size_t i = 0; i < kNodes; i += 4) {
-      for (std::size_t l = 0; l < 4; ++l) sum[l] += power[i + l];
-    }
-    run.moments[j] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) * kInverseFactorials[j];
-    for (std::size_t i = 0; i < kNodes; ++i) power[i] *= place[i];
+  constexpr std::size_t kFours = kNodes / base::kFour;
+  std::array<base::Four, kFours> at;
+  std::array<base::Four, kFours> now;
+  for (std::size_t f = 0; f < kFours; ++f) {
+    base::load(at[f], place.data() + f * base::kFour);
+    base::load(now[f], power.data() + f * base::kFour);
+  }
+  for (std::size_t j = 0; j <= degree; ++j) {
+    run.moments[j] = base::sum_of(now[0] + now[1] + now[2]) * kInverseFactorials[j];
+    for (std::size_t f = 0; f < kFours; ++f) now[f] = now[f] * at[f];
   }
 }
 
-/// The runs of windows; `first` counts from first[0].
+/// The runs of windows; `first` counts from first[0]. `fastest` is the largest rate of all.
 std::vector<Run> runs_of(const std::vector<double>& x, const double* weight,
-                         const std::size_t* first, std::size_t windows,
+                         const std::size_t* first, std::size_t windows, double fastest,
                          std::vector<std::size_t>& first_run) {
   std::vector<Run> runs;
   runs.reserve(windows + x.size() / kNodes);
@@ -91,7 +108,7 @@ std::vector<Run> runs_of(const std::vector<double>& x, const double* weight,
       run.least = low;
       run.half = 0.5 * (high - low);
       run.middle = low + run.half;
-      take_moments(x.data(), weight, run);
+      take_moments(x.data(), weight, std::min(degree_at(fastest * run.half), kDegree), run);
     }
   }
   first_run.push_back(runs.size());
@@ -138,17 +155,16 @@ JOINTID_CLONES void window_sums(const double* x, const double* weight, const Run
     for (std::size_t r = first_run[w]; r < first_run[w + 1]; ++r) {
       const Run& run = runs[r];
       if (run.least >= lanes.vanishing) continue;
-      // As many terms as leave y^(d+1) / (d+1)! below 2^-54, beside the largest decay of the run.
-      const double y = lanes.fastest * run.half;
-      if (y <= 5.8e-3) {
+      const std::size_t degree = degree_at(lanes.fastest * run.half);
+      if (degree == 5) {
         add_series<5>(run, rates.data(), sum.data());
-      } else if (y <= 0.107) {
+      } else if (degree == 9) {
         add_series<9>(run, rates.data(), sum.data());
-      } else if (y <= 0.41) {
+      } else if (degree == 13) {
         add_series<13>(run, rates.data(), sum.data());
-      } else if (y <= 1.1) {
+      } else if (degree == 18) {
         add_series<18>(run, rates.data(), sum.data());
-      } else if (y <= 2.5) {
+      } else if (degree == kDegree) {
         add_series<kDegree>(run, rates.data(), sum.data());
       } else {
         for (std::size_t i = run.begin; i < run.end; ++i) {
@@ -175,7 +191,10 @@ void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const 
                         : powers(speed, group.exponent, count, x.data());
   const double* weight = nodes.weight.data() + begin;
   std::vector<std::size_t> first_run;
-  const auto runs = runs_of(x, weight, nodes.first.data() + windows.begin, rows, first_run);
+  double fastest = 0.0;
+  for (const double rate : group.rates) fastest = std::max(fastest, std::fabs(rate));
+  const auto runs =
+      runs_of(x, weight, nodes.first.data() + windows.begin, rows, fastest, first_run);
   for (std::size_t from = 0; from < group.rates.size(); from += kLanes) {
     if (cancel != nullptr) cancel->check();
     Lanes lanes{{}, std::min(kLanes, group.rates.size() - from), 0.0, 0.0};

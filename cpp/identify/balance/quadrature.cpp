@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/clones.hpp"
+#include "base/scans.hpp"
 
 namespace jointid::identify {
 
@@ -41,6 +42,42 @@ class Whole {
   std::int64_t until_ = -1;  ///< the intervals from_ .. until_ - 1 are usable
 };
 
+/// Adds values one after the other.
+double add_all(double sum, const double* value, const double* end) {
+  for (; end - value >= 4; value += 4) {  // fewer steps of the loop; the order stays
+    sum += value[0];
+    sum += value[1];
+    sum += value[2];
+    sum += value[3];
+  }
+  for (; value < end; ++value) sum += *value;
+  return sum;
+}
+
+/// Whether the velocity keeps one sign over a window, ends included. They come in order, too.
+class OneSided {
+ public:
+  OneSided(const RecordingView::Signal& velocity, std::span<const Window> windows)
+      : velocity_(velocity.data()), last_(windows.empty() ? 0 : windows.back().end) {}
+
+  /// The sign, or 0.
+  double operator()(const Window& window) {
+    if (window.begin < from_ || window.begin >= until_) {
+      from_ = window.begin;
+      const auto count = static_cast<std::size_t>(std::max(last_, window.end) - from_) + 1;
+      until_ = from_ + static_cast<std::int64_t>(base::one_sided(velocity_ + from_, count));
+    }
+    if (window.end >= until_) return 0.0;
+    return velocity_[window.begin] > 0.0 ? 1.0 : -1.0;
+  }
+
+ private:
+  const double* velocity_;
+  std::int64_t last_;
+  std::int64_t from_ = 0;
+  std::int64_t until_ = 0;  ///< the samples from_ .. until_ - 1 have one sign
+};
+
 /// Sum over a window's usable intervals of values that `fill(k, count, values)` gives for the
 /// intervals from k on.
 template <class Fill>
@@ -64,7 +101,8 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
       const auto stop = std::min(windows[w].end, to);
       const double* value = values.data() + (k - from);
       if (all) {
-        for (; k < stop; ++k) sum += *value++;
+        sum = add_all(sum, value, value + (stop - k));
+        k = stop;
       } else {
         for (; k < stop; ++k, ++value) {
           if (usable[static_cast<std::size_t>(k)] != 0) sum += *value;
@@ -119,16 +157,6 @@ void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uin
   }
 }
 
-/// 1 or -1 if all velocities of a window have that sign, else 0.
-double common_sign(const RecordingView::Signal& velocity, const Window& window) {
-  const double* v = velocity.data();
-  const double side = v[window.begin] > 0.0 ? 1.0 : -1.0;
-  for (auto k = window.begin; k <= window.end; ++k) {
-    if (!(side * v[k] > 0.0)) return 0.0;
-  }
-  return side;
-}
-
 /// The series of that name.
 const RecordingView::Signal& own_series(const RecordingView& r, const std::string& name) {
   for (const auto& own : r.own) {
@@ -181,9 +209,10 @@ void integrate_sign(const Term& term, const RecordingView& r,
                     Eigen::Ref<Eigen::VectorXd> result) {
   FrictionNodes nodes;
   Whole whole(usable, windows);
+  OneSided one_sided(r.velocity, windows);
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const auto row = static_cast<Eigen::Index>(w);
-    const double direction = common_sign(r.velocity, windows[w]);
+    const double direction = one_sided(windows[w]);
     if (direction == 0.0 || !whole(windows[w])) {
       nodes.clear();
       append_nodes(r, usable, windows.subspan(w, 1), nodes);
@@ -303,9 +332,10 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
     made = 0;
   };
   Whole whole(usable, windows);
+  OneSided one_sided(r.velocity, windows);
   for (const auto& window : windows) {
     const auto count = static_cast<std::size_t>(window.end - window.begin);
-    const double direction = count <= kShort ? common_sign(r.velocity, window) : 0.0;
+    const double direction = count <= kShort ? one_sided(window) : 0.0;
     if (direction != 0.0 && count > 0 && whole(window)) {
       if (made + count + 1 > kBlock) store();
       whole_nodes(r.time.data() + window.begin, r.velocity.data() + window.begin, count, direction,

@@ -16,8 +16,7 @@ constexpr std::size_t kMerged = 32;  // parts at a time: the stack stays in the 
 /// Takes the `count` directions at q, `rows` apart, out of a column; `products`: its share of each.
 JOINTID_CLONES void take_out(const double* q, std::size_t count, std::size_t rows, double* column,
                              double* products) {
-  for (std::size_t j = 0; j < count; ++j)
-    products[j] = base::inner_product(q + j * rows, column, rows);
+  base::inner_products(column, q, rows, count, rows, products);
   std::size_t j = 0;
   for (; j + 4 <= count; j += 4) {
     const double* const direction = q + j * rows;
