@@ -6,7 +6,9 @@
 // Needs ifunc (GNU libc); sanitizers run before it is resolved. Of clang those that have been
 // tried: version 14 leaves the clones of a function out that a header declares without the
 // attribute. There one clone less, since wheels are built by clang and have to be small.
+// A compiler that is given -DJOINTID_CLONES= makes none, to see what that costs.
 
+#ifndef JOINTID_CLONES
 #if defined(__x86_64__) && defined(__gnu_linux__)
 #include <cstddef>  // defines __GLIBC__
 #if defined(__clang__) && defined(__GLIBC__)
@@ -16,6 +18,7 @@
 #elif defined(__GNUC__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define JOINTID_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
 #endif
 #endif
 

@@ -172,7 +172,8 @@ void integrate_position(const RecordingView& r, const std::vector<std::uint8_t>&
                         Function function) {
   std::array<double, kBlock + 1> samples;
   sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
-    for (std::size_t i = 0; i <= count; ++i) samples[i] = function(r.position.data()[k + i]);
+    const double* position = r.position.data() + k;
+    for (std::size_t i = 0; i <= count; ++i) samples[i] = function(position[i]);
     trapezoids(samples.data(), r.time.data() + k, count, values);
   });
 }
