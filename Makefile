@@ -61,9 +61,10 @@ pytest-guest: .venv/.strict .venv/.test-tools
 	@echo "Python tests on the kernel's own CAN:"
 	@$(BIN)/python -m pytest tests/canlab
 
+# One thread of BLAS in each: several wait for each other, and take from the other processes what they wait.
 pytest-rest: .venv/.strict .venv/.test-tools
 	@echo "Python tests:"
-	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --ignore tests/canlab
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --ignore tests/canlab
 
 vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
 	@tools/install_vcan.sh
