@@ -152,7 +152,7 @@ docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site
 
 # CASES=5000 SEED=0 make fuzz: another number, and where to begin.
 fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
-	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) \
+	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) JOINTID_READ_BACK=all \
 	  tools/fuzz.sh --numprocesses auto --dist load tests/fuzz tests/base/test_read_back.py
 
 mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
