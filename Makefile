@@ -56,7 +56,7 @@ check-plain check-address check-thread: check-%: .venv/.test-tools  ## (each alo
 
 pytest: pytest-guest pytest-rest  ## the Python tests alone
 
-# The guest alone: its drive has to answer within 200 ms. Then the rest, whose summary closes the output.
+# The guest without other tests: its drive has to answer within 200 ms. Then the rest, whose summary closes the output.
 pytest-guest: .venv/.strict .venv/.test-tools
 	@echo "Python tests on the kernel's own CAN:"
 	@$(BIN)/python -m pytest tests/canlab
