@@ -56,14 +56,15 @@ check-plain check-address check-thread: check-%: .venv/.test-tools  ## (each alo
 
 pytest: pytest-guest pytest-rest  ## the Python tests alone
 
-# The guest alone: its drive has to answer within 200 ms. Then the rest, whose summary closes the output.
+# The guest without other tests: its drive has to answer within 200 ms. Then the rest, whose summary closes the output.
 pytest-guest: .venv/.strict .venv/.test-tools
 	@echo "Python tests on the kernel's own CAN:"
 	@$(BIN)/python -m pytest tests/canlab
 
+# One thread of BLAS in each: several wait for each other, and take from the other processes what they wait.
 pytest-rest: .venv/.strict .venv/.test-tools
 	@echo "Python tests:"
-	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --ignore tests/canlab
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --ignore tests/canlab
 
 vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
 	@tools/install_vcan.sh
@@ -151,7 +152,7 @@ docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site
 
 # CASES=5000 SEED=0 make fuzz: another number, and where to begin.
 fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
-	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) \
+	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) JOINTID_READ_BACK=all \
 	  tools/fuzz.sh --numprocesses auto --dist load tests/fuzz tests/base/test_read_back.py
 
 mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md

@@ -20,7 +20,7 @@ from jointid.hardware.bench import drive_types
 _PACKAGE = Path(jid.__file__).resolve().parent
 _LONGEST = 600  # characters of a sentence
 # Each value at every place takes minutes: `make fuzz`. Else each place has a quarter of them, in turn.
-_EVERY = 1 if os.environ.get("JOINTID_FUZZ") else 4
+_EVERY = 1 if os.environ.get("JOINTID_READ_BACK") == "all" else 4
 
 
 @cache

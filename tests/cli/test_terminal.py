@@ -23,7 +23,7 @@ KR300 = str(data_folder() / "kr300_joint1.csv.gz")
 BENCH = str(Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml")
 RULE = re.compile(r"-+(?:  -+)+")
 
-DESIGN = "--position -1,1 --velocity 3 --torque 160 --duration 4 --evaluations 64"
+DESIGN = "--position -1,1 --velocity 3 --torque 160 --duration 4 --evaluations 64 --joints 2 --rehearsals 10"
 
 # A call of every command, in a folder with joint.toml and estimate.json.
 CALLS: dict[str, list[str]] = {
@@ -139,7 +139,8 @@ def test_nothing_is_broken(
     if name in SLOW and width != 80:
         pytest.skip("tried at 80 columns")
     shutil.copytree(prepared, tmp_path / "terminal")
-    if name not in piped:
+    is_help = "--help" in name  # argparse itself breaks it at hyphens: its words are not compared
+    if name not in piped and not is_help:
         shutil.copytree(prepared, tmp_path / "pipe")
         piped[name] = {plain(word) for word in in_pipe(CALLS[name], tmp_path / "pipe").split()}
     lines = drawn(at_terminal(CALLS[name], width, tmp_path / "terminal"))
@@ -147,7 +148,7 @@ def test_nothing_is_broken(
     for line in lines:
         # A word that is wider than the terminal, such as a path, is all that may stand out.
         assert len(line) <= width or len(line.split()) <= 2, (len(line), line)
-    if "--help" not in name:  # argparse itself breaks help at hyphens
+    if not is_help:
         words = {plain(word) for line in lines for word in line.split()} - {"\\"}
         strange = {word for word in words - piped[name] if not set(word) <= {"-"}}
         assert not strange, strange

@@ -32,21 +32,26 @@ _BROKEN: Mapping[str, tuple[dict[str, float], set[str]]] = {
     "other axis": ({"coupling": 4.0}, {"other_signal"}),
 }
 _OF_THEIR_OWN = ("weak bump", "other axis")
+_LOGS = {"filtered velocity": Log(velocity_cutoff=50.0), "loud sensor": Log(sensor_noise=5.0)}
 
 
 @pytest.fixture(scope="module")
-def estimates() -> dict[str, jid.Estimate]:
-    """One joint for each broken assumption, moved alike."""
+def runs() -> dict[str, jid.Recording]:
+    """One joint for each broken assumption and each log, moved alike: side by side they cost little more than one."""
     law = Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0)
-    benches = [
-        Bench(motion=thesis(np.radians([60.0])), law=law, plant=Plant(**changes), log=Log())
-        for changes, _ in _BROKEN.values()
-    ]
-    runs = simulate(Bench.stack(benches), duration=9.0, seed=3)
-    joint = jid.thesis_joint()
+    plants = [(Plant(**changes), Log()) for changes, _ in _BROKEN.values()]
+    plants += [(Plant(), log) for log in _LOGS.values()]
+    motion = thesis(np.radians([60.0]))
+    benches = [Bench(motion=motion, law=law, plant=plant, log=log) for plant, log in plants]
+    found = simulate(Bench.stack(benches), duration=9.0, seed=3)
+    return dict(zip((*_BROKEN, *_LOGS), found, strict=True))
+
+
+@pytest.fixture(scope="module")
+def estimates(runs: dict[str, jid.Recording]) -> dict[str, jid.Estimate]:
+    """One for each broken assumption."""
     return {
-        name: jid.identify(run, joint, search="separable")
-        for name, run in zip(_BROKEN, runs, strict=True)
+        name: jid.identify(runs[name], jid.thesis_joint(), search="separable") for name in _BROKEN
     }
 
 
@@ -213,15 +218,8 @@ def test_noise_is_not_suspicious_and_slow_structure_is() -> None:
     assert suspicious(slow, run, ones, velocity)
 
 
-def _benches(*logs: Log, **plant: float) -> Bench:
-    law = Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0)
-    motion = thesis(np.radians([60.0]))
-    return Bench.stack([Bench(motion=motion, law=law, plant=Plant(**plant), log=x) for x in logs])
-
-
-def test_a_filtered_velocity_is_no_friction_at_low_speed() -> None:
-    (run,) = simulate(_benches(Log(velocity_cutoff=50.0)), duration=9.0, seed=6)
-    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+def test_a_filtered_velocity_is_no_friction_at_low_speed(runs: dict[str, jid.Recording]) -> None:
+    estimate = jid.identify(runs["filtered velocity"], jid.thesis_joint(), search="separable")
     assert estimate.delays["velocity"].certain
     every = estimate.causes()
     first = (*every.found, *every.harmless)[0]
@@ -231,24 +229,23 @@ def test_a_filtered_velocity_is_no_friction_at_low_speed() -> None:
     assert not _SLOW & set(_named(estimate))
 
 
-def test_a_velocity_that_is_measured_as_prompt_is_no_cause() -> None:
-    stiff = {"bristle_stiffness": 1e5, "bristle_damping": 200.0}
-    (run,) = simulate(_benches(Log(), **stiff), duration=9.0, seed=3)
-    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+def test_a_velocity_that_is_measured_as_prompt_is_no_cause(
+    estimates: dict[str, jid.Estimate],
+) -> None:
+    estimate = estimates["bristles"]
     assert not estimate.delays["velocity"].certain
     assert "delay" not in estimate.causes().tried or all(
         cause.detail != "velocity" for cause in estimate.causes().found
     )
 
 
-def test_noise_of_a_sensor_is_no_structure() -> None:
-    (run,) = simulate(_benches(Log(sensor_noise=5.0)), duration=9.0, seed=7)
-    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+def test_noise_of_a_sensor_is_no_structure(runs: dict[str, jid.Recording]) -> None:
+    estimate = jid.identify(runs["loud sensor"], jid.thesis_joint(), search="separable")
     assert not {"structured_residual", *MEANINGS} & {found.code for found in estimate.findings}
 
 
-def test_a_clipped_torque_is_its_own_cause() -> None:
-    (run,) = simulate(_benches(Log()), duration=9.0, seed=8)
+def test_a_clipped_torque_is_its_own_cause(runs: dict[str, jid.Recording]) -> None:
+    run = runs["clean"]
     torque = run.torque
     assert torque is not None
     limit = 0.7 * float(torque.max())
@@ -264,9 +261,9 @@ def test_a_clipped_torque_is_its_own_cause() -> None:
     assert _named(estimate) == []
 
 
-def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
+def test_a_misfit_without_a_name_is_said_in_one_line(runs: dict[str, jid.Recording]) -> None:
     rng = np.random.default_rng(2)
-    (run,) = simulate(_benches(Log()), duration=9.0, seed=4)
+    run = runs["clean"]
     wander = np.convolve(rng.normal(0.0, 0.15, len(run) + 99), np.ones(100), "valid")
     run = jid.Recording(
         time=run.time,

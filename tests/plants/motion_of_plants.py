@@ -44,6 +44,7 @@ class MovingPlants:
         self._drifts = bool(np.any(plant.coulomb_drift) or np.any(plant.viscous_drift))
         others = ("constant", "harmonic_torque", "bump", "coupling")
         self._has = {name: bool(np.any(getattr(plant, name))) for name in others}
+        self._has_others = any(self._has.values())
         self.coulomb, self.viscous = np.asarray(plant.coulomb), np.asarray(plant.viscous)
 
     def _weight(self, position: Array) -> Array:
@@ -79,8 +80,9 @@ class MovingPlants:
 
     def _rigid_step(self, time: float, torque: Array, step: float) -> None:
         plant, v, q = self.plant, self.velocity, self.position
-        middle = q + 0.5 * step * v
-        middle_velocity = v + 0.5 * step * self._acceleration
+        half = 0.5 * step
+        middle = q + half * v
+        middle_velocity = v + half * self._acceleration
         weight = self._weight(middle)
         link_mass = plant.link_inertia
         if self._has_pose:
@@ -95,7 +97,7 @@ class MovingPlants:
             (middle, v, middle_velocity),
         )
         self._acceleration = (after - v) / step
-        self.position = q + 0.5 * step * (v + after)
+        self.position = q + half * (v + after)
         self.velocity = after
         self.link_torque = weight + link_mass * self._acceleration
 
@@ -139,7 +141,8 @@ class MovingPlants:
         plant = self.plant
         time, step = when
         q, v, middle = state
-        torque = np.asarray(torque - self._other_torques(time, q))
+        if self._has_others:
+            torque = torque - self._other_torques(time, q)
         if self._usual_exponent:
             decay = np.exp(-plant.stribeck * middle**2)
         else:
@@ -154,17 +157,20 @@ class MovingPlants:
         dry = slip + excess * decay
         if self._has_bristle:
             torque = torque - self._pull(dry, middle, step)
-            dry, breakaway = dry * self._dry, (slip + excess) * self._dry
-        else:
-            breakaway = slip + excess
+            dry = dry * self._dry
+        moves = v.all()
+        if not moves:  # at rest the whole of static friction holds; on the way it brakes
+            dry = np.where(v == 0.0, (slip + excess) * self._dry, dry)
         half = 0.5 * step * viscous
         free = (mass - half) * v + step * torque
-        # At rest the whole of static friction holds; on the way it brakes.
-        dry = np.where(v == 0.0, breakaway, dry)
-        after = np.sign(free) * np.maximum(np.abs(free) - step * dry, 0.0) / (mass + half)
+        after = np.copysign(np.maximum(np.abs(free) - step * dry, 0.0), free) / (mass + half)
+        goes_on = v * after > 0.0
+        if moves and goes_on.all():  # nearly every step
+            return after
         crossed = v * after < 0.0
         stopped = (after == 0.0) & (v != 0.0)
         if crossed.any() or stopped.any():
+            breakaway = (slip + excess) * self._dry
             # Within the step it comes to rest; for what is left of it, it holds or breaks away.
             push = torque - np.sign(v) * dry
             spent = np.clip(-mass * v / np.where(push == 0.0, _NOTHING, step * push), 0.0, 1.0)

@@ -257,8 +257,8 @@ def _read_recording(path: Path) -> None:
 
 
 def _session() -> Example:
-    """A session's file and its frame log, from an emulated drive."""
-    bench = replace(Bench.load(_BENCH), trajectory=jid.Trajectory.sine(5e-4, 50.0, duration=0.02))
+    """A session's file and its frame log, from an emulated drive; slow cycles, of which few are on the way there."""
+    bench = replace(Bench.load(_BENCH), trajectory=jid.Trajectory.sine(5e-4, 10.0, duration=0.1))
     with TemporaryDirectory() as folder, EmulatedBus(*emulated_devices(bench, seed=1)) as bus:
         path = Path(folder) / "run.csv"
         Session(
@@ -266,7 +266,7 @@ def _session() -> Example:
             bench.controller,
             bench.trajectory,
             bench.limits,
-            options=replace(bench.options, settle=0.0),
+            options=replace(bench.options, settle=0.0, period=0.01),
             output=path,
         ).run()
         log = path.with_suffix(".log").read_bytes()

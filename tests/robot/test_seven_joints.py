@@ -106,8 +106,13 @@ def test_short_standstills_in_noise_do_no_harm(with_stribeck: Run, inertia: Iner
     assert found.warnings == ()
 
 
-def test_a_heavier_link_is_found() -> None:
-    heavy = ran(random_arm(SEED, stribeck=False).with_link_scaled(4, 1.2))
+@pytest.fixture(scope="module")
+def heavy() -> Run:
+    """Link 4 is heavier than the URDF says."""
+    return ran(random_arm(SEED, stribeck=False).with_link_scaled(4, 1.2))
+
+
+def test_a_heavier_link_is_found(heavy: Run) -> None:
     recording = recorded(heavy, Sensors(), SEED)
     found = jid.identify_robot(recording, robot(), inertia="scaled", model="coulomb_viscous")
     scale = found.joints["joint_4"].parameters["inertia_scale"]
@@ -119,8 +124,7 @@ def test_a_heavier_link_is_found() -> None:
     assert_near(found, heavy.arm, 0.03)
 
 
-def test_a_heavier_link_is_named_where_the_urdf_is_believed() -> None:
-    heavy = ran(random_arm(SEED, stribeck=False).with_link_scaled(4, 1.2))
+def test_a_heavier_link_is_named_where_the_urdf_is_believed(heavy: Run) -> None:
     recording = recorded(heavy, Sensors(), SEED)
     found = jid.identify_robot(recording, robot(), model="coulomb_viscous")
     assert any("joint_4" in str(each) for each in found.warnings)

@@ -61,21 +61,24 @@ def test_nothing_is_said_of_right_facts(clean: jid.RobotRecording, inertia: Iner
     assert identified(clean, inertia).warnings == ()
 
 
-def tilted(arm: Arm) -> Arm:
-    model = pinocchio.Model(arm.model)
-    model.gravity.linear = 9.81 * np.array([np.sin(0.15), 0.0, -np.cos(0.15)])
-    return replace(arm, model=model)
+@pytest.fixture(scope="module")
+def tilted() -> jid.RobotRecording:
+    def change(arm: Arm) -> Arm:
+        model = pinocchio.Model(arm.model)
+        model.gravity.linear = 9.81 * np.array([np.sin(0.15), 0.0, -np.cos(0.15)])
+        return replace(arm, model=model)
+
+    return ran(change)
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])
-def test_a_tilted_base_is_named_and_cured(inertia: Inertia) -> None:
-    recording = ran(tilted)
-    said = only(identified(recording, inertia), "tilted_base")
+def test_a_tilted_base_is_named_and_cured(tilted: jid.RobotRecording, inertia: Inertia) -> None:
+    said = only(identified(tilted, inertia), "tilted_base")
     assert said.evidence["tilt"].value == pytest.approx(np.rad2deg(0.15), abs=0.3)
     assert said.evidence["share"].value > 0.3
     (advice,) = said.advice
     assert advice.function == "Robot.from_urdf"
-    cured = identified(recording, inertia, **advice.arguments)
+    cured = identified(tilted, inertia, **advice.arguments)
     assert cured.warnings == ()
     assert cured.relative_residual < 0.01
 

@@ -176,7 +176,7 @@ class Text:
         if len(value) > self.longest:
             reason = f"{len(value)} characters, at most {self.longest} are expected"
             _refuse(place, NOT_GIVEN, reason)
-        if any("\ud800" <= letter <= "\udfff" for letter in value):
+        if not value.isascii() and any("\ud800" <= letter <= "\udfff" for letter in value):
             _refuse(place, NOT_GIVEN, "half a character, which no file can hold")
         if self.known and value not in self.known:
             _refuse(place, value, f"known are {', '.join(self.known)}")
