@@ -75,7 +75,7 @@ def _trials(
         # All of them, so that another choice needs no compiler.
         print("building the core with all mutants in it", flush=True)
         inside = [each for each in everything if not each.is_python]
-        extension, core_check = tree.built_core(folder, inside)
+        extension, core_check = tree.built_core(folder, inside, jobs)
     packages = [tree.package(folder / f"package_{number}", extension) for number in range(jobs)]
     trials = Trials(packages, core_check, folder / "logs")
     return trials.all_of(mutants, _told, kept.add)

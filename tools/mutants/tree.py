@@ -13,7 +13,7 @@ from mutants import switched_sources
 from mutants.catalogue import REPOSITORY, Mutant, MutantError
 
 
-def built_core(folder: Path, mutants: list[Mutant]) -> tuple[Path, Path]:
+def built_core(folder: Path, mutants: list[Mutant], jobs: int) -> tuple[Path, Path]:
     """Build the switched core: its extension and its checks.
 
     Parameters
@@ -22,6 +22,8 @@ def built_core(folder: Path, mutants: list[Mutant]) -> tuple[Path, Path]:
         Sources and objects go there, and stay: a second build compiles what has changed.
     mutants : list of Mutant
         Those in C++.
+    jobs : int
+        Compilers at a time.
 
     Raises
     ------
@@ -57,7 +59,7 @@ def built_core(folder: Path, mutants: list[Mutant]) -> tuple[Path, Path]:
     if shutil.which("ccache"):
         setup.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
         environment["CCACHE_BASEDIR"] = str(sources)
-    build: list[str | Path] = ["cmake", "--build", objects, "--parallel", str(os.cpu_count() or 1)]
+    build: list[str | Path] = ["cmake", "--build", objects, "--parallel", str(jobs)]
     build += ["--", "-k", "0"]  # all errors at once
     for command in (setup, build):
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
