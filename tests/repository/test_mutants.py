@@ -13,8 +13,8 @@ TOOLS = Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
 
 from mutants.catalogue import Mutant, MutantError, check_places, read  # noqa: E402
-from mutants.kept import Kept  # noqa: E402
-from mutants.page import ASKED, complaints, row, summary, written  # noqa: E402
+from mutants.kept import VERDICTS, Kept  # noqa: E402
+from mutants.page import complaints, summary, written  # noqa: E402
 from mutants.running import Verdict  # noqa: E402
 from mutants.switched_sources import SWITCH, switched  # noqa: E402
 
@@ -24,8 +24,9 @@ _TESTS = "tests/recording/test_units.py"
 
 def tried(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     path = os.pathsep.join((str(TOOLS), os.environ.get("PYTHONPATH", "")))
+    places = ("--folder", folder / "built", "--verdicts", folder / "verdicts")
     return subprocess.run(
-        [sys.executable, "-m", "mutants", "--python", "--folder", folder / "built", *arguments],
+        [sys.executable, "-m", "mutants", "--python", *places, *arguments],
         capture_output=True,
         text=True,
         env=os.environ | {"PYTHONPATH": path},
@@ -42,6 +43,10 @@ def listed(folder: Path, *mutants: str, tests: str = _TESTS) -> Path:
     text = f"[[file]]\npath = '{_UNITS}'\ntests = ['{tests}']\nmutants = [\n{rows}\n]\n"
     (lists / "room.toml").write_text(text)
     return lists
+
+
+def verdict(of: Mutant, by: str = "test") -> Verdict:
+    return Verdict(mutant=of, killed=bool(by), by=by, seconds=1.0, date="2026-11-23")
 
 
 def mutant(number: int, line: str, was: str, becomes: str, justified: str = "") -> Mutant:
@@ -89,23 +94,38 @@ def test_a_survivor_is_told(tmp_path: Path) -> None:
     assert "becomes `if parts > 0 and` | **not justified** |" in page.read_text()
 
 
-def test_a_verdict_is_kept_until_its_files_change(tmp_path: Path) -> None:
-    for name in ("part.py", "test_part.py", "cpp/tests/check_part.cpp"):
+def test_a_verdict_is_kept_until_its_line_changes(tmp_path: Path) -> None:
+    files = ("part.py", "test_part.py", "cpp/tests/check_part.cpp")
+    for name in files:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x = 1\n")
-    made = dataclasses.replace(mutant(1, "x", "x", "y"), path="part.py", tests=("test_part.py::a",))
-    verdict = Verdict(mutant=made, killed=True, by="test_part.py::a", seconds=2.0)
-    kept = tmp_path / "build" / "verdicts.json"
-    Kept(kept, tmp_path).add(verdict)
-    assert Kept(kept, tmp_path).find([made]) == [verdict]
-    assert not Kept(kept, tmp_path).find([dataclasses.replace(made, becomes="z")])
-    for name in ("part.py", "test_part.py", "cpp/tests/check_part.cpp"):
+    one, other, later = (
+        dataclasses.replace(
+            mutant(k, "x", "x", "yzw"[k]), path="part.py", tests=("test_part.py::a",)
+        )
+        for k in range(3)
+    )
+    folder = tmp_path / "verdicts"
+
+    def kept(*mutants: Mutant) -> Kept:
+        return Kept(folder, mutants, tmp_path)
+
+    killed, survived = verdict(one), verdict(other, by="")
+    kept(one).add(killed)
+    kept(one, other).add(survived)
+    assert kept(other, one).find([one, other]) == [killed, survived]
+    moved = dataclasses.replace(one, number=7)
+    assert kept(later, moved).find([moved, later]) == [dataclasses.replace(killed, mutant=moved)]
+    for name in files:  # the next run tries it again
         (tmp_path / name).write_text("x = 2\n")
-        assert not Kept(kept, tmp_path).find([made])
+        assert kept(one).find([one])
+        assert not kept(one).current([one])
         (tmp_path / name).write_text("x = 1\n")
-        assert Kept(kept, tmp_path).find([made])
-    kept.write_text("torn")
-    assert not Kept(kept, tmp_path).find([made])
+        assert kept(one).current([one])
+    kept(one, later).add(verdict(later))
+    assert len((folder / "core.csv").read_text().splitlines()) == 3  # that of `other` is gone
+    (folder / "core.csv").write_text("<<<<<<< torn\n")
+    assert not kept(one).find([one])
 
 
 def test_what_was_tried_is_not_tried_again(tmp_path: Path) -> None:
@@ -148,40 +168,24 @@ def test_tests_that_fail_by_themselves_kill_nothing(tmp_path: Path) -> None:
 def test_a_justified_survivor_passes_and_stands_in_the_page() -> None:
     texts = [f"x = {k};" for k in range(11)]
     verdicts = [
-        Verdict(
-            mutant=mutant(k, text, str(k), "y", "the same" if k == 10 else ""),
-            killed=k < 10,
-            by="test",
-            seconds=1.0,
+        verdict(
+            mutant(k, text, str(k), "y", "the same" if k == 10 else ""), "test" if k < 10 else ""
         )
         for k, text in enumerate(texts)
     ]
     assert complaints(verdicts) == []
     assert summary(verdicts) == "11 mutants: 10 killed, 1 justified, 0 survived"
-    page = written(verdicts[1:], [verdicts[0].mutant])
-    assert "| core | 11 | 9 | 0 | 1 | 0 | 1 |" in page
+    page = written(verdicts[1:], [each.mutant for each in verdicts])
+    assert "| core | 11 | 9 | 0 | 1 | 0 | 1 | 2026-11-23 |" in page
     assert "cpp/toy.cpp: `10` becomes `y` | the same |" in page
 
 
 def test_the_page_is_of_these_lists() -> None:
     """A run writes it: after a list has changed there must be another."""
-    lines = (TOOLS.parent / "docs" / "mutants.md").read_text(encoding="utf-8").splitlines()
     mutants = read()
-    rooms = {each.room for each in mutants}
-    counts = {
-        cells[1]: [int(cell) for cell in cells[2:-1]]
-        for cells in ([part.strip() for part in line.split("|")] for line in lines)
-        if len(cells) > 2 and cells[1] in {*rooms, "all"}
-    }
-    for room in rooms:
-        assert counts[room][0] == sum(each.room == room for each in mutants), room
-    total, killed, _, justified, survived, missing = counts["all"]
-    assert total == len(mutants) == killed + justified + survived + missing
-    assert survived == 0
-    assert killed >= ASKED * (total - missing)
-    said = [line for line in lines if line.startswith(("| cpp/", "| python/"))]
-    assert set(said) <= {row(each) for each in mutants if each.justified}
-    assert len(said) == justified
+    verdicts = Kept(VERDICTS, mutants).find(mutants)
+    assert (TOOLS.parent / "docs" / "mutants.md").read_text("utf-8") == written(verdicts, mutants)
+    assert complaints(verdicts) == []
 
 
 TOY = """#include <cstdio>

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from mutants import page, tree
 from mutants.catalogue import LISTS, REPOSITORY, Mutant, MutantError, check_places, read
-from mutants.kept import Kept
+from mutants.kept import VERDICTS, Kept
 from mutants.running import Trials, Verdict
 
 
@@ -32,6 +32,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--ci", action="store_true", help="those marked `ci`")
     parser.add_argument("--again", action="store_true", help="also those whose verdict still holds")
     parser.add_argument("--check", action="store_true", help="that each text is there, no trial")
+    parser.add_argument("--verdicts", type=Path, default=VERDICTS, help="folder of what was found")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes at a time")
     parser.add_argument("--folder", type=Path, default=REPOSITORY / "build" / "mutants")
     parser.add_argument("--output", type=Path, help="write the page there")
@@ -43,12 +44,13 @@ def _tried(options: argparse.Namespace) -> int:
     check_places(everything)
     mutants = [each for each in everything if _chosen(each, options)]
     print(f"{len(everything)} mutants in the lists, {len(mutants)} chosen", flush=True)
+    kept = Kept(options.verdicts, everything)
     if options.check:
+        _page(kept, everything, options.output)
         return 0
     began = time.monotonic()
     folder = options.folder.resolve()
-    kept = Kept(folder / "verdicts.json")
-    known = [] if options.again else kept.find(mutants)
+    known = [] if options.again else kept.current(mutants)
     tried = _trials(folder, everything, _others(mutants, known), kept, options.jobs)
     minutes = (time.monotonic() - began) / 60.0
     verdicts = sorted([*known, *tried], key=lambda each: each.mutant.number)
@@ -56,13 +58,15 @@ def _tried(options: argparse.Namespace) -> int:
     for each in verdicts:
         if not each.killed and each.mutant.justified:
             print(f"justified: {each.mutant}: {each.mutant.justified}")
-    if options.output is not None:
-        ever = kept.find(everything)
-        text = page.written(ever, _others(everything, ever))
-        options.output.write_text(text, encoding="utf-8")
+    _page(kept, everything, options.output)
     wrong = page.complaints(verdicts)
     print("\n".join(wrong), end="\n" if wrong else "")
     return 1 if wrong else 0
+
+
+def _page(kept: Kept, everything: list[Mutant], output: Path | None) -> None:
+    if output is not None:
+        output.write_text(page.written(kept.find(everything), everything), encoding="utf-8")
 
 
 def _trials(

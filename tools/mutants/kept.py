@@ -1,62 +1,83 @@
-"""Verdicts of earlier runs: they hold while the mutated file and what should notice stay the same."""
+"""Verdicts of earlier runs, in the repository: a changed line has none, a changed test asks for another trial."""
 
 from __future__ import annotations
 
+import csv
 import hashlib
-import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from mutants.catalogue import REPOSITORY, Mutant
 from mutants.running import Verdict
 
+VERDICTS = Path(__file__).resolve().parent / "verdicts"
+_COLUMNS = ("mutant", "files", "date", "seconds", "first to fail")
+_DIGITS = 12
+
 
 class Kept:
-    """Verdicts in a file, which is written after each, so that an interrupted run loses none.
+    """Verdicts in one file for each list, which is written after each, so that an interrupted run loses none.
 
     Parameters
     ----------
-    path : Path
-        The file; one that is not there, or is not JSON, holds nothing.
+    folder : Path
+        Of the files; a row that cannot be read holds nothing.
+    mutants : sequence of Mutant
+        All of the lists: what is kept of others goes with the next that is added.
     root : Path
         The sources.
     """
 
-    def __init__(self, path: Path, root: Path = REPOSITORY) -> None:
-        self._path = path
+    def __init__(self, folder: Path, mutants: Sequence[Mutant], root: Path = REPOSITORY) -> None:
+        self._folder = folder
+        self._mutants = mutants
         self._root = root
         self._contents: dict[str, bytes] = {}
-        try:
-            self._rows = dict(json.loads(path.read_text(encoding="utf-8")))
-        except (OSError, ValueError):
-            self._rows = {}
+        self._rows: dict[Mutant, tuple[str, Verdict]] = {}
+        named = {_name(each): each for each in mutants}
+        for path in sorted(folder.glob("*.csv")):
+            with path.open(encoding="utf-8", newline="") as stream:
+                for row in csv.reader(stream):
+                    if len(row) == len(_COLUMNS) and row[0] in named:
+                        self._rows[named[row[0]]] = row[1], _verdict(named[row[0]], row)
 
-    def find(self, mutants: list[Mutant]) -> list[Verdict]:
-        """The verdicts that still hold, in the mutants' order."""
-        found = []
-        for each in mutants:
-            row = self._rows.get(self._fingerprint(each))
-            if row is not None:
-                found.append(Verdict(mutant=each, **row))
-        return found
+    def find(self, mutants: Sequence[Mutant]) -> list[Verdict]:
+        """The verdicts of lines that are as they were, in the mutants' order."""
+        return [self._rows[each][1] for each in mutants if each in self._rows]
+
+    def current(self, mutants: Sequence[Mutant]) -> list[Verdict]:
+        """Those of them whose file and tests, too, are as they were."""
+        return [
+            self._rows[each][1]
+            for each in mutants
+            if each in self._rows and self._rows[each][0] == self._files(each)
+        ]
 
     def add(self, verdict: Verdict) -> None:
         """Keep one more."""
-        row = {"killed": verdict.killed, "by": verdict.by, "seconds": verdict.seconds}
-        self._rows[self._fingerprint(verdict.mutant)] = row
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        written = self._path.with_suffix(".new")
-        written.write_text(json.dumps(self._rows, indent=0), encoding="utf-8")
-        written.replace(self._path)
+        room = verdict.mutant.room
+        self._rows[verdict.mutant] = self._files(verdict.mutant), verdict
+        self._folder.mkdir(parents=True, exist_ok=True)
+        path = self._folder / f"{room}.csv"
+        written = path.with_suffix(".new")
+        with written.open("w", encoding="utf-8", newline="") as stream:
+            table = csv.writer(stream, lineterminator="\n")
+            table.writerow(_COLUMNS)
+            for each in self._mutants:
+                if each.room == room and each in self._rows:
+                    files, of = self._rows[each]
+                    table.writerow((_name(each), files, of.date, f"{of.seconds:.1f}", of.by))
+        written.replace(path)
 
-    def _fingerprint(self, mutant: Mutant) -> str:
-        parts = [mutant.path, mutant.line, mutant.was, mutant.becomes, *mutant.checks]
-        seen = hashlib.sha256("\0".join((*parts, *mutant.tests)).encode())
+    def _files(self, mutant: Mutant) -> str:
+        """A digest of the changed file, and of what should notice."""
+        seen = hashlib.sha256("\0".join((*mutant.checks, *mutant.tests)).encode())
         files = [mutant.path, *(name.partition("::")[0] for name in mutant.tests)]
         if mutant.checks:
             files += sorted(str(each) for each in (self._root / "cpp" / "tests").glob("*.cpp"))
         for file in files:
             seen.update(self._content(file))
-        return seen.hexdigest()
+        return seen.hexdigest()[:_DIGITS]
 
     def _content(self, file: str) -> bytes:
         if file not in self._contents:
@@ -64,3 +85,14 @@ class Kept:
             files = sorted(path.rglob("test_*.py")) if path.is_dir() else [path]
             self._contents[file] = b"".join(each.read_bytes() for each in files)
         return self._contents[file]
+
+
+def _name(mutant: Mutant) -> str:
+    """A digest of the change: with its text, its verdict goes."""
+    parts = (mutant.room, mutant.path, mutant.line, mutant.was, mutant.becomes)
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:_DIGITS]
+
+
+def _verdict(mutant: Mutant, row: list[str]) -> Verdict:
+    _, _, date, seconds, by = row
+    return Verdict(mutant=mutant, killed=bool(by), by=by, seconds=float(seconds), date=date)

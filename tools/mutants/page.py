@@ -38,17 +38,19 @@ def summary(verdicts: Sequence[Verdict]) -> str:
     )
 
 
-def written(verdicts: Sequence[Verdict], untried: Sequence[Mutant] = ()) -> str:
+def written(verdicts: Sequence[Verdict], mutants: Sequence[Mutant]) -> str:
     """The page.
 
     Parameters
     ----------
     verdicts : sequence of Verdict
         Of all mutants that were tried.
-    untried : sequence of Mutant
-        The others.
+    mutants : sequence of Mutant
+        Those and the others.
     """
-    rooms = sorted({each.mutant.room for each in verdicts} | {each.room for each in untried})
+    tried = {each.mutant for each in verdicts}
+    untried = [each for each in mutants if each not in tried]
+    rooms = sorted({each.room for each in mutants})
     minutes = sum(each.seconds for each in verdicts) / 60.0
     named = [each for each in verdicts if each.mutant.named]
     skipped = sum(each.named for each in untried)
@@ -63,14 +65,16 @@ def written(verdicts: Sequence[Verdict], untried: Sequence[Mutant] = ()) -> str:
         "that are named beside it, and writes this page. A mutant is found by the text of its line; where that text is "
         "gone, the run",
         "ends and says so. C++ is compiled once, with all mutants in it, and a number in the environment chooses one.",
-        "CI tries those that are marked `ci`.",
+        "Verdicts lie in `tools/mutants/verdicts`, each with its date, until the line changes; where its file or its "
+        "tests have",
+        "changed since, the next run tries it again. CI tries those that are marked `ci`.",
         "",
-        f"Of {len(verdicts) + len(untried)} mutants in the lists these were tried: **{summary(verdicts)}**",
+        f"Of {len(mutants)} mutants in the lists these were tried: **{summary(verdicts)}**",
         f"({minutes:.0f} minutes on one processor, without the compiler's). Of {len(named) + skipped} places",
         f"that survived when mutants were first tried by hand, {dead} die now and {skipped} were not tried again.",
         "",
-        "| list | mutants | killed | of these without an end | justified | survived | not tried |",
-        "|---|---:|---:|---:|---:|---:|---:|",
+        "| list | mutants | killed | of these without an end | justified | survived | not tried | on |",
+        "|---|---:|---:|---:|---:|---:|---:|---|",
     ]
     for room in [*rooms, "all"]:
         of = [each for each in verdicts if room in (each.mutant.room, "all")]
@@ -80,7 +84,10 @@ def written(verdicts: Sequence[Verdict], untried: Sequence[Mutant] = ()) -> str:
         missing = sum(room in (each.room, "all") for each in untried)
         survived = len(left) - justified
         counts = (len(of) + missing, len(of) - len(left), endless, justified, survived, missing)
-        lines.append(f"| {room} | {' | '.join(map(str, counts))} |")
+        days = sorted({each.date for each in of})
+        lines.append(
+            f"| {room} | {' | '.join(map(str, counts))} | {' to '.join(days[:1] + days[1:][-1:])} |"
+        )
     left = sorted(_left(verdicts), key=lambda each: not each.mutant.justified)
     if left:
         lines += ["", "## Those that no test notices", "", "| change | why |", "|---|---|"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import importlib
 import os
 import re
@@ -39,12 +40,15 @@ class Verdict:
         The first test that failed.
     seconds : float
         How long it took.
+    date : str
+        The day.
     """
 
     mutant: Mutant
     killed: bool
     by: str
     seconds: float
+    date: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +147,10 @@ class Trials:
             if code in (_NO_TEST, _HIDDEN):
                 raise MutantError(f"{task.mutant}: {_said(code, log)}")
             by = _said(code, log) if code else ""
-            verdicts.append(Verdict(mutant=task.mutant, killed=bool(code), by=by, seconds=seconds))
+            today = datetime.date.today().isoformat()
+            verdicts.append(
+                Verdict(mutant=task.mutant, killed=bool(code), by=by, seconds=seconds, date=today)
+            )
             ended(verdicts[-1])
             state = "killed" if code else "justified" if task.mutant.justified else "SURVIVED"
             told(f"{len(verdicts):4} of {len(tasks)} {state:9} {seconds:6.1f} s  {task.mutant}")
