@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -154,6 +155,25 @@ def test_what_was_tried_is_not_tried_again(tmp_path: Path) -> None:
 def test_a_wrong_list_is_told(row: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(MutantError, match=said.replace("(", r"\(")):
         check_places(read(listed(tmp_path, row)))
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes", "refused"),
+    [
+        ("(a + b", "(a", True),
+        ("/ 3.0", "/ 2.0", True),
+        ("3.0", "2.0", False),
+        ("x = 1;", "", False),
+    ],
+)
+def test_what_cpp_cannot_switch_is_told(
+    was: str, becomes: str, refused: bool, tmp_path: Path
+) -> None:
+    lists = listed(tmp_path, f"{{ was = '{was}', becomes = '{becomes}' }}")
+    written_for = (lists / "room.toml").read_text()
+    (lists / "room.toml").write_text(written_for.replace(_UNITS, "cpp/part.cpp"))
+    with pytest.raises(MutantError, match="of its own") if refused else nullcontext():
+        read(lists)
 
 
 def test_tests_that_fail_by_themselves_kill_nothing(tmp_path: Path) -> None:

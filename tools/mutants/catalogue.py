@@ -11,6 +11,8 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 LISTS = Path(__file__).resolve().parent / "lists"
 _OF_A_FILE = {"path", "checks", "tests", "mutants"}
 _OF_A_MUTANT = {"line", "was", "becomes", "checks", "tests", "justified", "ci", "named"}
+_BRACKETS = (("(", ")"), ("[", "]"), ("{", "}"))
+_OF_TWO_SIDES = ("/", "%", "<", ">", "=", "|", "^", "?", ":")
 
 
 class MutantError(Exception):
@@ -121,6 +123,8 @@ def _made(number: int, path: Path, entry: dict[str, Any], each: dict[str, Any]) 
     line = each.get("line", each["was"])
     if "\n" in line or each["was"] == each["becomes"]:
         raise MutantError(f"{path.name}: a mutant changes one line: {each}")
+    if not entry["path"].endswith(".py") and not (_whole(each["was"]) and _whole(each["becomes"])):
+        raise MutantError(f"{path.name}: no expression or statement of its own: {each}")
     checks, tests = ([*each.get(key, ()), *entry.get(key, ())] for key in ("checks", "tests"))
     if not checks and not tests:
         raise MutantError(f"{path.name}: nothing is to notice {each}")
@@ -137,6 +141,12 @@ def _made(number: int, path: Path, entry: dict[str, Any], each: dict[str, Any]) 
         ci=each.get("ci", False),
         named=each.get("named", False),
     )
+
+
+def _whole(text: str) -> bool:
+    """Whether C++ may put it in brackets: a list that does not compile is found in minutes, this at once."""
+    closed = all(text.count(opening) == text.count(closing) for opening, closing in _BRACKETS)
+    return closed and not text.startswith(_OF_TWO_SIDES)
 
 
 def _known(entry: dict[str, Any], fields: set[str], path: Path) -> None:
