@@ -124,7 +124,7 @@ class Trials:
             for kind, names in (("check", task.checks), ("test", task.tests)):
                 alone |= {(kind, name): seconds for name in names}
             if code:
-                wrong.append(f"{task.checks or task.tests}: {_said(code, log)}")
+                wrong.append(f"{task.checks or task.tests}: {_said(code, log)}; {log}")
         if wrong:
             raise MutantError("\n".join(("without a mutant, this does not pass:", *wrong)))
         tasks = [
@@ -259,4 +259,4 @@ def _said(code: int, log: Path) -> str:
         return "another jointid hides the changed one: an editable install? `make clean` removes it"
     found = _FIRST.search(log.read_text(encoding="utf-8", errors="replace"))
     name = (found[1] or found[2]) if found else ""
-    return name or (f"signal {-code}" if code < 0 else f"exit code {code}: {log}")
+    return name or (f"signal {-code}" if code < 0 else f"exit code {code}")
