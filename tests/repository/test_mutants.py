@@ -74,7 +74,7 @@ def test_every_mutant_has_its_place() -> None:
     check_places(mutants)
     assert len(mutants) >= 200
     assert {each.room for each in mutants} == {
-        *("core", "findings", "inference", "units", "codec", "guard", "recorder"),
+        *("causes", "core", "findings", "inference", "units", "codec", "guard", "recorder"),
     }
 
 
