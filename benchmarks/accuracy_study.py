@@ -7,11 +7,11 @@ are made here by integrating the torque balance (smooth motion, no sticking, so 
 import argparse
 
 import numpy as np
+from recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
-WELL_EXCITED = {
+TRUTH = {
     "coulomb": 25.0,
     "static": 20.0,
     "stribeck": 100.0,
@@ -24,7 +24,7 @@ SMOOTH = {"inertia": 0.8, "coulomb": 3.0, "viscous": 5.0, "torque_offset": 0.4}
 
 def search_seeds(seeds: int) -> list[str]:
     """Spread over the genetic algorithm's seeds, on one recording."""
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     exact = jid.identify(recording, jid.thesis_joint(), search="separable")
     found = [
         jid.identify(recording, jid.thesis_joint(), search=jid.Search(seed=seed))
@@ -36,7 +36,7 @@ def search_seeds(seeds: int) -> list[str]:
         "| parameter | truth | mean error | worst error |",
         "|---|---|---|---|",
     ]
-    for name, truth in WELL_EXCITED.items():
+    for name, truth in TRUTH.items():
         errors = np.array([e.parameters[name].value / truth - 1 for e in found])
         worst = errors[np.argmax(np.abs(errors))]
         lines.append(

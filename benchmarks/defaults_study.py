@@ -7,6 +7,8 @@ ranges with which the polish ends: what the genetic algorithm and the local poli
 import argparse
 from typing import Any
 
+from recordings import WELL_EXCITED
+
 import jointid as jid
 from jointid import _core
 from jointid.cli.demo import data_folder
@@ -59,7 +61,7 @@ def reached(
 
 def main(seeds: int) -> None:
     """Print the table."""
-    excited = jid.load(data_folder() / "well_excited.csv.gz")
+    excited = jid.load(WELL_EXCITED)
     industrial = jid.load(data_folder() / "kr300_joint1.csv.gz")
     thesis, robot = jid.thesis_joint(), jid.Joint.load(data_folder() / "kr300_joint1.toml")
     problems = {

@@ -14,6 +14,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from recordings import WELL_EXCITED
+
 _PROGRAM = """
 import os, subprocess, sys
 import jointid as jid
@@ -97,7 +99,6 @@ def table(names: list[str] | None = None) -> str:
     """The rows as Markdown, all of them by default; without valgrind a sentence."""
     if shutil.which("valgrind") is None:
         return "Instructions were not counted: valgrind is not installed.\n"
-    path = Path(__file__).resolve().parents[1] / "examples" / "data" / "well_excited.csv.gz"
     lines = [
         "| warm call | instructions [10⁶] | required | holds |",
         "|---|---|---|---|",
@@ -105,7 +106,7 @@ def table(names: list[str] | None = None) -> str:
     for row in ROWS:
         if names is not None and row.name not in names:
             continue
-        found = counted(row, path)
+        found = counted(row, WELL_EXCITED)
         holds = "yes" if found <= row.limit else "**no**"
         lines.append(f"| {row.what} | {found:.1f} | ≤ {row.limit:.0f} | {holds} |")
     return "\n".join([*lines, ""])

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import instructions
+from recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.base.files import write_whole
-from jointid.cli.demo import data_folder
 
 _CALLS = """
 import json, math, sys, time
@@ -134,7 +134,7 @@ def measure(runs: int) -> dict[str, float]:
         environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
         environment |= {"PYTHONPYCACHEPREFIX": folder, "OPENBLAS_NUM_THREADS": "1"}
         path = Path(folder) / "run.csv"
-        recording = jid.load(data_folder() / "well_excited.csv.gz")
+        recording = jid.load(WELL_EXCITED)
         header = "time_s,position_rad,velocity_rad_s,torque_Nm,sensor_raw"
         columns = [getattr(recording, name).tolist() for name in recording.signals]
         rows = (",".join(map(repr, row)) for row in zip(*columns, strict=True))

@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from peers.contest import problem_of
+from recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid import _core
-from jointid.cli.demo import data_folder
 from jointid.identification.search.domain import domain_for
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ GENERATIONS = 100
 def long_recording(samples: int) -> jid.Recording:
     """`well_excited` again and again, in continuous time and position, each copy with its own noise."""
     rng = np.random.default_rng(samples)
-    one = jid.load(data_folder() / "well_excited.csv.gz")
+    one = jid.load(WELL_EXCITED)
     assert one.velocity is not None
     assert one.torque is not None
     assert one.sensor is not None

@@ -7,9 +7,9 @@ thesis's own acceptance). A hundred seeds at 200 x 1500, 30 million candidates, 
 import argparse
 
 import numpy as np
+from recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.identification.search.search import Method
 
 TRUTH = {
@@ -42,7 +42,7 @@ def rows() -> dict[str, tuple[Method, jid.GaOptions]]:
 
 def main(names: list[str], seeds: int) -> None:
     """Run and print."""
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     print("| search | all within 5 % | " + " | ".join(TRUTH) + " |")
     print("|---|---|" + "---|" * len(TRUTH))
     for name in names:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from peers.projection import Projection, compiled_decay, numpy_decay
+from recordings import WELL_EXCITED
 from scipy.optimize import Bounds, minimize, minimize_scalar
 from store import Record
 
@@ -65,7 +66,7 @@ def given(name: str, recordings: tuple[jid.Recording, ...], joint: jid.Joint, mo
 def problems() -> list[Given]:
     """The table's rows."""
     folder = data_folder()
-    excited, thesis = jid.load(folder / "well_excited.csv.gz"), jid.thesis_joint()
+    excited, thesis = jid.load(WELL_EXCITED), jid.thesis_joint()
     robot = jid.load(folder / "kr300_joint1.csv.gz")
     robot_joint = jid.Joint.load(folder / "kr300_joint1.toml")
     free = replace(

@@ -4,15 +4,15 @@ import argparse
 import sys
 import time
 
+from recordings import WELL_EXCITED
 from session_soak import count, resident, soak_sessions
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 
 def soak_identification(minutes: float) -> bool:
     """Identify the same recording for so long; whether nothing leaks and no result changes."""
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     options = jid.GaOptions(generations=20)
     first = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options)).penalty
     for _ in range(20):  # allocators settle

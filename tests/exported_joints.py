@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import functools
 
+from example_recordings import WELL_EXCITED
+
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 STRIBECK = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 PLAIN = {"coulomb": 3.1, "viscous": 1.7}
@@ -69,4 +70,4 @@ JOINTS = {"thesis": THESIS, "loaded": LOADED, "everything": EVERYTHING, "sliding
 @functools.cache
 def shipped_estimate() -> jid.Estimate:
     """The estimate of a recording that ships with jointid."""
-    return jid.identify(jid.load(data_folder() / "well_excited.csv.gz"), jid.thesis_joint())
+    return jid.identify(jid.load(WELL_EXCITED), jid.thesis_joint())

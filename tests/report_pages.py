@@ -12,6 +12,7 @@ import defects
 import moving_joints
 import small_arm
 from designs import designed
+from example_recordings import WELL_EXCITED
 from simulated_servo import Truth, bench_runs, servo_joint
 
 import jointid as jid
@@ -27,7 +28,7 @@ _EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "hardware" / "join
 
 @cache
 def good() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def of_a_joint() -> str:

@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 
 import numpy as np
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 _TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 _TRUTH |= {"sensor_gain": 2.4, "sensor_offset": 15.0}
@@ -23,7 +23,7 @@ def write_wrong_files(folder: Path) -> None:
 
 
 def _recordings(folder: Path) -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz").crop(0.0, 5.0)
+    run = jid.load(WELL_EXCITED).crop(0.0, 5.0)
     columns = {
         "time_s": run.time,
         "position_rad": run.position,

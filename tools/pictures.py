@@ -8,16 +8,18 @@ matplotlib.use("Agg")
 from matplotlib import pyplot
 
 import jointid as jid
-from jointid.cli.demo import data_folder, demonstrate
+from jointid.cli.demo import demonstrate
 from jointid.plot import style
 
-FOLDER = Path(__file__).resolve().parents[1] / "docs" / "pictures"
+ROOT = Path(__file__).resolve().parents[1]
+FOLDER = ROOT / "docs" / "pictures"
+SIMULATED = ROOT / "examples" / "data" / "well_excited.csv.gz"
 
 
 def main() -> None:
     """Draw and save them."""
     robot = demonstrate().estimate
-    simulated = jid.identify(jid.load(data_folder() / "well_excited.csv.gz"), jid.thesis_joint())
+    simulated = jid.identify(jid.load(SIMULATED), jid.thesis_joint())
     with style():
         figure, (left, right) = pyplot.subplots(1, 2, figsize=(9.0, 3.6))
         jid.plot.friction_map(None, robot, left).set_title("KUKA KR300, joint 1 (measured)")

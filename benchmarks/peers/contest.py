@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid import _core
-from jointid.cli.demo import data_folder
 from jointid.identification.search.domain import domain_for
 from jointid.problem.problem import Problem
 from jointid.problem.terms import Request, choose_terms
@@ -82,7 +82,7 @@ def make_contest(recording: jid.Recording | None = None) -> Contest:
     """
     joint = jid.thesis_joint()
     if recording is None:
-        recording = jid.load(data_folder() / "well_excited.csv.gz")
+        recording = jid.load(WELL_EXCITED)
     problem, direct = problem_of(recording, joint, WINDOWS)
     domain = domain_for(direct, joint, None, problem.peak_speed)
     assert direct.names[0] == "inertia"

@@ -1,31 +1,34 @@
 #include "base/digits.hpp"
 
-#include <version>
-
-#if defined(__cpp_lib_to_chars)
 #include <array>
-#include <charconv>
-#include <system_error>
-#else
-#include <locale>
-#include <sstream>
-#endif
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
 
 namespace jointid::base {
 
+std::string with_point(std::string_view printed) {
+  constexpr std::string_view kKept = "0123456789+-e";
+  std::string text;
+  bool inside = false;  // of a mark
+  for (const char each : printed) {
+    const bool mark = kKept.find(each) == std::string_view::npos;
+    if (!mark) {
+      text += each;
+    } else if (!inside) {
+      text += '.';
+    }
+    inside = mark;
+  }
+  return text;
+}
+
 std::string with_digits(double number, int digits) {
-#if defined(__cpp_lib_to_chars)
   std::array<char, 64> text{};  // -1.2345678901234567e-308 has 24
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number,
-                                          std::chars_format::general, digits);
-  return error == std::errc() ? std::string(text.data(), end) : std::string("?");
-#else
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(digits);
-  text << number;
-  return text.str();
-#endif
+  const int length = std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+  if (length < 0 || static_cast<std::size_t>(length) >= text.size()) return "?";
+  const std::string_view printed(text.data(), static_cast<std::size_t>(length));
+  return std::isfinite(number) ? with_point(printed) : std::string(printed);
 }
 
 }  // namespace jointid::base

@@ -55,6 +55,16 @@ CHECK_CASE("input error: numbers have so many digits as asked for, and no zeros 
   CHECK(base::with_digits(1.0 / 3.0, 10) == "0.3333333333");
   CHECK(base::with_digits(0.1, 17) == "0.10000000000000001");
   CHECK(base::with_digits(123456.0, 2) == "1.2e+05");
+  CHECK(base::with_digits(-1.2345678901234567e-308, 17) == "-1.2345678901234567e-308");
+  CHECK(base::with_digits(HUGE_VAL, 15) == "inf");
+  CHECK(base::with_digits(-HUGE_VAL, 15) == "-inf");
+}
+
+CHECK_CASE("input error: a number has a point, whatever the locale writes") {
+  CHECK(base::with_point("-2,5") == "-2.5");
+  CHECK(base::with_point("1\xd9\xab"
+                         "5e+05") == "1.5e+05");  // of two bytes
+  CHECK(base::with_point("1e-14") == "1e-14");
 }
 
 }  // namespace

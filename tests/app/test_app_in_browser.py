@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 from browser import browser, require
+from example_recordings import WELL_EXCITED
 from served import LARGEST, Served, require_nicegui, served
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 COUNTS, RATIO, CONSTANT = 1_048_576, 100.0, 0.05
 PATIENCE = 60.0  # [s]: a loaded machine
@@ -105,7 +105,7 @@ def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A recording as a drive's tool writes it: encoder counts and milliamperes, units nowhere."""
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     assert recording.torque is not None
     path = tmp_path_factory.mktemp("log") / "drive.csv"
     rows = ["time,position,motor_current"]

@@ -6,13 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from example_recordings import WELL_EXCITED as LOG
 
 import jointid as jid
 from jointid.app.call import Call, kept
 from jointid.base.advice import Action
-from jointid.cli.demo import data_folder
-
-LOG = data_folder() / "well_excited.csv.gz"
 
 
 def test_advice_is_merged_as_an_action_says() -> None:

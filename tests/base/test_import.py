@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 # What the face itself needs; every other module comes with the first name that needs it.
 FACE = {"jointid", "jointid.base", "jointid.base.interruption", "jointid.base.joining"}
@@ -139,7 +139,7 @@ def test_the_room_that_designs_is_loaded_by_the_first_design() -> None:
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A plain file of numbers."""
     path = tmp_path_factory.mktemp("run") / "run.csv"
-    jid.load(data_folder() / "well_excited.csv.gz").save(path)
+    jid.load(WELL_EXCITED).save(path)
     return path
 
 

@@ -4,12 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from example_recordings import WELL_EXCITED as PATH
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.report.saving import save_report
 
-PATH = data_folder() / "well_excited.csv.gz"
 JOINT = jid.thesis_joint()
 GRID = {"windows": [100]}
 

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_line import main
@@ -17,7 +18,7 @@ from jointid.cli.demo import data_folder
 
 KR300 = str(data_folder() / "kr300_joint1.csv.gz")
 KR300_JOINT = str(data_folder() / "kr300_joint1.toml")
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 
 
 @pytest.fixture(scope="module")

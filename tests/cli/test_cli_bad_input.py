@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_line import main
@@ -11,7 +12,7 @@ from jointid.cli.demo import data_folder
 
 KR300 = str(data_folder() / "kr300_joint1.csv.gz")
 KR300_JOINT = str(data_folder() / "kr300_joint1.toml")
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 
 BAD = {
     "missing file": (["identify", "nothing.csv"], "nothing.csv"),

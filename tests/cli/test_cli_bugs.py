@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli import session
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.session.guard import Guard
 
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 BENCH = str(Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml")
 DEPTHS = {
     "the command": "jointid.cli.commands.load_all",

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line_answers import answer
+from example_recordings import WELL_EXCITED
 from wrong_files import write_wrong_files
 
 import jointid as jid
 from jointid import _core
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 from jointid.cli.values import as_typed, in_sentence
 from jointid.identification.search.search import METHODS
 from jointid.joint.checks import suggestion
 
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 BENCH = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 
 

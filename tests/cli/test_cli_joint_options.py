@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line_answers import answer
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 
 
 @pytest.fixture

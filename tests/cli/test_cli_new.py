@@ -13,13 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line_answers import answer
+from example_recordings import WELL_EXCITED as WELL
 
 import jointid as jid
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 from jointid.joint.new_file import FACTS
-
-WELL = data_folder() / "well_excited.csv.gz"
 
 
 @pytest.fixture(autouse=True)

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 from designs import bench_text
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 QUICK = ("--duration", "4", "--evaluations", "100", "--joints", "2", "--rehearsals", "10")
 COMMANDS = {
     "compare": ("compare", WELL, "--joint", "thesis.toml", "--folds", "3"),

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from message_files import START, State, in_order, joint_state, mcap, motion
 
 import jointid as jid
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 
 pytest.importorskip("mcap")
 pytest.importorskip("rosbags")
@@ -98,7 +98,7 @@ def test_a_joint_is_identified_from_a_log(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The shipped recording as an MCAP file gives the same values, and how it was read is a finding."""
-    run = jid.load(data_folder() / "well_excited.csv.gz").crop(0.0, 8.0)
+    run = jid.load(WELL_EXCITED).crop(0.0, 8.0)
     assert run.torque is not None
     states = [
         State(

@@ -9,14 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 from jointid.cli.progress import StudyProgress
 from jointid.study.sweeping import StudyStep
 
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 TRUTH = {
     "coulomb": 25.0,
     "static": 20.0,
@@ -236,7 +236,7 @@ def test_sweep_knows_own_terms(tmp_path: Path, capsys: Printed) -> None:
 def test_a_sweep_whose_model_nobody_named_says_which_it_has(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    call = ["sweep", str(data_folder() / "well_excited.csv.gz"), "--grid", "windows=50,100"]
+    call = ["sweep", str(WELL_EXCITED), "--grid", "windows=50,100"]
     call += ["--trials", "1", "--method", "separable", "--quiet"]
     assert main(call) == 0
     assert "model: coulomb_viscous, since none is named" in capsys.readouterr().out

@@ -5,16 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
 from jointid.cli.values import in_sentence
 from jointid.cli.wording import Wording
 
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 
 
 def test_a_column_may_be_left_out(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,13 +12,14 @@ import termios
 from pathlib import Path
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_table import HELP
 from jointid.cli.demo import data_folder
 from jointid.cli.terminal import broken
 
-WELL = str(data_folder() / "well_excited.csv.gz")
+WELL = str(WELL_EXCITED)
 KR300 = str(data_folder() / "kr300_joint1.csv.gz")
 BENCH = str(Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml")
 RULE = re.compile(r"-+(?:  -+)+")

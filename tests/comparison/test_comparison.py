@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.base.errors import InputError
-from jointid.cli.demo import data_folder
 from jointid.cli.progress import ComparisonProgress
 from jointid.comparison.comparison import ComparisonStep
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
@@ -32,7 +32,7 @@ def simulated(seed: int, *, seconds: float = 10.0, static: float = 0.0) -> jid.R
 
 @pytest.fixture(scope="module")
 def well_excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 @pytest.fixture(scope="module")

@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.estimate.prediction import FittedModel, TorquePredictor
 from jointid.problem.problem import Problem
 
@@ -13,7 +13,7 @@ from jointid.problem.problem import Problem
 def test_folds_that_pose_the_same_problem_share_its_windows(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     fitted = FittedModel.of(jid.identify(recording, jid.thesis_joint()))
     made = []
     cut = Problem.penalty

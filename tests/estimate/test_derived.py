@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
@@ -17,7 +18,7 @@ from jointid.report.html import html_report
 
 @pytest.fixture(scope="module")
 def estimate() -> jid.Estimate:
-    run = jid.load(data_folder() / "well_excited.csv.gz")
+    run = jid.load(WELL_EXCITED)
     return jid.identify(run, jid.thesis_joint(), search="separable")
 
 
@@ -105,7 +106,7 @@ def test_each_direction_has_its_own() -> None:
 
 
 def test_what_a_model_lacks_is_not_derived() -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz")
+    run = jid.load(WELL_EXCITED)
     plain = jid.identify(run, jid.thesis_joint(), model="coulomb_viscous", search="separable")
     assert plain.derived == {}
     general = jid.identify(run, jid.thesis_joint(), model="stribeck_general", search="separable")
@@ -114,7 +115,7 @@ def test_what_a_model_lacks_is_not_derived() -> None:
 
 
 def test_a_parameter_at_a_bound_leaves_no_error(estimate: jid.Estimate) -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz")
+    run = jid.load(WELL_EXCITED)
     fixed = {"static": 20.0, "stribeck": 100.0}
     found = jid.identify(run, jid.thesis_joint(), parameters=fixed, search="separable")
     assert one(found, "breakaway").stderr == found.parameters["coulomb"].stderr  # static is known

@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.demo import data_folder
@@ -16,7 +17,7 @@ matplotlib.use("Agg")
 
 @pytest.fixture(scope="module")
 def estimate() -> jid.Estimate:
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     return jid.identify(
         recording, jid.thesis_joint(), search=jid.Search(ga=jid.GaOptions(generations=30))
     )
@@ -86,7 +87,7 @@ def test_friction_is_the_model_and_odd(estimate: jid.Estimate) -> None:
 
 def test_friction_band_is_the_interval_of_a_single_parameter(estimate: jid.Estimate) -> None:
     # Far above the Stribeck velocity, df/dviscous = v dominates once coulomb is fixed.
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     fixed = {name: p.value for name, p in estimate.parameters.items() if name != "viscous"}
     single = jid.identify(recording, jid.thesis_joint(), parameters=fixed, search="separable")
     curve = single.friction(2.0)
@@ -158,7 +159,7 @@ def test_every_plot_draws_into_given_axes(estimate: jid.Estimate) -> None:
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(4, 1)
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     drawn = [
         jid.plot.friction_map(recording, estimate, axes[0]),
         jid.plot.window_means(estimate, axes[1]),

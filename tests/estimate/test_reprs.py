@@ -1,15 +1,14 @@
 """What a notebook or a debugger shows of a result is one short line."""
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 
 
 @pytest.fixture(scope="module")
 def estimate() -> jid.Estimate:
-    from jointid.cli.demo import data_folder
-
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     return jid.identify(recording, jid.Joint(sensor=True), model="stribeck")
 
 

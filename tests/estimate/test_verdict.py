@@ -9,9 +9,9 @@ from typing import NamedTuple
 import defects
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.self_test import SelfTest, SelfTestRow
 from jointid.estimate.verdict import LEVELS, judged
@@ -21,7 +21,7 @@ from jointid.report.html import html_report
 
 @cache
 def good() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 @cache

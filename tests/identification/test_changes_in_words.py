@@ -3,9 +3,9 @@
 import re
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.estimate.causes import Cause
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.changes import from_to
@@ -14,7 +14,7 @@ from jointid.identification.causes.changes import from_to
 @pytest.fixture(scope="module")
 def recording() -> jid.Recording:
     """The torque and the position, and nothing else."""
-    full = jid.load(data_folder() / "well_excited.csv.gz")
+    full = jid.load(WELL_EXCITED)
     return jid.Recording(time=full.time, position=full.position, torque=full.torque)
 
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from numpy.typing import NDArray
 
 import jointid as jid
 from jointid import _core
-from jointid.cli.demo import data_folder
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Engine, Outcome
 from jointid.problem.problem import Problem
@@ -39,7 +39,7 @@ CASES = [
 
 @pytest.fixture(scope="module")
 def excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def made(recording: jid.Recording, case: Case) -> tuple[_core.Penalty, SearchDomain]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from defects import DEFECTS, changed, late_velocity
+from example_recordings import WELL_EXCITED
 from simulated_joint import TRUTH
 
 import jointid as jid
@@ -29,7 +30,7 @@ FACTORS = (1.0, 1e2, 1e3, 1e6)  # of a share in per cent, of seconds in ms and Â
 
 @pytest.fixture(scope="module")
 def well_excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def separable(

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid import _core
-from jointid.cli.demo import data_folder
 
 CHOICES: dict[str, list[str]] = {
     "coding": ["real", "binary"],
@@ -283,7 +283,7 @@ def test_identify_takes_the_presets(repo: Path) -> None:
 
 
 def test_identify_resumes_a_killed_search_to_the_same_bits(tmp_path: Path) -> None:
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     options = jid.GaOptions(population=20, generations=120)
     whole = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options, seed=5))
     path = tmp_path / "search.state"
@@ -317,7 +317,7 @@ def test_identify_resumes_a_killed_search_to_the_same_bits(tmp_path: Path) -> No
 
 
 def test_random_search_is_worse_for_the_same_budget() -> None:
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     options = jid.GaOptions(population=60, generations=150, polish=False)
     random, genetic = (
         jid.identify(recording, jid.thesis_joint(), search=jid.Search(method, ga=options))

@@ -4,6 +4,7 @@ import dataclasses
 from pathlib import Path
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.demo import data_folder
@@ -11,7 +12,7 @@ from jointid.cli.demo import data_folder
 
 @pytest.fixture(scope="module")
 def run() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def other(run: jid.Recording, joint: jid.Joint, scale: float = 1.0) -> dict[str, float]:

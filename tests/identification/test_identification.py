@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from reference import window_least_squares
 
 import jointid as jid
@@ -22,7 +23,7 @@ TRUTH = {
 
 @pytest.fixture(scope="module")
 def well_excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 @pytest.fixture(scope="module")

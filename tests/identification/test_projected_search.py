@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from simulated_joint import simulate
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.identification.search.engine import Engine
 
 
@@ -16,7 +16,7 @@ def run() -> jid.Recording:
 
 @pytest.fixture(scope="module")
 def well_excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def values(estimate: jid.Estimate) -> dict[str, float]:

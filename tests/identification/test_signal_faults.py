@@ -4,16 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from simulated_joint import INERTIA, LINK_INERTIA, TRUTH, simulate
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.recording.motion import small_motion
 
 
 @pytest.fixture(scope="module")
 def well() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def seen(run: jid.Recording, counts: int) -> jid.Recording:

@@ -4,15 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.estimate.findings import Finding
 
 
 def written(folder: Path, position: str, velocity: str, *, both: bool = False) -> Path:
     """The shipped recording under these headers, its position (or both) in degrees."""
-    run = jid.load(data_folder() / "well_excited.csv.gz")
+    run = jid.load(WELL_EXCITED)
     speed = np.degrees(run.velocity) if both else run.velocity
     columns = (run.time, np.degrees(run.position), speed, run.torque, run.sensor)
     path = folder / "log.csv"
@@ -66,7 +66,7 @@ def test_a_stated_unit_is_not_overruled(both: bool, tmp_path: Path) -> None:
 def test_turns_are_recognised_by_position_and_velocity(
     signal: str, factor: float, unit: str, tmp_path: Path
 ) -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz")
+    run = jid.load(WELL_EXCITED)
     columns = {"time_s": run.time, "position": run.position, "velocity": run.velocity}
     columns["torque_Nm"], columns["sensor_raw"] = run.torque, run.sensor  # type: ignore[assignment]
     columns[signal] = columns[signal] * factor
@@ -91,7 +91,7 @@ _PER_TURN |= {"rev_s": 1.0}
 def test_two_unstated_units_are_recognised_together(
     position: str, velocity: str, tmp_path: Path
 ) -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz")
+    run = jid.load(WELL_EXCITED)
     angle = run.position / (2.0 * np.pi) * _PER_TURN[position]
     speed = run.velocity / (2.0 * np.pi) * _PER_TURN[velocity]
     path = tmp_path / "log.csv"
@@ -109,7 +109,7 @@ def test_two_unstated_units_are_recognised_together(
 
 
 def test_a_large_factor_without_an_explanation_is_blocking(tmp_path: Path) -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz")
+    run = jid.load(WELL_EXCITED)
     for factor, severity in ((12.3, "blocking"), (1.0 / 12.3, "blocking"), (2.0, "warning")):
         strange = jid.Recording(
             time=run.time, position=run.position, velocity=factor * run.velocity, torque=run.torque

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from closed_loop import thesis_joint
 from defects import DEFECTS, changed, degrees, late_velocity
+from example_recordings import WELL_EXCITED
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
@@ -32,7 +33,7 @@ def separable(recording: jid.Recording, joint: jid.Joint | None = None) -> jid.E
 
 @pytest.fixture(scope="module")
 def well_excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def simulated(folder: Path, name: str) -> jid.Recording:
@@ -302,7 +303,7 @@ def test_each_run_alone_is_as_the_simulator_says(runs: list[jid.Recording]) -> N
 
 
 def test_many_undetermined_parameters_make_a_short_sentence() -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz").crop(stop=3.0)
+    run = jid.load(WELL_EXCITED).crop(stop=3.0)
     orders = ",".join(map(str, range(2, 14)))
     estimate = jid.identify(
         run,

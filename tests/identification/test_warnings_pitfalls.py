@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 
 def moving(noise: float = 0.0, sign: float = 1.0) -> jid.Recording:
@@ -41,7 +41,7 @@ def test_reversed_torque_is_reported_and_no_crash(method: Any) -> None:
 
 
 def test_a_sensor_that_is_dead_is_refused() -> None:
-    well = jid.load(data_folder() / "well_excited.csv.gz")
+    well = jid.load(WELL_EXCITED)
     dead = jid.Recording(
         time=well.time, position=well.position, torque=well.torque, sensor=np.full(len(well), 3.0)
     )
@@ -60,7 +60,7 @@ def test_white_noise_explains_nothing() -> None:
 
 
 def test_a_search_without_polish_says_that_it_just_ended() -> None:
-    well = jid.load(data_folder() / "well_excited.csv.gz")
+    well = jid.load(WELL_EXCITED)
     rough = jid.GaOptions(population=20, generations=3, polish=False)
     estimate = jid.identify(well, jid.thesis_joint(), search=jid.Search(ga=rough))
     assert estimate.status == "stopped"
@@ -102,7 +102,7 @@ BAD = {
 
 @pytest.mark.parametrize(("options", "wording"), BAD.values(), ids=BAD.keys())
 def test_odd_arguments_get_one_sentence(options: dict[str, Any], wording: str) -> None:
-    well = jid.load(data_folder() / "well_excited.csv.gz")
+    well = jid.load(WELL_EXCITED)
     searched = {n: v for n, v in options.items() if n in ("seed", "threads", "ga", "callback")}
     others = {n: v for n, v in options.items() if n not in searched}
     with pytest.raises(jid.InputError, match=wording) as refused:

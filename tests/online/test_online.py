@@ -4,11 +4,11 @@ import threading
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from online_feeding import blocks, fed, shifted
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.online.settings import Settings
 from jointid.online.sliding import Sliding
 from jointid.problem.terms import Request
@@ -16,7 +16,7 @@ from jointid.problem.terms import Request
 
 @pytest.fixture(scope="module")
 def excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def test_agrees_with_the_whole_recording(excited: jid.Recording) -> None:

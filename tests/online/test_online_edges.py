@@ -6,15 +6,15 @@ import sys
 import threading
 
 import pytest
+from example_recordings import WELL_EXCITED
 from online_feeding import blocks
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 
 @pytest.fixture(scope="module")
 def excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz").crop(0.0, 4.0)
+    return jid.load(WELL_EXCITED).crop(0.0, 4.0)
 
 
 @pytest.mark.parametrize("kind", [SystemExit, KeyboardInterrupt, RuntimeError])
@@ -91,8 +91,7 @@ def test_the_first_update_loads_no_module() -> None:
     program = """
 import sys
 import jointid as jid
-from jointid.cli.demo import data_folder
-part = jid.load(data_folder() / "well_excited.csv.gz").crop(0.0, 3.0)
+part = jid.load(sys.argv[1]).crop(0.0, 3.0)
 signals = {name: getattr(part, name) for name in part.signals}
 with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
     before = set(sys.modules)
@@ -101,7 +100,10 @@ with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
     print(sorted(set(sys.modules) - before))
 """
     wording = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+        [sys.executable, "-c", program, str(WELL_EXCITED)],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert wording.stdout.strip() == "[]"
 

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 from numpy.typing import NDArray
 from online_feeding import fed
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.online import sliding
 from jointid.online.plan import Plan, make_plan
 from jointid.online.settings import Settings
@@ -19,7 +19,7 @@ COUNTS = 808_000  # of the encoder, a turn of the output
 
 @pytest.fixture(scope="module")
 def excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def arrays(recording: jid.Recording) -> dict[str, Any]:

@@ -3,11 +3,9 @@
 import warnings
 
 import pytest
+from example_recordings import WELL_EXCITED as PATH
 
 import jointid as jid
-from jointid.cli.demo import data_folder
-
-PATH = data_folder() / "well_excited.csv.gz"
 
 
 @pytest.mark.parametrize("factor", [1e300, -1e150, 1e-300])

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 TRUTH = {
     "coulomb": 25.0,
@@ -22,7 +22,7 @@ THESIS_INERTIA = 2.472e-4 * 101**2
 
 @pytest.fixture(scope="module")
 def well_excited() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 def smooth(torque: dict[str, float], gear_ratio: float = 1.0, seed: int = 1) -> jid.Recording:

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.recording.copies import without_copies
 
 
@@ -29,7 +29,7 @@ def host_logged(well: jid.Recording, seed: int = 1) -> jid.Recording:
 
 @pytest.fixture(scope="module")
 def logged() -> jid.Recording:
-    return host_logged(jid.load(data_folder() / "well_excited.csv.gz").crop(1.0))
+    return host_logged(jid.load(WELL_EXCITED).crop(1.0))
 
 
 def worst(estimate: jid.Estimate) -> float:
@@ -75,7 +75,7 @@ def test_a_coarse_encoder_has_no_copies() -> None:
 
 def test_nothing_is_advised_that_would_harm() -> None:
     # Samples are lost, so that no even clock fits, and the stamps are all there is.
-    well = jid.load(data_folder() / "well_excited.csv.gz")
+    well = jid.load(WELL_EXCITED)
     kept = np.random.default_rng(3).random(len(well)) > 0.1
     lossy = host_logged(
         jid.Recording(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 from jointid.recording.plausibility import range_remark
 from jointid.recording.readers.looking import first_look
 
@@ -22,7 +22,7 @@ def written(path: Path, header: str, rows: int = 20) -> Path:
 
 
 def test_headers_that_say_enough_need_no_proposal() -> None:
-    look = first_look(data_folder() / "well_excited.csv.gz")
+    look = first_look(WELL_EXCITED)
     assert look.certain
     assert not look.problem
     assert {"time", "position", "velocity", "torque", "sensor"} == set(look.signals)

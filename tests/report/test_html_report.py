@@ -4,6 +4,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.demo import data_folder
@@ -61,7 +62,7 @@ def test_a_finding_links_to_its_picture(robot: jid.Estimate) -> None:
 
 
 def test_no_link_leads_to_a_picture_that_is_not_there() -> None:
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     rough = jid.GaOptions(population=20, generations=3, polish=False)
     stopped = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=rough))
     assert "stopped" in {found.code for found in stopped.findings}

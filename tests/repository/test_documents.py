@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from documents import ROOT, blocks, enter, read, run_python_blocks
+from example_recordings import WELL_EXCITED
 from moving_joints import recorded, sines, torques
 
 import jointid as jid
@@ -86,7 +87,7 @@ def test_the_joint_file_in_the_guide_loads(tmp_path: Path) -> None:
 def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the commands read: recordings, a joint with values, and a saved estimate."""
     folder = tmp_path_factory.mktemp("files")
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     estimate = jid.identify(recording, jid.thesis_joint())
     estimate.save(folder / "joint.toml")
     estimate.save(folder / "estimate.json")

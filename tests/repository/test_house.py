@@ -115,6 +115,8 @@ def test_a_clean_house_passes(tmp_path: Path) -> None:
         ("cpp/tests/check.cpp", "#include <Python.h>", "only bind/ knows of Python"),
         ("cpp/base/pool.hpp", "#include <iostream>", "prints nothing"),
         ("cpp/bind/module.cpp", "#include <cstdio>", "prints nothing"),
+        ("cpp/base/digits.cpp", "#include <iostream>", "prints nothing"),
+        ("cpp/base/digits.cpp", 'void f() { printf("1"); }', "prints:"),
         ("cpp/base/pool.cpp", "void f() { std::cerr << 1; }", "prints:"),
         ("cpp/base/pool.cpp", 'void f() { printf("1"); }', "prints:"),
         ("cpp/base/pool.cpp", "#include <boost/any.hpp>", "std and Eigen only"),

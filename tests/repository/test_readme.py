@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 from documents import ROOT, read, run_python_blocks
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 README = read("README.md")
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
@@ -18,7 +18,7 @@ def test_it_is_one_screen_and_a_table_of_links() -> None:
 
 
 def test_the_first_table_is_what_identify_reports() -> None:
-    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    recording = jid.load(WELL_EXCITED)
     printed = {
         line.split()[0]: line
         for line in jid.identify(recording, jid.thesis_joint()).report().splitlines()

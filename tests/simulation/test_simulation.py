@@ -19,12 +19,12 @@ from closed_loop import (
     well_excited,
     wrong_controller,
 )
+from example_recordings import WELL_EXCITED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import jointid as jid
-from jointid.cli.demo import data_folder
 
 
 @pytest.fixture(scope="module")
@@ -280,7 +280,7 @@ def test_commands_that_jump_at_a_reversal_deceive_nobody(
 
 def test_moves_as_an_independent_simulator_does(joint: jid.Joint) -> None:
     """The recording beside the examples: same controller, other code, other noise."""
-    theirs = jid.load(data_folder() / "well_excited.csv.gz")
+    theirs = jid.load(WELL_EXCITED)
     law = wrong_controller().replace(
         boundary=0.9, adaptation=True, adaptation_dry=0.005, adaptation_viscous=0.005
     )

@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid import _core
-from jointid.cli.demo import data_folder
 from jointid.study.row import Row
 from jointid.study.study_file import StudyFile
 from jointid.study.summary import Summary
@@ -38,7 +38,7 @@ TRUTH = {
 
 @pytest.fixture(scope="module")
 def recording() -> jid.Recording:
-    return jid.load(data_folder() / "well_excited.csv.gz")
+    return jid.load(WELL_EXCITED)
 
 
 @pytest.fixture(scope="module")
@@ -585,8 +585,7 @@ def test_a_file_that_is_no_study_is_refused(content: bytes, tmp_path: Path) -> N
 _LONG = """
 import sys
 import jointid as jid
-from jointid.cli.demo import data_folder
-recording = jid.load(data_folder() / "well_excited.csv.gz")
+recording = jid.load(sys.argv[2])
 try:
     jid.sweep(
         recording,
@@ -624,7 +623,9 @@ def test_a_killed_study_goes_on(
     for _ in range(20):
         begun = len(list(_lines(path)))
         child = subprocess.Popen(
-            [sys.executable, "-c", _LONG, str(path)], stdout=subprocess.PIPE, text=True
+            [sys.executable, "-c", _LONG, str(path), str(WELL_EXCITED)],
+            stdout=subprocess.PIPE,
+            text=True,
         )
         while child.poll() is None and len(list(_lines(path))) < begun + 20:
             time.sleep(0.002)

@@ -1,0 +1,5 @@
+"""Where the recordings of the examples lie: the package holds only those of `jointid demo`."""
+
+from pathlib import Path
+
+WELL_EXCITED = Path(__file__).resolve().parents[1] / "examples" / "data" / "well_excited.csv.gz"
