@@ -73,7 +73,7 @@ def layout_of(lines: Sequence[str], source: str, mark: str) -> Layout:
         There is no table.
     """
     each = (k for k, line in enumerate(lines) if line.strip() and not is_comment(line))
-    filled = list(islice(each, SEARCHED))
+    filled = list(islice(each, 3))  # most tables begin at once
     named = separator_named(lines[filled[0]]) if filled else None
     if named:
         filled = filled[1:]
@@ -81,7 +81,7 @@ def layout_of(lines: Sequence[str], source: str, mark: str) -> Layout:
         raise InputError("the file has no header and no rows", place=source)
     first, second = filled[0], filled[1] if len(filled) > 1 else filled[0]
     if not named and not _fits(lines[first], lines[second]):
-        found = _searched(lines, filled, mark)
+        found = _searched(lines, [*filled, *islice(each, SEARCHED - 3)], mark)
         if found is not None:
             return found
     place = f"{source}, line {first + 1}"

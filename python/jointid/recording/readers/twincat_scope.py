@@ -38,8 +38,10 @@ def separator_of_scope(lines: Sequence[str]) -> str | None:
     block = lines[:_BLOCK]
     for key in _KEYS:
         for line in block:
+            if not line.startswith(key):
+                continue
             separator = line[len(key) : len(key) + 1]
-            if line.startswith(key) and separator and separator in "\t;,":
+            if separator and separator in "\t;,":
                 named = any(each.startswith(f"Name{separator}") for each in block)
                 return separator if named else None
     return None
