@@ -3,7 +3,6 @@
 // lanes that live through a loop. All by reference, since vectors as arguments depend on the
 // host's width.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +31,9 @@ inline Four operator-(const Four& a, const Four& b) {
 }
 inline Four operator*(const Four& a, const Four& b) {
   return {{a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]}};
+}
+inline Four operator/(const Four& a, const Four& b) {
+  return {{a[0] / b[0], a[1] / b[1], a[2] / b[2], a[3] / b[3]}};
 }
 inline Four operator*(const Four& a, double factor) {
   return {{a[0] * factor, a[1] * factor, a[2] * factor, a[3] * factor}};

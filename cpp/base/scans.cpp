@@ -73,6 +73,32 @@ JOINTID_CLONES Least least_steps(const double* x, std::size_t steps) {
   return least(x, steps, 1);
 }
 
+JOINTID_CLONES double largest_rate(const double* time, const double* x, std::size_t width,
+                                   std::size_t count) {
+  Four high;
+  fill(high, 0.0);
+  std::size_t k = 0;
+  for (; k + kFour <= count; k += kFour) {
+    Four travel;
+    Four before;
+    load(travel, x + k + width);
+    load(before, x + k);
+    subtract(travel, before);
+    Four taken;
+    load(taken, time + k + width);
+    load(before, time + k);
+    subtract(taken, before);
+    Four rate = travel / taken;
+    take_size(rate);
+    raise(high, rate);
+  }
+  double found = most_of(high);
+  for (; k < count; ++k) {
+    found = std::max(found, std::fabs((x[k + width] - x[k]) / (time[k + width] - time[k])));
+  }
+  return found;
+}
+
 JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::size_t places) {
   Four high;
   fill(high, 0.0);

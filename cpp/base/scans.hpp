@@ -26,6 +26,9 @@ Least least_steps(const double* x, std::size_t steps);
 /// distance from the nearer one, at `places` places; 0 without one.
 double largest_height(const double* x, std::size_t width, std::size_t places);
 
+/// The largest |x[k + width] - x[k]| over the time between both, k < count; 0 without one.
+double largest_rate(const double* time, const double* x, std::size_t width, std::size_t count);
+
 /// How many of `count` finite samples, at least one, have the first one's sign; 0 where that one
 /// is 0.
 std::size_t one_sided(const double* x, std::size_t count);

@@ -1,7 +1,6 @@
 #include "diagnose/spikes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,26 +21,6 @@ constexpr double kSlow = 0.05;      // of the peak speed: friction falls, and ma
 constexpr Eigen::Index kReach = 6;  // samples: a derived velocity tells a reversal no better
 constexpr double kJump = 4.0;       // times the rate that 1 % of the intervals exceed
 constexpr double kClearly = 1e-12;  // rounding never decides
-constexpr Eigen::Index kBlock = 65536;
-
-/// Largest value(k), k < count, in four lanes.
-template <class Value>
-double largest(Eigen::Index count, const base::Cancel* cancel, Value value) {
-  std::array<double, 4> high{};
-  for (Eigen::Index begin = 0; begin < count; begin += kBlock) {
-    if (cancel != nullptr) cancel->check();
-    const Eigen::Index end = std::min(count, begin + kBlock);
-    Eigen::Index k = begin;
-    for (; k + 4 <= end; k += 4) {
-      for (std::size_t j = 0; j < 4; ++j) {
-        const double one = value(k + static_cast<Eigen::Index>(j));
-        high[j] = one > high[j] ? one : high[j];
-      }
-    }
-    for (; k < end; ++k) high[0] = std::max(high[0], value(k));
-  }
-  return *std::max_element(high.begin(), high.end());
-}
 
 /// Changes over `width` samples that are not zero, and those of at least `enough`.
 JOINTID_CLONES void count_changes(const double* x, std::size_t width, std::size_t changes,
@@ -55,6 +34,16 @@ JOINTID_CLONES void count_changes(const double* x, std::size_t width, std::size_
   }
   *positive = some;
   *beyond = many;
+}
+
+/// Intervals over which the rate is below `enough`.
+JOINTID_CLONES std::int64_t count_slower(const double* time, const double* x, std::size_t intervals,
+                                         double enough) {
+  std::int64_t below = 0;
+  for (std::size_t k = 0; k < intervals; ++k) {
+    below += std::fabs((x[k + 1] - x[k]) / (time[k + 1] - time[k])) < enough ? 1 : 0;
+  }
+  return below;
 }
 
 template <class Value>
@@ -162,10 +151,11 @@ std::int64_t largest_jump(const Signal& time, const Signal& position, const base
   const auto rate = [&](Eigen::Index k) {
     return std::fabs((position[k + 1] - position[k]) / (time[k + 1] - time[k]));
   };
-  const double highest = largest(count, cancel, rate);
-  std::int64_t below = 0;
+  const auto intervals = static_cast<std::size_t>(std::max<Eigen::Index>(0, count));
+  const double highest = base::largest_rate(time.data(), position.data(), 1, intervals);
+  if (cancel != nullptr) cancel->check();
   const double enough = highest / kJump * (1.0 + kClearly);
-  for (Eigen::Index k = 0; k < count; ++k) below += rate(k) < enough ? 1 : 0;
+  const std::int64_t below = count_slower(time.data(), position.data(), intervals, enough);
   constexpr double kMost = 0.99;
   if (static_cast<double>(below) <= std::floor(kMost * static_cast<double>(count - 1))) return -1;
   const double usual = base::quantile(

@@ -179,15 +179,20 @@ VectorXd errors_of(const MatrixXd& slopes, const VectorXd& missed, const VectorX
   const MatrixXd weighted = weights.asDiagonal() * slopes;
   const MatrixXd inverse = inverse_of(slopes.transpose() * weighted);
   const auto count = static_cast<Index>(groups.empty() ? 0 : groups.back() + 1);
-  MatrixXd sums = MatrixXd::Zero(slopes.cols(), count);
-  std::vector<bool> seen(static_cast<std::size_t>(count), false);
-  for (Index row = 0; row < missed.size(); ++row) {
-    const std::size_t group = groups[static_cast<std::size_t>(row)];
-    seen[group] = true;
-    sums.col(static_cast<Index>(group)) += weighted.row(row).transpose() * missed[row];
+  MatrixXd sums = MatrixXd::Zero(count, slopes.cols());
+  for (Index part = 0; part < slopes.cols(); ++part) {
+    const double* slope = weighted.col(part).data();
+    double* sum = sums.col(part).data();
+    for (std::size_t row = 0; row < groups.size(); ++row) {
+      sum[groups[row]] += slope[row] * missed[static_cast<Index>(row)];
+    }
   }
-  const auto used = std::max(2.0, static_cast<double>(std::count(seen.begin(), seen.end(), true)));
-  const MatrixXd clustered = inverse * (sums * sums.transpose()) * inverse * used / (used - 1.0);
+  std::size_t pieces = groups.empty() ? 0 : 1;  // they come in order
+  for (std::size_t row = 1; row < groups.size(); ++row) {
+    pieces += groups[row] != groups[row - 1] ? 1 : 0;
+  }
+  const double used = std::max(2.0, static_cast<double>(pieces));
+  const MatrixXd clustered = inverse * (sums.transpose() * sums) * inverse * used / (used - 1.0);
   const double noise = missed.dot(weights.cwiseProduct(missed)) /
                        static_cast<double>(std::max<Index>(1, missed.size() - rank - 1));
   return clustered.diagonal().cwiseMax(noise * inverse.diagonal()).cwiseSqrt();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "base/clones.hpp"
@@ -14,12 +15,12 @@ namespace jointid::signals {
 
 namespace {
 
-constexpr Eigen::Index kReach = 4;       // samples either side over which the speed is taken
+constexpr Eigen::Index kReach = 4;  // samples either side over which the speed is taken
+constexpr auto kWide = static_cast<std::size_t>(2 * kReach);
 constexpr Eigen::Index kStretch = 4096;  // samples
 constexpr Eigen::Index kMost = 1 << 18;  // samples looked at
 constexpr std::size_t kFewest = 40;
-constexpr std::size_t kLanes = 8;  // samples side by side
-constexpr double kFast = 0.3;      // of the peak speed
+constexpr double kFast = 0.3;  // of the peak speed
 constexpr double kSlow = 0.1;
 constexpr double kNormal = 1.4826;  // standard deviation of a normal variable over its
                                     // median deviation
@@ -41,25 +42,6 @@ std::vector<Stretch> stretches(Eigen::Index intervals) {
   return result;
 }
 
-/// Of the speeds over 2 kReach intervals.
-JOINTID_CLONES double largest_speed(const double* time, const double* position, std::size_t count) {
-  constexpr auto kWide = static_cast<std::size_t>(2 * kReach);
-  std::array<double, kLanes> most{};
-  std::size_t k = 0;
-  for (; k + kLanes <= count; k += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double travel = position[k + l + kWide] - position[k + l];
-      const double speed = std::fabs(travel / (time[k + l + kWide] - time[k + l]));
-      most[l] = speed > most[l] ? speed : most[l];
-    }
-  }
-  for (; k < count; ++k) {
-    const double travel = position[k + kWide] - position[k];
-    most[0] = std::max(most[0], std::fabs(travel / (time[k + kWide] - time[k])));
-  }
-  return *std::max_element(most.begin(), most.end());
-}
-
 // Intervals looked at together, and their neighbours: those of the third differences' ends.
 constexpr std::size_t kBlock = 1024;
 
@@ -77,7 +59,6 @@ JOINTID_CLONES void look_at(const double* time, const double* position, double p
                             double stamped, std::size_t count, Intervals& result) {
   const double* t = time + kReach;
   const double* x = position + kReach;
-  constexpr auto kWide = static_cast<std::size_t>(2 * kReach);
   for (std::size_t i = 0; i < count + 2; ++i) {
     const double late = t[i + 1] - t[i] - period;
     const double speed = (position[i + kWide] - position[i]) / (time[i + kWide] - time[i]);
@@ -98,14 +79,14 @@ JOINTID_CLONES void divide(const double* above, const double* below, std::size_t
   for (std::size_t i = 0; i < count; ++i) result[i] = above[i] / below[i];
 }
 
-double median(const std::vector<double>& values) {
+double median(std::span<const double> values) {
   return base::quantile(values.size(), values.size(), 0.5, [&](std::size_t i, double& out) {
     out = values[i];
     return true;
   });
 }
 
-bool median_exceeds(const std::vector<double>& values, double limit) {
+bool median_exceeds(std::span<const double> values, double limit) {
   const auto above = static_cast<std::size_t>(
       std::count_if(values.begin(), values.end(), [limit](double value) { return value > limit; }));
   const std::size_t below = values.size() - above;
@@ -127,20 +108,18 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
     // Third differences need one interval more on either side.
     const Eigen::Index first = part.begin + 1;
     if (part.end - first <= 2 * kReach) continue;
-    peak = std::max(peak, largest_speed(time.data() + first, position.data() + first,
-                                        static_cast<std::size_t>(part.end - first - 2 * kReach)));
+    peak = std::max(peak, base::largest_rate(time.data() + first, position.data() + first, kWide,
+                                             static_cast<std::size_t>(part.end - first) - kWide));
   }
   Intervals seen;
-  std::vector<double> of_time;
-  std::vector<double> fast;
-  std::vector<double> slow;
-  std::vector<double> speeds;
+  // Of these only the first `quick`, or `still`, are written: not set to zero before.
+  Eigen::VectorXd fast;
+  Eigen::VectorXd slow;
+  Eigen::VectorXd speeds;
   std::size_t most = 0;
   for (const auto& part : parts) most += static_cast<std::size_t>(part.end - part.begin);
   const auto error_of = [&](double stamped) {
-    fast.resize(most);
-    slow.resize(most);
-    speeds.resize(most);
+    for (auto* values : {&fast, &slow, &speeds}) values->resize(static_cast<Eigen::Index>(most));
     std::size_t quick = 0;
     std::size_t still = 0;
     for (const auto& part : parts) {
@@ -153,26 +132,25 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
                 count, seen);
         for (std::size_t i = 0; i < count; ++i) {  // without a branch: each is written, few kept
           const double now = seen.usual[i];
-          fast[quick] = seen.rough[i];
-          speeds[quick] = now;
-          slow[still] = seen.rough[i];
+          fast.data()[quick] = seen.rough[i];
+          speeds.data()[quick] = now;
+          slow.data()[still] = seen.rough[i];
           quick += now > kFast * peak ? 1 : 0;
           still += now < kSlow * peak ? 1 : 0;
         }
         k += static_cast<Eigen::Index>(count);
       }
     }
-    fast.resize(quick);
-    slow.resize(still);
-    speeds.resize(quick);
-    of_time.resize(quick);
-    divide(fast.data(), speeds.data(), quick, of_time.data());
-    if (fast.size() < kFewest) return 0.0;
-    const double error = kNormal * median(of_time) / std::sqrt(kThird);
+    if (quick < kFewest) return 0.0;
+    const std::span<const double> changes(fast.data(), quick);
+    const std::span<const double> rates(speeds.data(), quick);
+    Eigen::VectorXd of_time(static_cast<Eigen::Index>(quick));
+    divide(changes.data(), rates.data(), quick, of_time.data());
+    const double error = kNormal * median({of_time.data(), quick}) / std::sqrt(kThird);
     // Two of four medians need only be held against a limit, which counting does.
-    if (!median_exceeds(speeds, smallest / error)) return 0.0;
-    const double floor = slow.size() > kFewest ? median(slow) : 0.0;
-    return median_exceeds(fast, 3.0 * floor) ? error : 0.0;
+    if (!median_exceeds(rates, smallest / error)) return 0.0;
+    const double floor = still > kFewest ? median({slow.data(), still}) : 0.0;
+    return median_exceeds(changes, 3.0 * floor) ? error : 0.0;
   };
   const double stamped = error_of(1.0);
   return {stamped, stamped > 0.0 ? error_of(0.0) : 0.0};

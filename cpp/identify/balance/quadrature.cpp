@@ -35,6 +35,9 @@ class Whole {
     return window.end <= until_;
   }
 
+  /// Where the run of the last window asked for ends: the next ones are whole if they end before.
+  [[nodiscard]] std::int64_t until() const { return until_; }
+
  private:
   const std::uint8_t* flags_;
   std::int64_t last_;
@@ -89,16 +92,15 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
   const std::int64_t last = windows.back().end;
   std::int64_t from = 0;
   std::int64_t to = 0;  // of the intervals in `values`
-  for (std::size_t w = 0; w < windows.size(); ++w) {
-    const bool all = whole(windows[w]);
+  const auto sum_of = [&](const Window& window, bool all) {
     double sum = 0.0;
-    for (auto k = windows[w].begin; k < windows[w].end;) {
+    for (auto k = window.begin; k < window.end;) {
       if (k < from || k >= to) {
         from = k;
-        to = std::min(k + static_cast<std::int64_t>(kBlock), std::max(last, windows[w].end));
+        to = std::min(k + static_cast<std::int64_t>(kBlock), std::max(last, window.end));
         fill(from, static_cast<std::size_t>(to - from), values.data());
       }
-      const auto stop = std::min(windows[w].end, to);
+      const auto stop = std::min(window.end, to);
       const double* value = values.data() + (k - from);
       if (all) {
         sum = add_all(sum, value, value + (stop - k));
@@ -109,7 +111,19 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
         }
       }
     }
-    result[static_cast<Eigen::Index>(w)] = sum;
+    return sum;
+  };
+  for (std::size_t w = 0; w < windows.size();) {
+    const bool all = whole(windows[w]);
+    result[static_cast<Eigen::Index>(w)] = sum_of(windows[w], all);
+    const Window* next = windows.data() + ++w;
+    if (!all) continue;
+    // Short windows are many: those of the same run whose values are there, without a question.
+    const std::int64_t until = std::min(to, whole.until());
+    double* sum = result.data() + w;
+    for (; w < windows.size() && next->end <= until && next->begin >= from; ++w, ++next, ++sum) {
+      *sum = add_all(0.0, values.data() + (next->begin - from), values.data() + (next->end - from));
+    }
   }
 }
 
@@ -143,17 +157,26 @@ JOINTID_CLONES void whole_nodes(const double* time, const double* velocity, std:
 void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uint8_t>& usable,
                  std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
   Whole whole(usable, windows);
-  for (std::size_t w = 0; w < windows.size(); ++w) {
-    const auto [begin, end] = windows[w];
-    double sum = 0.0;
-    if (whole(windows[w])) {
-      sum = signal[end] - signal[begin];
-    } else {
-      for (auto k = begin; k < end; ++k) {
-        if (usable[static_cast<std::size_t>(k)] != 0) sum += signal[k + 1] - signal[k];
-      }
+  const double* x = signal.data();
+  const Window* window = windows.data();
+  const Window* const behind = window + windows.size();
+  double* change = result.data();
+  while (window < behind) {
+    if (whole(*window)) {
+      const std::int64_t from = window->begin;
+      const std::int64_t until = whole.until();
+      do {  // those of one run without a question
+        *change++ = x[window->end] - x[window->begin];
+        ++window;
+      } while (window < behind && window->end <= until && window->begin >= from);
+      continue;
     }
-    result[static_cast<Eigen::Index>(w)] = sum;
+    double sum = 0.0;
+    for (auto k = window->begin; k < window->end; ++k) {
+      if (usable[static_cast<std::size_t>(k)] != 0) sum += x[k + 1] - x[k];
+    }
+    *change++ = sum;
+    ++window;
   }
 }
 

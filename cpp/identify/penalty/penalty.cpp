@@ -147,11 +147,16 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
     }
     choice_.noise_share = std::max(choice_.noise_share, choice.noise_share);
     choice_.noise_limited = choice_.noise_limited || choice.noise_limited;
-    const auto windows =
+    auto windows =
         cut_windows(recordings[i]->recording(), recordings[i]->usable(), choice.duration);
-    windows_.insert(windows_.end(), windows.begin(), windows.end());
     recording_of_.insert(recording_of_.end(), windows.size(), static_cast<int>(i));
+    lengths.reserve(lengths.size() + windows.size());
     for (const auto& window : windows) lengths.push_back(time[window.end] - time[window.begin]);
+    if (windows_.empty()) {
+      windows_.swap(windows);
+    } else {
+      windows_.insert(windows_.end(), windows.begin(), windows.end());
+    }
   }
   if (!lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);

@@ -95,6 +95,7 @@ std::vector<Window> cut_windows(const RecordingView& r, const std::vector<std::u
     const double length = r.time[stretch.end] - r.time[stretch.begin];
     const auto wanted = static_cast<std::int64_t>(std::llround(length / duration));
     const auto count = std::clamp<std::int64_t>(wanted, 1, intervals);
+    windows.reserve(windows.size() + static_cast<std::size_t>(count));
     for (std::int64_t i = 0; i < count; ++i) {
       const Window window{stretch.begin + intervals * i / count,
                           stretch.begin + intervals * (i + 1) / count};

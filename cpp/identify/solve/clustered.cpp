@@ -14,6 +14,7 @@ using Eigen::VectorXd;
 
 // What is left of a direction's freedom outside a segment that determines it all.
 constexpr double kLeast = 0.05;
+constexpr Index kRows = 512;  // whose scores are computed at once
 
 }  // namespace
 
@@ -70,10 +71,14 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
 VectorXd variances_of_rows(const MatrixXd& rows, const VectorXd& residual,
                            const MatrixXd& whitening) {
   VectorXd total = VectorXd::Zero(whitening.cols());
-  VectorXd effect;
-  for (Index i = 0; i < rows.cols(); ++i) {
-    effect.noalias() = whitening.transpose() * rows.col(i);
-    total.array() += (effect * residual[i]).array().square();
+  MatrixXd effects;  // of the rows of a block, which stays in the cache
+  for (Index first = 0; first < rows.cols(); first += kRows) {
+    const Index count = std::min(kRows, rows.cols() - first);
+    effects.noalias() = whitening.transpose() * rows.middleCols(first, count);
+    const auto missed = residual.segment(first, count).transpose().array();
+    for (Index p = 0; p < total.size(); ++p) {
+      total[p] += (effects.row(p).array() * missed).square().sum();
+    }
   }
   return total;
 }

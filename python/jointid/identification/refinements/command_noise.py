@@ -38,14 +38,20 @@ class Repeated:
     shift : Shift
     share : float
         Correlation of both noises.
-    reading_size, torque_size : float
-        Of the third differences of both, clipped.
+    pieces : sequence of Piece
+        In which it was seen, each with a sensor.
     """
 
     shift: Shift
     share: float
-    reading_size: float
-    torque_size: float
+    pieces: Sequence[Piece]
+
+    @property
+    def torque_over_reading(self) -> float:
+        """How large the torque's third differences are, over those of the reading."""
+        reading = np.mean([_core.roughness(p.sensor) for p in self.pieces if p.sensor is not None])
+        torque = np.mean([_core.roughness(piece.torque) for piece in self.pieces])
+        return float(torque / reading)
 
 
 def delay_in_command(pieces: Sequence[Piece]) -> Repeated | None:
@@ -90,14 +96,7 @@ def delay_in_command(pieces: Sequence[Piece]) -> Repeated | None:
         friction=(value, stderr),
         unexplained=0.0,
     )
-    return Repeated(
-        shift=shift,
-        share=total,
-        reading_size=float(
-            np.mean([_core.roughness(p.sensor) for p in pieces if p.sensor is not None])
-        ),
-        torque_size=float(np.mean([_core.roughness(p.torque) for p in pieces])),
-    )
+    return Repeated(shift=shift, share=total, pieces=pieces)
 
 
 def _products(piece: Piece) -> Array:

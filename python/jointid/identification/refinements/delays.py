@@ -170,7 +170,7 @@ def _sensor(motion: Motion) -> tuple[Shift, bool] | None:
         late = told is not None and told.shift.value > max(SMALL, _LEAST_IN_COMMAND * period)
         if told is not None and late and (found is None or found.agrees(told.shift, _ALIKE)):
             # Noise of the torque that the joint answers comes before the reading, too.
-            answer = motion.answer() * told.torque_size / told.reading_size
+            answer = motion.answer() * told.torque_over_reading
             if told.share > _BEYOND_ANSWER * abs(answer):
                 return told.shift, True
             told = None
