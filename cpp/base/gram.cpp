@@ -52,11 +52,18 @@ Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left
 }
 
 Eigen::VectorXd products(const Eigen::Ref<const Eigen::MatrixXd>& left,
-                         const Eigen::VectorXd& right) {
+                         const Eigen::Ref<const Eigen::VectorXd>& right) {
   Eigen::VectorXd result(left.cols());
   multiply(right.data(), left.data(), static_cast<std::size_t>(left.outerStride()),
            static_cast<std::size_t>(left.cols()), static_cast<std::size_t>(left.rows()),
            result.data());
+  return result;
+}
+
+Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                       const Eigen::VectorXd& coefficients) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(columns.rows());
+  subtract_sum(columns, -coefficients, result);
   return result;
 }
 

@@ -12,7 +12,11 @@ Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left
 
 /// left' right of a matrix and one column.
 Eigen::VectorXd products(const Eigen::Ref<const Eigen::MatrixXd>& left,
-                         const Eigen::VectorXd& right);
+                         const Eigen::Ref<const Eigen::VectorXd>& right);
+
+/// A sum of columns, each times its coefficient.
+Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                       const Eigen::VectorXd& coefficients);
 
 /// Takes a sum of columns, each times its coefficient, from `rest`.
 void subtract_sum(const Eigen::Ref<const Eigen::MatrixXd>& columns,

@@ -54,6 +54,18 @@ GaState state_of(const py::bytes& bytes) {
   return search::state_from_bytes(static_cast<std::string_view>(bytes));
 }
 
+/// A row a generation, a column a field.
+Eigen::Matrix<double, Eigen::Dynamic, 7> series_of(const GaResult& result) {
+  Eigen::Matrix<double, Eigen::Dynamic, 7> series(static_cast<Eigen::Index>(result.history.size()),
+                                                  7);
+  for (Eigen::Index i = 0; i < series.rows(); ++i) {
+    const auto& one = result.history[static_cast<std::size_t>(i)];
+    series.row(i) << one.number, one.best, one.mean, one.diversity, one.crossover_probability,
+        one.mutation_probability, static_cast<double>(one.evaluations);
+  }
+  return series;
+}
+
 void bind_options(py::module_& m) {
   value(
       m, "GaOptions", "Settings of the genetic algorithm. Choices are given and shown as words.",
@@ -224,6 +236,9 @@ void bind_genetic(py::module_& m) {
       .def_readonly("best", &GaResult::best)
       .def_readonly("penalty", &GaResult::penalty)
       .def_readonly("history", &GaResult::history)
+      .def_property_readonly("series", &series_of,
+                             "A row a generation: number, best, mean, diversity, probabilities of "
+                             "crossover and mutation, evaluations.")
       .def_readonly("evaluations", &GaResult::evaluations)
       .def_readonly("stop", &GaResult::stop)
       .def_readonly("state", &GaResult::state,

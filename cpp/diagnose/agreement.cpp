@@ -2,6 +2,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/clones.hpp"
+#include "base/four.hpp"
 #include "base/quantile.hpp"
 #include "diagnose/consistency.hpp"
 
@@ -18,6 +20,25 @@ struct Row {
   double change;
   double moved;
 };
+
+/// Of a velocity over a block, by the trapezoid rule.
+JOINTID_CLONES double path_of(const double* time, const double* velocity) {
+  base::Four sum;
+  base::fill(sum, 0.0);
+  for (std::size_t i = 0; i < kLength; i += base::kFour) {
+    base::Four speed;
+    base::Four next;
+    base::Four taken;
+    base::Four before;
+    base::load(speed, velocity + i);
+    base::load(next, velocity + i + 1);
+    base::load(taken, time + i + 1);
+    base::load(before, time + i);
+    base::subtract(taken, before);
+    sum = sum + (speed + next) * taken;
+  }
+  return 0.5 * base::sum_of(sum);
+}
 
 /// Least squares of two columns by orthogonalising the second to the first.
 struct Fit {
@@ -81,10 +102,7 @@ std::optional<Agreement> velocity_agreement(const Signal& time, const Signal& po
     if (cancel != nullptr && first % 65536 == 0) cancel->check();
     const Eigen::Index last = first + kLength;
     if (!(time[last] - time[first] < usual)) continue;
-    double path = 0.0;
-    for (Eigen::Index k = first; k < last; ++k) {
-      path += 0.5 * (velocity[k] + velocity[k + 1]) * (time[k + 1] - time[k]);
-    }
+    const double path = path_of(time.data() + first, velocity.data() + first);
     rows.push_back({path, velocity[last] - velocity[first], position[last] - position[first]});
   }
   if (rows.size() < kFewest) return std::nullopt;

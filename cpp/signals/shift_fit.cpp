@@ -246,7 +246,7 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
   VectorXd weights = VectorXd::Ones(count);
   VectorXd level;
   VectorXd rest;
-  VectorXd fitted(count);
+  VectorXd fitted;
   VectorXd rate(count);
   VectorXd slope;
   VectorXd missed;
@@ -266,9 +266,8 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
       for (Index part = 0; part < slopes.cols(); ++part) {
         const Index first = part == 0 ? 0 : rows.conservative;
         const Index columns = part == 0 ? rows.conservative : width - rows.conservative;
-        fitted.setZero();
-        base::subtract_sum(rows.columns.middleCols(first, columns), -found.segment(first, columns),
-                           fitted);
+        fitted =
+            base::sum_of(rows.columns.middleCols(first, columns), found.segment(first, columns));
         rest -= fitted;
         rates.of(fitted, rate);
         projection->rest(rate, slope);

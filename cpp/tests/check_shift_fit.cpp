@@ -148,14 +148,15 @@ CHECK_CASE("segments: the sandwich of scores that are corrected for the freedom 
   MatrixXd whitening(2, 3);
   whitening << 1.0, 0.5, 0.0, -1.0, 0.0, 2.0;
   whitening *= 0.05;  // a segment holds a part of each direction
-  const MatrixXd rows = whitening * jacobian.transpose();
+  const MatrixXd rows = identify::whitened_rows(jacobian, whitening);
+  CHECK((rows - jacobian * whitening.transpose()).norm() < 1e-13 * rows.norm());
   const auto found = identify::cluster(rows, residual, whitening, {0, 20, 50});
   MatrixXd covariance = MatrixXd::Zero(3, 3);
   double size = 0.0;
   double squares = 0.0;
   VectorXd even = VectorXd::Zero(3);
   for (const auto& [first, length] : {std::pair<Index, Index>{0, 20}, {20, 30}}) {
-    const MatrixXd mine = rows.middleCols(first, length);
+    const MatrixXd mine = rows.middleRows(first, length).transpose();
     const MatrixXd shares = mine * mine.transpose();
     const MatrixXd left = MatrixXd::Identity(2, 2) - shares;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(left);
@@ -175,7 +176,7 @@ CHECK_CASE("segments: the sandwich of scores that are corrected for the freedom 
   CHECK(std::fabs(found.pooled_freedom - 4.0 / squares) < 1e-9 * found.pooled_freedom);
   // Of rows alone nothing is corrected.
   const VectorXd alone = identify::variances_of_rows(rows, residual, whitening);
-  const MatrixXd effects = residual.asDiagonal() * (rows.transpose() * whitening);
+  const MatrixXd effects = residual.asDiagonal() * (rows * whitening);
   CHECK((alone - effects.colwise().squaredNorm().transpose()).norm() < 1e-12 * alone.norm());
 }
 

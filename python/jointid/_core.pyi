@@ -1054,6 +1054,11 @@ class GaResult:
     @property
     def penalty(self) -> float: ...
     @property
+    def series(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 7]"]:
+        """
+        A row a generation: number, best, mean, diversity, probabilities of crossover and mutation, evaluations.
+        """
+    @property
     def state(self) -> GaState | None:
         """
         From which the search can go on; None after a random search.

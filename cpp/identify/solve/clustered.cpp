@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/gram.hpp"
+
 namespace jointid::identify {
 
 namespace {
@@ -14,12 +16,15 @@ using Eigen::VectorXd;
 
 // What is left of a direction's freedom outside a segment that determines it all.
 constexpr double kLeast = 0.05;
-constexpr Index kRows = 512;  // whose scores are computed at once
 
 }  // namespace
 
 MatrixXd whitened_rows(const Eigen::Ref<const MatrixXd>& jacobian, const MatrixXd& whitening) {
-  return whitening * jacobian.transpose();
+  MatrixXd rows(jacobian.rows(), whitening.rows());
+  for (Index i = 0; i < rows.cols(); ++i) {
+    rows.col(i) = base::sum_of(jacobian, whitening.row(i).transpose());
+  }
+  return rows;
 }
 
 Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd& whitening,
@@ -31,10 +36,10 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
   result.segments = count;
   result.covariance.setZero(parameters, parameters);
   result.freedom = VectorXd::Ones(parameters);
-  if (rows.rows() == 0) return result;  // nothing is determined
+  if (rows.cols() == 0) return result;  // nothing is determined
   VectorXd even = VectorXd::Zero(parameters);
   double pooled = 0.0;
-  Eigen::SelfAdjointEigenSolver<MatrixXd> solver(rows.rows());
+  Eigen::SelfAdjointEigenSolver<MatrixXd> solver(rows.cols());
   MatrixXd shares;
   MatrixXd whitened;
   VectorXd scores;
@@ -43,9 +48,9 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
   for (Index i = 0; i < count; ++i) {
     const Index first = cuts[static_cast<std::size_t>(i)];
     const Index length = cuts[static_cast<std::size_t>(i) + 1] - first;
-    const auto mine = rows.middleCols(first, length);
-    shares.noalias() = mine * mine.transpose();
-    scores.noalias() = mine * residual.segment(first, length);
+    const auto mine = rows.middleRows(first, length);
+    shares = base::symmetric_products(mine, mine);
+    scores = base::products(mine, residual.segment(first, length));
     solver.compute(shares);
     corrected.noalias() = solver.eigenvectors().transpose() * scores;
     corrected.array() /= (1.0 - solver.eigenvalues().array()).max(kLeast).sqrt();
@@ -63,22 +68,16 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
     }
   }
   result.freedom = even.unaryExpr([](double value) { return value > 0.0 ? 1.0 / value : 1.0; });
-  const auto directions = static_cast<double>(rows.rows());
+  const auto directions = static_cast<double>(rows.cols());
   result.pooled_freedom = directions * directions / std::max(pooled, 1e-300);
   return result;
 }
 
 VectorXd variances_of_rows(const MatrixXd& rows, const VectorXd& residual,
                            const MatrixXd& whitening) {
-  VectorXd total = VectorXd::Zero(whitening.cols());
-  MatrixXd effects;  // of the rows of a block, which stays in the cache
-  for (Index first = 0; first < rows.cols(); first += kRows) {
-    const Index count = std::min(kRows, rows.cols() - first);
-    effects.noalias() = whitening.transpose() * rows.middleCols(first, count);
-    const auto missed = residual.segment(first, count).transpose().array();
-    for (Index p = 0; p < total.size(); ++p) {
-      total[p] += (effects.row(p).array() * missed).square().sum();
-    }
+  VectorXd total(whitening.cols());
+  for (Index p = 0; p < total.size(); ++p) {
+    total[p] = base::sum_of(rows, whitening.col(p)).cwiseProduct(residual).squaredNorm();
   }
   return total;
 }

@@ -17,12 +17,11 @@ struct Clustered {
   double pooled_freedom = 0.0;
 };
 
-/// The directions that `whitening` makes of the Jacobian's rows, a column each.
+/// The directions that `whitening` makes of the Jacobian's rows: a row each, a column a direction.
 Eigen::MatrixXd whitened_rows(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
                               const Eigen::MatrixXd& whitening);
 
-/// `rows` are the directions that `whitening` makes of the Jacobian's rows, a column each; segments
-/// are from one cut to the next.
+/// Of whitened rows; segments are from one cut to the next.
 Clustered cluster(const Eigen::MatrixXd& rows, const Eigen::VectorXd& residual,
                   const Eigen::MatrixXd& whitening, const std::vector<std::int64_t>& cuts);
 

@@ -95,7 +95,9 @@ def infer(
     free_jacobian = jacobian[:, kept]
     del jacobian
     centre = _centre(penalty, columns, kept)
-    segments = motion_segments(Motion.of(problem, penalty))
+    apart = penalty.cumulative  # the table's windows are then not the penalty's
+    motion = Motion.of(problem, penalty) if apart else Motion.of_table(table)
+    segments = motion_segments(motion)
     spread = parameter_covariance(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.problem.problem import Problem
+from jointid.problem.window_table import WindowTable
 from jointid.recording.order_statistics import distinct
 
 Array = NDArray[np.float64]
@@ -73,6 +74,12 @@ class Motion:
             start[mine], stop[mine] = recording.time[first], recording.time[last]
             travel[mine] = recording.position[last] - recording.position[first]
         return cls(start=start, stop=stop, travel=travel, recording=run)
+
+    @classmethod
+    def of_table(cls, table: WindowTable) -> Motion:
+        """Return the motion in windows of which a table is known."""
+        travel = table.velocity * (table.stop - table.start)
+        return cls(start=table.start, stop=table.stop, travel=travel, recording=table.recording)
 
     @property
     def moved(self) -> Array:

@@ -49,7 +49,10 @@ class Stretch:
     @cached_property
     def unusable_before(self) -> NDArray[np.int64]:
         """How many samples before each are not usable, shape (n + 1,)."""
-        return np.concatenate([[0], np.cumsum(~self.usable)])
+        before = np.empty(len(self.usable) + 1, dtype=np.int64)
+        before[0] = 0
+        np.cumsum(~self.usable, out=before[1:])
+        return before
 
     @cached_property
     def turned_before(self) -> NDArray[np.int64]:
@@ -114,11 +117,20 @@ class SmoothWindows:
         kept = np.ones(len(self.middles), dtype=bool)
         if self.usable_only:
             before = stretch.unusable_before
-            kept = before[self.middles + self.half] == before[self.middles - self.half]
+            kept = self._beside(before, self.half) == self._beside(before, -self.half)
         if self.clear:
             turned = stretch.turned_before
-            kept &= turned[self.middles + self.clear] - turned[self.middles - self.clear] == 0
+            kept &= self._beside(turned, self.clear) == self._beside(turned, -self.clear)
         return np.asarray(kept)
+
+    def _beside(self, counts: NDArray[np.int64], apart: int) -> NDArray[np.int64]:
+        """Those of the samples so many behind the middles, which lie evenly."""
+        if not len(self.middles):
+            return counts[:0]
+        first = int(self.middles[0]) + apart
+        return counts[first : first + len(self.middles) * self.stride : self.stride][
+            : len(self.middles)
+        ]
 
     @cached_property
     def used(self) -> NDArray[np.int64]:

@@ -163,19 +163,15 @@ def _finished(
 
 
 def _convergence(result: _core.GaResult) -> Convergence:
-    history = result.history  # made anew whenever it is asked for
-
-    def series(name: str) -> Array:
-        return np.array([getattr(g, name) for g in history], dtype=np.float64)
-
+    number, best, mean, diversity, crossover, mutation, evaluations = result.series.T
     return Convergence(
-        generation=np.array([g.number for g in history], dtype=np.int64),
-        best=series("best"),
-        mean=series("mean"),
-        diversity=series("diversity"),
-        crossover_probability=series("crossover_probability"),
-        mutation_probability=series("mutation_probability"),
-        evaluations=np.array([g.evaluations for g in history], dtype=np.int64),
+        generation=number.astype(np.int64),
+        best=best,
+        mean=mean,
+        diversity=diversity,
+        crossover_probability=crossover,
+        mutation_probability=mutation,
+        evaluations=evaluations.astype(np.int64),
     )
 
 
