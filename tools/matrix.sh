@@ -28,8 +28,9 @@ enter() {
   [ -e "$root/.made" ] || fail "there is no root yet: run the part root"
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
   mountpoint -q "$root/dev" || mount --bind /dev "$root/dev"
-  mountpoint -q "$root/dev/shm" || mount --bind /dev/shm "$root/dev/shm"
-  trap 'umount -l "$root/dev/shm" "$root/dev" "$root/proc" 2>/dev/null || true' EXIT
+  local each  # what is mounted on /dev does not come with it: shared memory, terminals
+  for each in shm pts; do mountpoint -q "$root/dev/$each" || mount --bind "/dev/$each" "$root/dev/$each"; done
+  trap 'umount -l "$root/dev/shm" "$root/dev/pts" "$root/dev" "$root/proc" 2>/dev/null || true' EXIT
 }
 
 part_root() {

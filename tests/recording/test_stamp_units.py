@@ -145,7 +145,7 @@ def test_integers_of_frames_are_exact() -> None:
 
 def test_a_date_that_is_missing_is_named() -> None:
     dates = np.array([EPOCH + 10**6 * k for k in range(N)]).astype("M8[ns]")
-    dates[3] = np.datetime64("NaT")
+    dates[3] = np.datetime64("NaT", "ns")
     frame = pandas.DataFrame({"time": dates, "q_rad": np.arange(N) ** 2.0})
     with pytest.raises(InputError, match="row 3, column 'time': the cell is empty"):
         Recording.from_dataframe(frame)
