@@ -15,7 +15,8 @@ REQUIRED = "JOINTID_REQUIRE_VCAN"
 
 _MEMORY = "512M"
 _INIT = Path(__file__).with_name("init.sh")
-_CLOCK = Path(__file__).with_name("guest_clock.c")
+# Preloaded into the guest.
+_PRELOADED = [Path(__file__).with_name(f"guest_{part}.c") for part in ("clock", "registers")]
 _SYSTEM = ":/usr/sbin:/sbin"  # where an ordinary user's PATH may not lead
 _COMPILERS = ("cc", "gcc", "clang")
 _MODULES = Path("/usr/lib/uml/modules")
@@ -71,7 +72,7 @@ class Guest:
             stdin=subprocess.DEVNULL,
             stdout=self._console,
             stderr=subprocess.STDOUT,
-            env={**os.environ, "LD_PRELOAD": str(_clock(folder))},
+            env={**os.environ, "LD_PRELOAD": str(_preloaded(folder))},
             start_new_session=True,
         )
 
@@ -119,9 +120,11 @@ class Guest:
         return "\n".join(texts)
 
 
-def _clock(folder: Path) -> Path:
-    """Compile the guest's clock."""
+def _preloaded(folder: Path) -> Path:
+    """Compile the guest's clock, and what its programs' registers need."""
     compiler = next(filter(None, map(shutil.which, _COMPILERS)))
-    library = folder / "guest_clock.so"
-    subprocess.run((compiler, "-shared", "-fPIC", "-O2", "-o", library, _CLOCK, "-ldl"), check=True)
+    library = folder / "preloaded.so"
+    subprocess.run(
+        (compiler, "-shared", "-fPIC", "-O2", "-o", library, *_PRELOADED, "-ldl"), check=True
+    )
     return library
