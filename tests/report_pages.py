@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 
 import defects
 import moving_joints
+import pytest
 import small_arm
 from designs import designed
 from example_recordings import WELL_EXCITED
@@ -111,6 +112,7 @@ def of_a_refused_design() -> str:
 
 @cache
 def arm() -> tuple[jid.Robot, jid.RobotRecording]:
+    pytest.importorskip("pinocchio")
     with TemporaryDirectory() as folder:
         path = small_arm.urdf(Path(folder))
         return jid.Robot.from_urdf(path), small_arm.recording(path, duration=8.0)

@@ -18,6 +18,20 @@ probabilities = st.one_of(
 )
 
 
+# SciPy's own quantiles have been exact since some version only: one is known, of another the probability.
+_half_width = math.sqrt(special.chndtrix(0.95, 1.0, 4.0))
+_covered = special.ndtr(_half_width - 2.0) - special.ndtr(-_half_width - 2.0)
+of_student = pytest.mark.skipif(
+    not math.isclose(special.stdtrit(1.0, 0.9), math.tan(0.4 * math.pi), rel_tol=1e-14),
+    reason="this SciPy's quantile of Student's t is off by 1e-11",
+)
+of_covering = pytest.mark.skipif(
+    not math.isclose(_covered, 0.95, rel_tol=1e-14),
+    reason="this SciPy's noncentral quantile is off by 1e-11",
+)
+
+
+@of_student
 @settings(max_examples=500, deadline=None, derandomize=True)
 @given(probabilities, freedoms)
 def test_student_is_scipy_s(probability: float, freedom: float) -> None:
@@ -44,6 +58,7 @@ def test_the_probability_of_a_quantile_comes_back(probability: float, freedom: f
         assert tail == pytest.approx(min(probability, 1.0 - probability), rel=1e-10)
 
 
+@of_student
 @pytest.mark.parametrize("freedom", [1.0, 1.5, 5.0, 37.3, 400.0, 1e6])
 def test_student_at_its_usual_place(freedom: float) -> None:
     for probability in (0.5, 0.9, 0.95, 0.975, 0.995):
@@ -70,6 +85,7 @@ def test_chi_square_is_scipy_s(tail: float, freedom: float) -> None:
         assert found == pytest.approx(there, rel=2e-12)
 
 
+@of_covering
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(
     st.floats(0.01, 0.999),

@@ -94,6 +94,7 @@ def test_momentum_and_force_are_pinocchio_s(urdf: Path) -> None:
 
 
 def test_a_chosen_chain_keeps_the_other_joints_at_zero(urdf: Path) -> None:
+    pytest.importorskip("pinocchio")
     whole = tree_of_urdf(urdf, None, GRAVITY)
     part = tree_of_urdf(urdf, ["turn", "spin"], GRAVITY)
     assert part.names == ("turn", "spin")

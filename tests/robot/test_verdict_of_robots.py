@@ -15,6 +15,7 @@ from jointid.estimate.findings import Finding
 
 @pytest.fixture(name="robot", scope="module")
 def _robot(tmp_path_factory: pytest.TempPathFactory) -> jid.Robot:
+    pytest.importorskip("pinocchio")
     return jid.Robot.from_urdf(small_arm.urdf(tmp_path_factory.mktemp("arm")))
 
 
