@@ -16,7 +16,7 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
-from jointid.identification.inference.covariance import parameter_covariance
+from jointid.identification.inference.covariance import Triangle, parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
     joint_of,
@@ -25,7 +25,11 @@ from jointid.identification.inference.inference import (
 )
 from jointid.identification.inference.own_noise import own_systematic
 from jointid.identification.inference.segments import Motion, motion_segments
-from jointid.identification.inference.systematic import admissible_shifts, systematic_errors
+from jointid.identification.inference.systematic import (
+    admissible_shifts,
+    lacking_torques,
+    systematic_errors,
+)
 from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.refinements.refinements import Refinements
@@ -98,16 +102,18 @@ def infer(
     apart = penalty.cumulative  # the table's windows are then not the penalty's
     motion = Motion.of(problem, penalty) if apart else Motion.of_table(table)
     segments = motion_segments(motion)
+    # One decomposition serves the covariance and all that may be lacking.
+    lacking = lacking_torques(problem, penalty, best, columns) if kept else {}
+    triangle = Triangle(np.column_stack([free_jacobian, *lacking.values()]), threads)
+    own = triangle.matrix[: len(kept), : len(kept)]
     spread = parameter_covariance(
-        free_jacobian, residual, centre, threads=threads, segments=segments
+        free_jacobian, residual, centre, own, threads=threads, segments=segments
     )
     spread = with_undivided(spread, kept, free, names, groups)
     instant = refinements.sensor_instant
     unknown = 1.0 if instant is None else instant.unknown
     counted = admissible_shifts(penalty, shifts)
-    parts = systematic_errors(
-        problem, penalty, best, kept, free_jacobian, columns, counted, unknown
-    )
+    parts = systematic_errors(kept, len(best), triangle, lacking, counted, unknown)
     lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
     if any(lags.values()):
         from jointid.identification.inference.lag import of_lags

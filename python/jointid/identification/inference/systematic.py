@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,13 +30,33 @@ def admissible_shifts(
     return (None if doubled is not None and penalty.noise_share > _SHARE else halved), doubled
 
 
+def lacking_torques(
+    problem: Problem, penalty: _core.Penalty, best: Array, columns: Array
+) -> dict[str, Array]:
+    """Return what the residuals may lack in each window, by the name of the cause.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (windows, coefficients)
+        The penalty's columns at `best`.
+
+    Returns
+    -------
+    mapping of str to ndarray, shape (windows,)
+        Parts that do not apply are missing.
+    """
+    lacking = {
+        "sampling": _of_sampling(problem, penalty, best, columns),
+        "curvature": _of_curvature(problem, penalty, best),
+    }
+    return {name: torque for name, torque in lacking.items() if torque is not None}
+
+
 def systematic_errors(
-    problem: Problem,
-    penalty: _core.Penalty,
-    best: Array,
     free: list[int],
-    jacobian: Array,
-    columns: Array,
+    count: int,
+    triangle: Triangle,
+    lacking: Collection[str],
     shifts: tuple[Array | None, Array | None],
     instant: float = 1.0,
 ) -> dict[str, Array]:
@@ -43,11 +65,13 @@ def systematic_errors(
     Parameters
     ----------
     free : list of int
-        Free parameters: the columns of `jacobian`.
-    jacobian : ndarray, shape (windows, free)
-        Derivatives of the residuals at `best`.
-    columns : ndarray, shape (windows, coefficients)
-        The penalty's columns at `best`.
+        Free parameters.
+    count : int
+        Of all parameters.
+    triangle : Triangle
+        Of the residuals' derivatives by the free parameters, and behind them of what is lacking.
+    lacking : collection of str
+        The causes of what is lacking, in that order.
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled; those that count.
     instant : float
@@ -62,13 +86,11 @@ def systematic_errors(
     moved = [shift[free] for shift in shifts if shift is not None]
     if moved:
         parts["windows"] = np.sqrt(np.mean(np.square(moved), axis=0))
-    of_sampling = _of_sampling(problem, penalty, best, jacobian, columns)
-    if of_sampling is not None:
-        parts["sampling"] = instant * of_sampling
-    of_curvature = _of_curvature(problem, penalty, best, jacobian)
-    if of_curvature is not None:
-        parts["curvature"] = of_curvature
-    return {name: _everywhere(sizes, free, len(best)) for name, sizes in parts.items()}
+    own = list(range(len(free)))
+    for place, name in enumerate(lacking if free else ()):
+        moves = np.abs(triangle.solve(own, len(free) + place, rcond=1e-10)[0])
+        parts[name] = instant * moves if name == "sampling" else moves
+    return {name: _everywhere(sizes, free, count) for name, sizes in parts.items()}
 
 
 def _everywhere(sizes: Array, free: list[int], count: int) -> Array:
@@ -79,16 +101,16 @@ def _everywhere(sizes: Array, free: list[int], count: int) -> Array:
 
 
 def _of_sampling(
-    problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array, columns: Array
+    problem: Problem, penalty: _core.Penalty, best: Array, columns: Array
 ) -> Array | None:
-    """Return the effect of the unknown instant of the sensor's sample: before or after a command's step.
+    """Return what is lacking by the unknown instant of the sensor's sample: before or after a command's step.
 
     A held torque steps at the samples. Its step accelerates the drive and the link together, and the
     link's share of it is a step in the sensor's reading. A reading sampled before the step, not in its
     middle, lacks half of that share at every sample. Smooth signals are not affected.
     """
     names = list(penalty.names)
-    if not {"sensor_gain", "inertia"} <= set(names) or jacobian.shape[1] == 0:
+    if not {"sensor_gain", "inertia"} <= set(names):
         return None
     bounds = np.asarray(penalty.windows)
     run = np.asarray(penalty.recording_of)
@@ -118,26 +140,20 @@ def _of_sampling(
     lacking = 0.5 * share / both * stepped
     if penalty.residual != _core.Residual.sensor:
         lacking = lacking * gain
-    count = jacobian.shape[1]
-    both_sides = Triangle(np.column_stack([jacobian, lacking]), problem.threads)
-    return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])
+    return np.asarray(lacking)
 
 
-def _of_curvature(
-    problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array
-) -> Array | None:
-    """Return the effect of friction that is not straight between samples: the trapezoid rule takes it as straight."""
+def _of_curvature(problem: Problem, penalty: _core.Penalty, best: Array) -> Array | None:
+    """Return what is lacking because the trapezoid rule takes friction as straight between samples."""
     names = list(penalty.names)
-    if not any(term.shapes for term in penalty.terms) or jacobian.shape[1] == 0:
+    if not any(term.shapes for term in penalty.terms):
         return None
     if penalty.cumulative:
         return None
     lacking = np.asarray(penalty.bending(problem.in_core, problem.mask_standstill, best))
     if penalty.residual == _core.Residual.sensor:
         lacking = lacking / float(best[names.index("sensor_gain")])
-    count = jacobian.shape[1]
-    both_sides = Triangle(np.column_stack([jacobian, lacking]), problem.threads)
-    return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])
+    return lacking
 
 
 def held(problem: Problem, recording: Recording) -> bool:
