@@ -3,47 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
 #include "base/clones.hpp"
-#include "base/scans.hpp"
+#include "identify/balance/window_runs.hpp"
 
 namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kShort = 256;   // samples of a window whose nodes are made at once
 constexpr std::size_t kBlock = 1024;  // intervals whose values are made at once
-
-/// Whether windows have usable intervals only. They come in order: what is known of one run of
-/// usable intervals serves all windows in it.
-class Whole {
- public:
-  Whole(const std::vector<std::uint8_t>& usable, std::span<const Window> windows)
-      : flags_(usable.data()), last_(windows.empty() ? 0 : windows.back().end) {}
-
-  bool operator()(const Window& window) {
-    if (window.begin < from_ || window.begin > until_) {
-      from_ = window.begin;
-      const auto count = static_cast<std::size_t>(std::max(last_, window.end) - from_);
-      const void* found = std::memchr(flags_ + from_, 0, count);
-      until_ = found == nullptr ? from_ + static_cast<std::int64_t>(count)
-                                : static_cast<const std::uint8_t*>(found) - flags_;
-    }
-    return window.end <= until_;
-  }
-
-  /// Where the run of the last window asked for ends: the next ones are whole if they end before.
-  [[nodiscard]] std::int64_t until() const { return until_; }
-
- private:
-  const std::uint8_t* flags_;
-  std::int64_t last_;
-  std::int64_t from_ = 0;
-  std::int64_t until_ = -1;  ///< the intervals from_ .. until_ - 1 are usable
-};
 
 /// Adds values one after the other.
 double add_all(double sum, const double* value, const double* end) {
@@ -57,37 +27,13 @@ double add_all(double sum, const double* value, const double* end) {
   return sum;
 }
 
-/// Whether the velocity keeps one sign over a window, ends included. They come in order, too.
-class OneSided {
- public:
-  OneSided(const RecordingView::Signal& velocity, std::span<const Window> windows)
-      : velocity_(velocity.data()), last_(windows.empty() ? 0 : windows.back().end) {}
-
-  /// The sign, or 0.
-  double operator()(const Window& window) {
-    if (window.begin < from_ || window.begin >= until_) {
-      from_ = window.begin;
-      const auto count = static_cast<std::size_t>(std::max(last_, window.end) - from_) + 1;
-      until_ = from_ + static_cast<std::int64_t>(base::one_sided(velocity_ + from_, count));
-    }
-    if (window.end >= until_) return 0.0;
-    return velocity_[window.begin] > 0.0 ? 1.0 : -1.0;
-  }
-
- private:
-  const double* velocity_;
-  std::int64_t last_;
-  std::int64_t from_ = 0;
-  std::int64_t until_ = 0;  ///< the samples from_ .. until_ - 1 have one sign
-};
-
 /// Sum over a window's usable intervals of values that `fill(k, count, values)` gives for the
 /// intervals from k on.
 template <class Fill>
 void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                    Eigen::Ref<Eigen::VectorXd> result, Fill fill) {
   if (windows.empty()) return;
-  Whole whole(usable, windows);
+  WholeWindows whole(usable, windows);
   std::array<double, kBlock> values;
   const std::int64_t last = windows.back().end;
   std::int64_t from = 0;
@@ -140,23 +86,10 @@ JOINTID_CLONES void rectangles(const double* signal, const double* time, std::si
   for (std::size_t i = 0; i < count; ++i) values[i] = signal[i] * (time[i + 1] - time[i]);
 }
 
-/// Nodes of a whole window in which the velocity keeps one sign: the same without a question a
-/// sample.
-JOINTID_CLONES void whole_nodes(const double* time, const double* velocity, std::size_t count,
-                                double direction, double* speeds, double* weights) {
-  for (std::size_t i = 0; i <= count; ++i) speeds[i] = std::fabs(velocity[i]);
-  weights[0] = 0.5 * (time[1] - time[0]) * direction;
-  for (std::size_t i = 1; i < count; ++i) {
-    weights[i] =
-        0.5 * (time[i] - time[i - 1]) * direction + 0.5 * (time[i + 1] - time[i]) * direction;
-  }
-  weights[count] = 0.5 * (time[count] - time[count - 1]) * direction;
-}
-
 /// The change of a signal over each window's usable intervals.
 void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uint8_t>& usable,
                  std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
-  Whole whole(usable, windows);
+  WholeWindows whole(usable, windows);
   const double* x = signal.data();
   const Window* window = windows.data();
   const Window* const behind = window + windows.size();
@@ -210,29 +143,13 @@ void integrate_signal(const RecordingView::Signal& signal, const RecordingView& 
   });
 }
 
-double sign(double v) {
-  return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
-}
-
-/// Signs of the velocity at an interval's ends, each times the share of the interval on its side of
-/// a reversal (1 without one): half the interval times these are the ends' weights.
-struct Shares {
-  double before;
-  double after;
-};
-Shares shares(double v0, double v1) {
-  if (!(v0 * v1 < 0.0)) return {sign(v0), sign(v1)};
-  const double before = std::fabs(v0) / (std::fabs(v0) + std::fabs(v1));
-  return {sign(v0) * before, sign(v1) * (1.0 - before)};
-}
-
 /// Coulomb friction of windows: the time it acts, signed. Those that are cut or hold a reversal are
 /// summed over their nodes.
 void integrate_sign(const Term& term, const RecordingView& r,
                     const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                     Eigen::Ref<Eigen::VectorXd> result) {
   FrictionNodes nodes;
-  Whole whole(usable, windows);
+  WholeWindows whole(usable, windows);
   OneSided one_sided(r.velocity, windows);
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const auto row = static_cast<Eigen::Index>(w);
@@ -252,13 +169,6 @@ void integrate_sign(const Term& term, const RecordingView& r,
 }
 
 }  // namespace
-
-void FrictionNodes::clear() {
-  speed.clear();
-  logarithm.clear();
-  weight.clear();
-  first.assign(1, 0);
-}
 
 void integrate(const Term& term, double gear_ratio, const RecordingView& r,
                const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
@@ -343,75 +253,6 @@ void integrate_bending(const Term& term, const Eigen::VectorXd& shapes, const Re
     Eigen::Map<Eigen::ArrayXd>(values, intervals) =
         (after.array() * before.array() > 0.0).select(bent * lasting, 0.0);
   });
-}
-
-void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usable,
-                  std::span<const Window> windows, FrictionNodes& nodes) {
-  std::array<double, kBlock> speeds;
-  std::array<double, kBlock> weights;
-  std::size_t made = 0;  // nodes that wait in the two
-  const auto store = [&] {
-    nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.begin() + made);
-    nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.begin() + made);
-    made = 0;
-  };
-  Whole whole(usable, windows);
-  OneSided one_sided(r.velocity, windows);
-  for (const auto& window : windows) {
-    const auto count = static_cast<std::size_t>(window.end - window.begin);
-    const double direction = count <= kShort ? one_sided(window) : 0.0;
-    if (direction != 0.0 && count > 0 && whole(window)) {
-      if (made + count + 1 > kBlock) store();
-      whole_nodes(r.time.data() + window.begin, r.velocity.data() + window.begin, count, direction,
-                  speeds.data() + made, weights.data() + made);
-      made += count + 1;
-      nodes.first.push_back(nodes.speed.size() + made);
-      continue;
-    }
-    store();
-    double carried = 0.0;  // weight that the previous interval left on this interval's first sample
-    const auto push = [&](double speed, double weight) {
-      if (weight == 0.0) return;
-      nodes.speed.push_back(speed);
-      nodes.weight.push_back(weight);
-    };
-    for (auto k = window.begin; k < window.end; ++k) {
-      const double v0 = r.velocity[k];
-      const double v1 = r.velocity[k + 1];
-      if (usable[static_cast<std::size_t>(k)] == 0) {
-        push(std::fabs(v0), carried);
-        carried = 0.0;
-        continue;
-      }
-      const double half = 0.5 * (r.time[k + 1] - r.time[k]);
-      const auto [before, after] = shares(v0, v1);
-      if (v0 * v1 < 0.0) {  // a node either side of rest, so that each direction keeps its own
-        push(0.0, half * before);
-        push(0.0, half * after);
-      }
-      push(std::fabs(v0), carried + half * before);
-      carried = half * after;
-    }
-    push(std::fabs(r.velocity[window.end]), carried);
-    nodes.first.push_back(nodes.speed.size());
-  }
-  store();
-}
-
-FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes) {
-  if (direction == model::Direction::both) return nodes;
-  const double wanted = direction == model::Direction::positive ? 1.0 : -1.0;
-  FrictionNodes result;
-  for (std::size_t w = 0; w + 1 < nodes.first.size(); ++w) {
-    for (std::size_t i = nodes.first[w]; i < nodes.first[w + 1]; ++i) {
-      if (nodes.weight[i] * wanted <= 0.0) continue;
-      result.speed.push_back(nodes.speed[i]);
-      result.weight.push_back(nodes.weight[i]);
-      if (!nodes.logarithm.empty()) result.logarithm.push_back(nodes.logarithm[i]);
-    }
-    result.first.push_back(result.speed.size());
-  }
-  return result;
 }
 
 }  // namespace jointid::identify

@@ -9,30 +9,12 @@
 #include <vector>
 
 #include "base/cancel.hpp"
+#include "identify/balance/friction_nodes.hpp"
 #include "identify/balance/terms.hpp"
 #include "identify/recording/recording.hpp"
 #include "identify/recording/windows.hpp"
 
 namespace jointid::identify {
-
-/// Nodes of all windows in a row: integral over window w of sgn v h(|v|) = sum of weight[i]
-/// h(speed[i]), first[w] <= i < first[w+1]. Samples in unusable intervals have no node; memory is
-/// two doubles a sample, three with the logarithms that the general decay needs.
-struct FrictionNodes {
-  std::vector<double> speed;
-  std::vector<double> logarithm;  ///< model::log_speed of each, or empty
-  std::vector<double> weight;
-  std::vector<std::size_t> first{0};
-  void clear();
-  void take_logarithms();
-};
-
-/// Appends the nodes of a recording's windows.
-void append_nodes(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
-                  std::span<const Window> windows, FrictionNodes& nodes);
-
-/// The nodes at which the joint moves in one direction.
-FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes);
 
 /// One integral a window, for every term without a shape and for the torque. A harmonic of the
 /// motor counts turns in front of the gear.

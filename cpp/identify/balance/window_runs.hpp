@@ -1,0 +1,68 @@
+#pragma once
+// What holds for all of a window, known of a whole run of samples: many short windows lie in one.
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "base/scans.hpp"
+#include "identify/recording/recording.hpp"
+#include "identify/recording/windows.hpp"
+
+namespace jointid::identify {
+
+/// Whether windows have usable intervals only. They come in order: what is known of one run of
+/// usable intervals serves all windows in it.
+class WholeWindows {
+ public:
+  WholeWindows(const std::vector<std::uint8_t>& usable, std::span<const Window> windows)
+      : flags_(usable.data()), last_(windows.empty() ? 0 : windows.back().end) {}
+
+  bool operator()(const Window& window) {
+    if (window.begin < from_ || window.begin > until_) {
+      from_ = window.begin;
+      const auto count = static_cast<std::size_t>(std::max(last_, window.end) - from_);
+      const void* found = std::memchr(flags_ + from_, 0, count);
+      until_ = found == nullptr ? from_ + static_cast<std::int64_t>(count)
+                                : static_cast<const std::uint8_t*>(found) - flags_;
+    }
+    return window.end <= until_;
+  }
+
+  /// Where the run of the last window asked for ends: the next ones are whole if they end before.
+  [[nodiscard]] std::int64_t until() const { return until_; }
+
+ private:
+  const std::uint8_t* flags_;
+  std::int64_t last_;
+  std::int64_t from_ = 0;
+  std::int64_t until_ = -1;  ///< the intervals from_ .. until_ - 1 are usable
+};
+
+/// Whether the velocity keeps one sign over a window, ends included. They come in order, too.
+class OneSided {
+ public:
+  OneSided(const RecordingView::Signal& velocity, std::span<const Window> windows)
+      : velocity_(velocity.data()), last_(windows.empty() ? 0 : windows.back().end) {}
+
+  /// The sign, or 0.
+  double operator()(const Window& window) {
+    if (window.begin < from_ || window.begin >= until_) {
+      from_ = window.begin;
+      const auto count = static_cast<std::size_t>(std::max(last_, window.end) - from_) + 1;
+      until_ = from_ + static_cast<std::int64_t>(base::one_sided(velocity_ + from_, count));
+    }
+    if (window.end >= until_) return 0.0;
+    return velocity_[window.begin] > 0.0 ? 1.0 : -1.0;
+  }
+
+ private:
+  const double* velocity_;
+  std::int64_t last_;
+  std::int64_t from_ = 0;
+  std::int64_t until_ = 0;  ///< the samples from_ .. until_ - 1 have one sign
+};
+
+}  // namespace jointid::identify
