@@ -68,6 +68,44 @@ def test_the_arguments_are_the_same(options: dict[str, bool]) -> None:
         ours(first=-1)
 
 
+CALLS: list[tuple[tuple[Any, ...], dict[str, Any]]] = [
+    ((1,), {}),
+    ((), {"first": 1, "third": [2]}),
+    ((1,), {"second": "c", "hidden": 1.0}),
+    ((), {}),
+    ((), {"second": "c"}),
+    ((1,), {"first": 1}),
+    ((1, "c"), {}),
+    ((1,), {"unknown": 1}),
+    ((-1,), {}),
+]
+
+
+@pytest.mark.parametrize("options", OPTIONS)
+def test_a_seldom_call_does_what_a_compiled_one_does(options: dict[str, bool]) -> None:
+    for unnamed, named in CALLS:
+        ours, theirs = both(**options)
+        seldom = outcome(ours, unnamed, named)
+        for _ in range(values._OFTEN + 1):
+            ours(first=1)
+        assert inspect.isfunction(vars(ours)["__init__"])
+        assert seldom == outcome(ours, unnamed, named) == outcome(theirs, unnamed, named)
+
+
+def outcome(made: type[Any], unnamed: tuple[Any, ...], named: dict[str, Any]) -> Any:
+    """The values of the fields, or the error."""
+    try:
+        return dataclasses.asdict(made(*unnamed, **named))
+    except (TypeError, ValueError) as error:
+        return str(error)
+
+
+def test_what_is_called_seldom_is_not_compiled() -> None:
+    ours, _ = both()
+    ours(first=1)
+    assert not inspect.isfunction(vars(ours)["__init__"])
+
+
 @pytest.mark.parametrize("options", OPTIONS)
 def test_a_value_looks_and_compares_the_same(options: dict[str, bool]) -> None:
     ours, theirs = both(**options)

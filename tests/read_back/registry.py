@@ -237,7 +237,7 @@ def _recording() -> Example:
         metadata={"assumed_units": {"torque": "Nm"}, "left_out": {"a": "b"}},
         extra={"mass": time},
     )
-    return _text_table("recording.csv", run.save, _read_recording, ["recording.saving"])
+    return _text_table("recording.csv", run.save, _read_recording, ["recording.saved"])
 
 
 def _robot_recording() -> Example:
@@ -246,7 +246,7 @@ def _robot_recording() -> Example:
     run = jid.RobotRecording(
         time=time, position=pair, torque=pair, names=("a", "b"), gear_ratio=(10.0, -20.0)
     )
-    modules = ["recording.saving", "recording.wide.reading_back"]
+    modules = ["recording.saved", "recording.wide.reading_back"]
     return _text_table("arm.csv", run.save, jid.load_robot, modules)
 
 

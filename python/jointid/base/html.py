@@ -7,7 +7,6 @@ both escape every text they are given.
 from __future__ import annotations
 
 import re
-from html import escape
 
 _TAGS = frozenset(
     (
@@ -142,6 +141,15 @@ def _inside(child: Html | str) -> str:
 
 def _escaped(text: str) -> str:
     return escape(text if text.isprintable() else _UNFIT.sub("\ufffd", text))
+
+
+def escape(text: str) -> str:
+    """Return a text whose characters are no markup.
+
+    It is `html.escape`, whose module also brings the names of 2,000 characters, and takes a millisecond for that.
+    """
+    text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    return text.replace('"', "&quot;").replace("'", "&#x27;")
 
 
 def _made(markup: str) -> Html:

@@ -2,14 +2,15 @@
 
 `dataclasses.dataclass` compiles up to seven functions for each class when its module is imported: .3 ms a class, a
 seventh of what `jointid identify` took. Here the methods are closures over the names of the fields, and `__init__`,
-which has to be quick and to show its arguments, is compiled when it is first asked for. Everything else is the same:
+which has to be quick where it is called often, and to show its arguments, is compiled then. All else is the same:
 `dataclasses.fields`, `replace` and `asdict`, comparison, hash, text and pickles.
 """
 
 import dataclasses
 import operator
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any
 
@@ -59,16 +60,72 @@ def _frozen(cls: type[Any], **options: bool) -> type[Any]:
     return cls
 
 
+_OFTEN = 50
+"""Calls of an `__init__` before it is compiled."""
+
+
 class _Initialiser:
-    """A class's `__init__` until somebody asks for it."""
+    """A class's `__init__` until it is called often, or somebody asks what it takes.
+
+    To compile one takes as long as a hundred of these calls, and most classes have a few values in a process.
+    """
 
     def __init__(self, owner: type[Any]) -> None:
         self._owner = owner
+        self._calls = 0
+        self._arguments: _Arguments | None = None
 
     def __get__(self, value: object, cls: type[Any]) -> Any:
+        self._calls += 1
+        if value is None or self._calls > _OFTEN:
+            return self._compiled().__get__(value, cls)
+        return partial(self._initialise, value)
+
+    def _compiled(self) -> Callable[..., None]:
         initialise = _compiled(self._owner)
         setattr(self._owner, "__init__", initialise)  # noqa: B010 (of a class, to the type checker)
-        return initialise.__get__(value, cls)
+        return initialise
+
+    def _initialise(self, value: object, /, *unnamed: object, **named: object) -> None:
+        if self._arguments is None:
+            self._arguments = _Arguments(dataclasses.fields(self._owner))
+        values = self._arguments.values(unnamed, named)
+        if values is None:
+            self._compiled()(value, *unnamed, **named)  # says what is wrong
+            return
+        for name, found in values:
+            object.__setattr__(value, name, found)
+        if hasattr(value, "__post_init__"):
+            value.__post_init__()
+
+
+class _Arguments:
+    """What an `__init__` takes."""
+
+    def __init__(self, fields: Sequence[dataclasses.Field[Any]]) -> None:
+        self._fields = [(field.name, field.default, field.default_factory) for field in fields]
+        self._names = frozenset([field.name for field in fields])
+        self._unnamed = [field.name for field in fields if not field.kw_only]
+
+    def values(
+        self, unnamed: Sequence[object], named: Mapping[str, object]
+    ) -> list[tuple[str, object]] | None:
+        """Each field's value, in their order; None if an argument is missing, or one too many."""
+        given = dict(zip(self._unnamed, unnamed, strict=False))
+        if len(given) < len(unnamed) or given.keys() & named.keys() or named.keys() - self._names:
+            return None
+        given.update(named)
+        found: list[tuple[str, object]] = []
+        for name, default, make in self._fields:
+            if name in given:
+                found.append((name, given[name]))
+            elif default is not dataclasses.MISSING:
+                found.append((name, default))
+            elif make is not dataclasses.MISSING:
+                found.append((name, make()))
+            else:
+                return None
+        return found
 
 
 class _Absent:

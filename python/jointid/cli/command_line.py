@@ -38,8 +38,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     # What is imported stays: looking through it for garbage takes a tenth of a short command.
     gc.set_threshold(_SELDOM, *gc.get_threshold()[1:])
     atexit.register(gc.freeze)
-    grammar = command_parser()
-    arguments = grammar.parse_args(argv)
+    words = sys.argv[1:] if argv is None else argv
+    grammar = command_parser(words[0] if words else "")
+    arguments = grammar.parse_args(words)
     if arguments.version:
         from jointid import __version__
 

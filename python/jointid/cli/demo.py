@@ -1,7 +1,6 @@
 """The demonstration: identify joint 1 of a KUKA KR300 from its log, which ships with the package."""
 
 from collections.abc import Callable
-from importlib.resources import files
 from pathlib import Path
 
 from jointid._core import Generation
@@ -31,7 +30,7 @@ class Demonstration:
 
 def data_folder() -> Path:
     """Folder with the demonstration's recordings and joint files."""
-    installed = Path(str(files("jointid"))) / "data"
+    installed = Path(__file__).resolve().parents[1] / "data"
     if installed.is_dir():
         return installed
     return Path(__file__).resolve().parents[3] / "examples" / "data"  # run from the source folder

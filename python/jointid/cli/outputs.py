@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 import errno
+import os
 from pathlib import Path
 
 from jointid.base.errors import InputError
+from jointid.base.files import new_beside
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:
@@ -91,11 +93,10 @@ def check_folder(argument: str, path: Path | None) -> None:
         raise InputError(f"the folder {path.parent} does not exist", argument=argument, value=path)
     if path.exists():
         return
-    from tempfile import NamedTemporaryFile
-
     try:  # the permissions alone do not tell: some folders take no files from anybody
-        with NamedTemporaryFile(dir=path.parent, prefix=f".{path.name[:20]}."):
-            pass
+        handle, tried = new_beside(path)
+        os.close(handle)
+        tried.unlink()
     except OSError as error:
         # In such a folder "no such file" is meant of the file to be written.
         reason = f" ({error.strerror})" if error.strerror and error.errno != errno.ENOENT else ""

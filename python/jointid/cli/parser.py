@@ -107,8 +107,15 @@ class CommandParser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {sentence}; see {self.prog} --help\n")
 
 
-def command_parser() -> CommandParser:
-    """The command line's grammar."""
+def command_parser(command: str = "") -> CommandParser:
+    """The command line's grammar.
+
+    Parameters
+    ----------
+    command : str
+        The only command that will be read, where that is known: the parsers of the others, which take as long to make
+        as that one takes to read, are left out. Default, and for no command's name: all are made.
+    """
     main_parser = CommandParser(
         prog="jointid",
         description="Identify a robot joint's friction and torque sensor from a recording of ordinary motion.",
@@ -118,6 +125,6 @@ def command_parser() -> CommandParser:
     commands = main_parser.add_subparsers(
         dest="command", metavar="COMMAND", parser_class=CommandParser
     )
-    for command, purpose in HELP.items():
-        commands.add_parser(command, help=purpose, command=command)
+    for name in (command,) if command in HELP else HELP:
+        commands.add_parser(name, help=HELP[name], command=name)
     return main_parser

@@ -8,7 +8,6 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self, TextIO
 
 from jointid._core import GaOptions, Generation
-from jointid.cli.terminal import columns_of
 
 if TYPE_CHECKING:
     from jointid.comparison.comparison import ComparisonStep
@@ -32,6 +31,8 @@ class _Bar:
         now = time.monotonic()
         if not self._enabled or now - self._drawn < _PERIOD:
             return
+        from jointid.cli.terminal import columns_of
+
         self._drawn = now
         full = round(_WIDTH * min(1.0, share))
         line = f"{'█' * full}{'·' * (_WIDTH - full)} {text}"

@@ -10,7 +10,6 @@ from jointid.base.advice import Action
 from jointid.base.errors import NOT_GIVEN, InputError
 from jointid.base.values import dataclass
 from jointid.cli.advice import option_with_value, words_of_action
-from jointid.cli.next_motion import words_of_next_motion
 from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
 from jointid.cli.values import as_typed, behind_option, in_sentence
 
@@ -73,6 +72,8 @@ class Wording:
     def of_action(self, action: Action) -> str:
         """What to do, with the command's options; empty if the command line cannot do it."""
         if action.designs:
+            from jointid.cli.next_motion import words_of_next_motion
+
             joint = (
                 "JOINT" if self.joint_file == "the joint file" else behind_option(self.joint_file)
             )

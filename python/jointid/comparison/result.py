@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.error_text import printable
@@ -117,6 +116,8 @@ class Comparison:
         return printable("\n".join([*lines, f"winner: {self.winner}", self.reason]))
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         head = "".join(f"<th>{escape(cell)}</th>" for cell in HEAD)
         body = ""
         for row, cells in zip(self.rows, self.cells(), strict=True):

@@ -10,7 +10,7 @@ from jointid.base.errors import InputError
 from jointid.recording.column_lookup import listed
 from jointid.recording.columns import Candidates, Column
 from jointid.recording.headers import plain, understood
-from jointid.recording.signals import FloatArray, dimensions, header_unit
+from jointid.recording.signals import NEEDED, TORQUES, FloatArray, dimensions, header_unit
 from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.table import Table
 from jointid.recording.units import UNITS, is_mega, unit_names
@@ -27,8 +27,6 @@ _SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
 _EXAMINED = 12  # columns without headers
 _ROWS = 5000
 _ALIKE = 0.999  # correlation of a velocity with the position's rate
-NEEDED = ("time", "position")
-TORQUES = ("torque", "motor_torque", "current")
 
 
 def of_both_kinds(table: Table, signal: str, columns: Sequence[Column]) -> InputError:

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from jointid.base.errors import InputError
 from jointid.base.frames import data_frame
 from jointid.recording.extra import PREFIX
-from jointid.recording.saving import attributes_text, saved_attributes
+from jointid.recording.saved import saved_attributes
+from jointid.recording.saving import attributes_text
 from jointid.recording.signals import FloatArray, signal_array
 
 if TYPE_CHECKING:

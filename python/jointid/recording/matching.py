@@ -5,18 +5,8 @@ from dataclasses import field
 
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.recording.column_problems import (
-    NEEDED,
-    TORQUES,
-    ambiguous,
-    in_other_unit,
-    missing,
-    of_both_kinds,
-    together,
-    wrong_unit,
-)
 from jointid.recording.columns import Column, candidates_of
-from jointid.recording.signals import SIGNALS, dimensions
+from jointid.recording.signals import NEEDED, SIGNALS, TORQUES, dimensions
 from jointid.recording.table import Table
 
 # Signals whose dimension shows the kind of joint, the clearest first.
@@ -70,7 +60,11 @@ def match_columns(
     """
     found = candidates_of(table, columns=columns, units=units, scale=scale, kind=kind)
     absent = [signal for signal in NEEDED if not found.of.get(signal)]
-    problems = [missing(table, absent, found, kind)] if absent else []
+    problems = []
+    if absent:
+        from jointid.recording.column_problems import missing
+
+        problems.append(missing(table, absent, found, kind))
     match = Match(found={}, kind=kind or _kind_shown(table, found.of))
     refused = {
         signal: problem
@@ -85,6 +79,8 @@ def match_columns(
         else:
             _leave_out(table, signal, found.of[signal], problem.reason, match)
     if problems:
+        from jointid.recording.column_problems import together
+
         raise together(table, problems)
     return match
 
@@ -100,6 +96,8 @@ def _take(table: Table, signal: str, candidates: list[Column], match: Match) -> 
         reason = f"{signal} is read from {table.headers[clearest[0].index]!r}"
         _leave_out(table, signal, others, reason, match)
         return None
+    from jointid.recording.column_problems import ambiguous, in_other_unit, wrong_unit
+
     if clearest:
         if strict or signal in (*NEEDED, *TORQUES):
             return ambiguous(table, signal, clearest)
@@ -138,6 +136,8 @@ def _kind_shown(table: Table, candidates: Mapping[str, list[Column]]) -> str:
             clear = [c for c in kinds.values() if c.rank == min(k.rank for k in kinds.values())]
             if len(clear) == 1:
                 return next(kind for kind, column in kinds.items() if column is clear[0])
+            from jointid.recording.column_problems import of_both_kinds
+
             raise of_both_kinds(table, signal, tuple(kinds.values()))
         if kinds:
             return next(iter(kinds))

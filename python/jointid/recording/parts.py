@@ -9,7 +9,6 @@ from jointid.base.errors import InputError
 from jointid.recording.changes import Changes
 from jointid.recording.extra import rows_of_extra
 from jointid.recording.signals import SIGNALS, FloatArray, closest
-from jointid.recording.slicing import slice_between, slices_of
 
 
 class Parts(Changes):
@@ -86,6 +85,8 @@ class Parts(Changes):
         InputError
             Fewer than 8 samples would be left, or a bound is no number.
         """
+        from jointid.recording.slicing import slice_between
+
         return self._part(slice_between(self.time, start, stop))
 
     def split(
@@ -112,6 +113,8 @@ class Parts(Changes):
             Neither or both are given, a time is not inside the recording, or a part would have
             fewer than 8 samples.
         """
+        from jointid.recording.slicing import slices_of
+
         slices = slices_of(self.time, parts, at)
         return tuple(
             self._part(part, name=f"{self.name} {number}/{len(slices)}".lstrip())

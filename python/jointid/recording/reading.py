@@ -8,9 +8,8 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.recording.column_problems import TORQUES
 from jointid.recording.columns import Column
-from jointid.recording.signals import FloatArray
+from jointid.recording.signals import TORQUES, FloatArray
 from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.table import Table
 from jointid.recording.time_column import exact_time, stamps_note

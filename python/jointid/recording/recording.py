@@ -16,7 +16,6 @@ from jointid.recording.gaps import Gap, find_gaps
 from jointid.recording.identity import fingerprint_of, line_of, same_fields
 from jointid.recording.order_statistics import median
 from jointid.recording.parts import Parts
-from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
     SIGNALS,
     FloatArray,
@@ -273,6 +272,8 @@ class Recording(Parts):
             Neither or both are given, one is not positive, too few or too many samples would
             result, or a gap would no longer be recognised.
         """
+        from jointid.recording.resampling import resampled
+
         signals = resampled(self, period, rate)
         metadata = {**self.metadata, "resampled_from": self.sample_period}
         return type(self)(**{**self._fields(), **signals, "metadata": metadata})

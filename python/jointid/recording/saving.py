@@ -12,15 +12,11 @@ from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
 from jointid.recording.extra import PREFIX
-from jointid.recording.signals import KINDS, header_unit
+from jointid.recording.saved import ATTRIBUTES, CSV_MARK, NPZ_MEMBER, SCHEMA
+from jointid.recording.signals import header_unit
 
 if TYPE_CHECKING:
     from jointid.recording.recording import Recording
-
-SCHEMA = 1
-CSV_MARK = "# jointid recording "
-NPZ_MEMBER = "jointid_recording"
-_ATTRIBUTES = ("name", "kind", "torque_hold", "velocity_derived", "metadata", "truth")
 
 
 def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
@@ -34,7 +30,7 @@ def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None
 
 def attributes_text(recording: "Recording") -> str:
     """Return what of a recording is no column, as JSON; `saved_attributes` reads it."""
-    attributes = {name: getattr(recording, name) for name in _ATTRIBUTES}
+    attributes = {name: getattr(recording, name) for name in ATTRIBUTES}
     for name in ("metadata", "truth"):  # JSON knows dict, not read-only views
         attributes[name] = None if attributes[name] is None else dict(attributes[name])
     import json
@@ -75,48 +71,3 @@ _WRITERS: dict[str, Callable[["Recording"], bytes]] = {
     ".npz": _npz,
 }
 ENDINGS = tuple(_WRITERS)  # of the files that a recording can be written to
-
-
-def saved_attributes(text: str, place: str) -> dict[str, object]:
-    """Return the attributes of a saved recording: name, kind, torque hold, metadata, ...
-
-    Parameters
-    ----------
-    text : str
-        JSON, as `save_recording` writes it.
-    place : str
-        File and line, for messages.
-
-    Raises
-    ------
-    InputError
-        The text is not what `save_recording` writes, or a later version wrote it.
-    """
-    from jointid.base.schema import read_json
-    from jointid.recording.saved_schema import SAVED
-
-    try:
-        attributes = read_json(text)
-    except InputError as error:
-        reason = f"the description of the recording is damaged JSON ({error.reason})"
-        raise InputError(reason, place=place) from None
-    if not isinstance(attributes, dict):
-        raise InputError("the description of the recording is not a JSON object", place=place)
-    schema = attributes.get("schema")
-    if schema != SCHEMA:
-        raise InputError(
-            f"this version reads {SCHEMA}; a later jointid may have written the recording",
-            argument="schema",
-            value=schema,
-            place=place,
-        )
-    kind = attributes.get("kind", KINDS[0])
-    if kind not in KINDS:
-        raise InputError(
-            f"{' or '.join(KINDS)} is expected", argument="kind", value=kind, place=place
-        )
-    try:
-        checked = SAVED.read(attributes, "")
-    except InputError as error:
-        raise error.at(place) from None
-    return {key: checked[key] for key in (*_ATTRIBUTES, "robot") if key in checked}

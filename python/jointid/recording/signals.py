@@ -15,6 +15,8 @@ SIGNALS = (
     *("time", "position", "velocity", "torque", "sensor", "reference", "link_position"),
     *("temperature", "motor_torque", "current", "late"),
 )
+NEEDED = ("time", "position")
+TORQUES = ("torque", "motor_torque", "current")  # one of them is needed
 Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]
 KINDS: tuple[str, ...] = get_args(Kind)

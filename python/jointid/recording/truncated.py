@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
-from jointid.recording.saving import CSV_MARK
+from jointid.recording.saved import CSV_MARK
 from jointid.recording.signals import FloatArray
 
 OPENING, CLOSING = "# jointid run ", "# jointid session "

@@ -13,7 +13,7 @@ from typing import Any
 from jointid.base.errors import InputError
 from jointid.base.files import sync_folder
 from jointid.hardware.session.appended_file import AppendedFile, Syncing
-from jointid.recording.saving import CSV_MARK, SCHEMA
+from jointid.recording.saved import CSV_MARK, SCHEMA
 from jointid.recording.truncated import CLOSING, OPENING
 
 COLUMNS = (

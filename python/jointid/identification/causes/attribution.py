@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
+from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted
@@ -26,33 +27,6 @@ _LEFT = (
 _GONE = 0.3  # of the misfit may be left without the windows on the limit of the torque
 _ALIKE = 1.1  # ratio of misfits that blocks do not tell apart
 _HARDLY = 0.9  # a runner-up explains so much of what the winner does, in logarithms of the misfit
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Attributed:
-    """A candidate that explains part of the misfit.
-
-    Attributes
-    ----------
-    candidate : Candidate
-    share : float
-        Of the misfit at its best scale, out of sample.
-    factor : int
-        That scale: neighbouring windows summed.
-    coefficients : ndarray, shape (m,)
-        Of its columns.
-    shifts : ndarray
-        Change of the free parameters by this cause, after those found before it.
-    alike : tuple of str
-        Names of other families that explain nearly as much.
-    """
-
-    candidate: Candidate
-    share: float
-    factor: int
-    coefficients: Array
-    shifts: Array
-    alike: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
-from jointid.identification.causes.loads import load_friction_of_sensor, load_frictions_of_motion
 from jointid.recording.order_statistics import quantile
 from jointid.recording.recording import Recording
 
@@ -101,6 +100,11 @@ def _load_friction(fit: Fitted) -> Iterator[Candidate]:
     """With the load from the sensor, or from the model's gravity and inertia; never from the drive's torque."""
     if "load_friction" in fit.names:
         return
+    from jointid.identification.causes.loads import (
+        load_friction_of_sensor,
+        load_frictions_of_motion,
+    )
+
     if "sensor_gain" in fit.names:
         load = load_friction_of_sensor(fit)
         if load is not None:

@@ -13,7 +13,7 @@ from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.identification.causes.attribution import Attributed, attribute
+from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import listed_candidates
 from jointid.identification.causes.changes import from_to, of_a_scale
 from jointid.identification.causes.fitted import Fitted
@@ -59,6 +59,8 @@ def find_causes(
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
+    from jointid.identification.causes.attribution import attribute  # of a misfit: not of every fit
+
     late = "velocity" in delays and delays["velocity"].certain
     fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late, _MOST)
     tried = listed_candidates(fit)

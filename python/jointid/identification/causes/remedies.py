@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from jointid.base.advice import Action
-from jointid.identification.causes.attribution import Attributed
+from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import FILTERED
 from jointid.identification.causes.fitted import Fitted
 

@@ -9,7 +9,7 @@ import numpy as np
 from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Measured
 from jointid.estimate.wording import percent
-from jointid.identification.causes.attribution import Attributed
+from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import FILTERED, inertia_basis
 from jointid.identification.causes.fitted import Fitted
 

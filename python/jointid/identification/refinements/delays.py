@@ -18,7 +18,6 @@ from jointid.identification.refinements.balance_columns import stacked
 from jointid.identification.refinements.balance_misfit import fits_better
 from jointid.identification.refinements.balances import SMALL, SUSPECT, Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
-from jointid.identification.refinements.sample_fit import delay_by_samples
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
 from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
 from jointid.identification.refinements.stretches import Piece, few_of, pieces_of
@@ -176,6 +175,8 @@ def _sensor(motion: Motion) -> tuple[Shift, bool] | None:
             told = None
         possible = found is not None and found.value + found.stderr > SMALL
         if told is None and found is not None and possible and found.unexplained <= _MOST_LEFT:
+            from jointid.identification.refinements.sample_fit import delay_by_samples
+
             by_samples = delay_by_samples(pieces, found, reach(period), motion.inertia)
             if by_samples is not None:
                 # Jumps are those of the acceleration alone: neither a varying inertia nor slow motion has them.

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.refinements.instant_by_samples import by_samples
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
@@ -120,6 +119,8 @@ def _measured(
     share = -float(of_reading[_STEPS] / size[_STEPS]) / half
     stderr = float(np.sqrt(variance * spread[_STEPS, _STEPS])) / size[_STEPS] / abs(half)
     if not _settled(share, stderr) and "velocity" not in problem.shift:
+        from jointid.identification.refinements.instant_by_samples import by_samples
+
         finer = by_samples(problem, half)
         if finer is not None and finer[1] < stderr:
             return _by_odds(*finer), half

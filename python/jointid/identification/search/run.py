@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
-from jointid.base.files import write_whole
-from jointid.base.schema import read_bytes
 from jointid.estimate.statistics import Convergence
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.engine import Engine, Outcome
@@ -136,6 +134,8 @@ def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaRe
 
 def _write_state(search: Search, state: _core.GaState) -> None:
     if search.checkpoint is not None:
+        from jointid.base.files import write_whole
+
         write_whole(Path(search.checkpoint), state.to_bytes())
 
 
@@ -176,6 +176,8 @@ def _convergence(result: _core.GaResult) -> Convergence:
 
 
 def _read_state(path: Path) -> _core.GaState:
+    from jointid.base.schema import read_bytes
+
     try:
         state = _core.GaState.from_bytes(read_bytes(path))
     except OSError as error:

@@ -25,7 +25,7 @@ from jointid.recording.readers.csv_stream import even_rows, plain_numbers
 from jointid.recording.readers.csv_text import text_of
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
-from jointid.recording.saving import CSV_MARK, saved_attributes
+from jointid.recording.saved import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
 from jointid.recording.truncated import no_sample, session_text, with_metadata

@@ -6,25 +6,24 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
 from jointid.recording.attributes import check_kind
 from jointid.recording.column_lookup import column_index
-from jointid.recording.contents import read_contents
+from jointid.recording.contents import Contents, read_contents
 from jointid.recording.copies import without_copies
 from jointid.recording.damaged_rows import NOTE
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.registry import reader_of
 from jointid.recording.recording import Recording
-from jointid.recording.runs import one_run
 from jointid.recording.signals import Kind, TorqueHold
 from jointid.recording.table import Table
 from jointid.recording.unpacking import allowing
 from jointid.recording.unreadable import read_leniently
-from jointid.recording.wide.choosing import OneJoint, also_joints, one_joint
-from jointid.recording.wide.sides import at_joint, checked_ratio
+from jointid.recording.wide.one_joint import OneJoint, one_joint
 
 _SURROGATE = "[\ud800-\udfff]"
 _SORT = "sort the rows by time, or cut the file where a second run begins"
@@ -151,11 +150,13 @@ def load(
     except InputError as error:
         if joint is not None or topic is not None or group is not None:
             raise
+        from jointid.recording.wide.choosing import also_joints
+
         raise also_joints(
             error, partial(table_of, file, kind=kind, unpacked=unpacked), columns
         ) from None
     one = one_joint(table, joint, columns, extra)
-    ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
+    ratio = _ratio(one, gear_ratio)
     read = partial(
         read_contents,
         columns=one.columns,
@@ -171,7 +172,7 @@ def load(
     if drop_invalid:
         sound, dropped = contents.sound_rows(rows)
         rows = sound if dropped else rows
-    remedy = (lambda: one_run(contents) or (_SORT,)) if rows is None else tuple
+    remedy = partial(_one_run, contents) if rows is None else tuple
     fields = contents.fields(rows, time_remedy=remedy)
     if drop_copies:
         try:
@@ -181,6 +182,13 @@ def load(
     if dropped:
         fields["metadata"] = {**fields.get("metadata", {}), NOTE: dropped}
     return _recording(file, _of_joint(fields, one, ratio), _named(file, fields, name, one))
+
+
+def _one_run(contents: Contents) -> tuple[str | Action, ...]:
+    """What to do about stamps that go back: read one run of several, or sort."""
+    from jointid.recording.runs import one_run
+
+    return one_run(contents) or (_SORT,)
 
 
 @reads_open_files
@@ -236,7 +244,7 @@ def load_runs(
         columns,
         extra,
     )
-    ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
+    ratio = _ratio(one, gear_ratio)
     contents = read_contents(
         one.table,
         columns=one.columns,
@@ -332,9 +340,19 @@ def _named(file: Path, fields: Mapping[str, Any], name: str | None, one: OneJoin
     return f"{whole} joint {one.joint}".lstrip() if one.joint and name is None else whole
 
 
+def _ratio(one: OneJoint, gear_ratio: float | None) -> float | None:
+    if gear_ratio is None:
+        return one.gear_ratio
+    from jointid.recording.wide.sides import checked_ratio
+
+    return checked_ratio(gear_ratio)
+
+
 def _of_joint(fields: dict[str, Any], one: OneJoint, gear_ratio: float | None) -> dict[str, Any]:
     if not one.joint and gear_ratio is None:
         return fields
+    from jointid.recording.wide.sides import at_joint
+
     try:
         found = at_joint(fields, one.side, gear_ratio, one.other_sides)
     except InputError as error:

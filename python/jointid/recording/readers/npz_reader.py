@@ -13,7 +13,7 @@ import numpy.typing as npt
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.recording.readers.reader import Reader
-from jointid.recording.saving import NPZ_MEMBER, saved_attributes
+from jointid.recording.saved import NPZ_MEMBER, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.unpacking import Room
 

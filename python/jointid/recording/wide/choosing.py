@@ -1,11 +1,10 @@
 """One joint of any table: what `load` reads."""
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import field, replace
+from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.base.values import dataclass
 from jointid.recording.extra import named_extra
 from jointid.recording.table import Table
 from jointid.recording.wide.joint_names import joint_named
@@ -17,49 +16,19 @@ from jointid.recording.wide.joint_table import (
     several_joints,
     which_joint,
 )
+from jointid.recording.wide.one_joint import OneJoint
 from jointid.recording.wide.reading_back import saved_robot
-from jointid.recording.wide.words import JOINT
 
 _TRIED = 2  # parts of a file that are opened to see whether they hold several joints
 
 
-@dataclass(frozen=True, kw_only=True)
-class OneJoint:
-    """A table of one joint.
-
-    Attributes
-    ----------
-    table : Table
-    columns : mapping of str to str, int or None, or None
-        As `read_contents` takes them.
-    extra : collection, mapping or None
-        As `read_contents` takes it.
-    side : str
-        Of the gear, on which the position is: "joint" or "motor".
-    other_sides : mapping of str to str
-        Signal → its side, where that is another one.
-    joint : str
-        Its name; empty for a table without names of joints.
-    gear_ratio : float or None
-        As saved; None: not known.
-    """
-
-    table: Table
-    columns: Mapping[str, str | int | None] | None
-    extra: Collection[str] | Mapping[str, str | int] | None = None
-    side: str = JOINT
-    other_sides: Mapping[str, str] = field(default_factory=dict)
-    joint: str = ""
-    gear_ratio: float | None = None
-
-
-def one_joint(
+def chosen_joint(
     table: Table,
     joint: str | int | None,
     columns: Mapping[str, str | int | None] | None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
 ) -> OneJoint:
-    """Return one joint of a table; the table itself if it is of one joint.
+    """Return one joint of a table whose position is of a joint; the table itself if there is none.
 
     Parameters
     ----------
@@ -77,7 +46,7 @@ def one_joint(
         There is no such joint, or several and none is named; two columns could be the same signal.
     """
     if joint is None:
-        several = several_joints(table, columns) if isinstance(columns or {}, Mapping) else ()
+        several = several_joints(table, columns)
         if not several:
             return OneJoint(table=table, columns=columns, extra=extra)
         if len(several) > 1:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from jointid.base.values import dataclass
 from jointid.recording.headers import parsed
 from jointid.recording.units import find_unit
+from jointid.recording.wide.one_joint import MARK
 from jointid.recording.wide.words import (
     CARRIERS,
     COMMAND,
@@ -22,7 +23,6 @@ _INDEX = r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)"
 _SEPARATORS = r"[\s_.\-/]+"
 _CAMEL = r"(?<=[a-z])(?=[A-Z])"
 _LETTERS_DIGITS = r"([^\W\d]+)(\d+)"
-_MARK = "{joint}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +107,7 @@ def _indexed(index: int, header: str) -> JointHeader | None:
     (place,) = found
     number = place[1] or place[2]
     start = place.start(1) if place[1] else place.start(2)
-    pattern = f"{stem[:start]}{_MARK}{stem[start + len(number) :]}{unit}"
+    pattern = f"{stem[:start]}{MARK}{stem[start + len(number) :]}{unit}"
     shown = f"{stem[: place.start()]}{stem[place.end() :]}"
     # What stands before the last point or slash is where the signal comes from; it may be a command, or no signal.
     *path, last = re.split(r"[./]", shown)
@@ -124,12 +124,12 @@ def _dotted(index: int, header: str) -> JointHeader | None:
         name = before.strip().rpartition("/")[2]  # of a path the last part
         if not found or not name:
             continue
-        pattern = f"{before[: len(before.rstrip()) - len(name)]}{_MARK}{found}{behind}{unit}"
+        pattern = f"{before[: len(before.rstrip()) - len(name)]}{MARK}{found}{behind}{unit}"
         column = _column(index, name, f"{behind}{unit}", pattern)
         if column.meaning and not set(words_of(name)) <= KNOWN:
             return column
         joint = behind.strip()
-        other = _column(index, joint, f"{before}{unit}", f"{before}{found}{_MARK}{unit}")
+        other = _column(index, joint, f"{before}{unit}", f"{before}{found}{MARK}{unit}")
         named = joint and not joint.isdigit() and not set(words_of(joint)) <= KNOWN
         if other.meaning and named and find_unit(joint) is None:
             return other
@@ -151,7 +151,7 @@ def _numbered(index: int, header: str) -> JointHeader | None:
     if not kept:
         return None
     shown = f"{'_'.join(kept)}{unit}"
-    return _column(index, place[0], shown, f"{before}{_MARK}{behind}{unit}")
+    return _column(index, place[0], shown, f"{before}{MARK}{behind}{unit}")
 
 
 def _split(text: str) -> list[str]:
@@ -189,5 +189,5 @@ def _named(index: int, header: str) -> JointHeader | None:
     if words[0].casefold() in KNOWN or not stem.startswith(name):
         return None
     shown = f"{'_'.join(words[first:])}{unit}"
-    column = _column(index, name, shown, f"{_MARK}{stem[len(name) :]}{unit}")
+    column = _column(index, name, shown, f"{MARK}{stem[len(name) :]}{unit}")
     return column if column.meaning else None

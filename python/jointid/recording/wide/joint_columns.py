@@ -6,9 +6,8 @@ from dataclasses import field
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.recording.column_problems import TORQUES
 from jointid.recording.headers import parsed, understood
-from jointid.recording.signals import dimensions
+from jointid.recording.signals import TORQUES, dimensions
 from jointid.recording.table import Table
 from jointid.recording.wide.finding_joints import JointHeader
 from jointid.recording.wide.words import JOINT, MOTOR

@@ -10,14 +10,13 @@ import numpy.typing as npt
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
-from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.signals import FloatArray, check_signal_name
 from jointid.recording.table import Table, first_cell, raw_values
 from jointid.recording.wide.finding_joints import joint_headers
 from jointid.recording.wide.joint_columns import own_columns
+from jointid.recording.wide.one_joint import MARK, is_one
 
 Columns = Mapping[str, str | int | None]
-_MARK = "{joint}"
 
 
 class JointTable:
@@ -122,9 +121,9 @@ def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
     """
     named = tuple(joint_headers(table.headers))
     pattern = columns.get("position") if isinstance(columns, Mapping) else None
-    if not isinstance(pattern, str) or pattern.count(_MARK) != 1:
+    if not isinstance(pattern, str) or pattern.count(MARK) != 1:
         return named
-    before, behind = map(re.escape, pattern.strip().split(_MARK))
+    before, behind = map(re.escape, pattern.strip().split(MARK))
     form = re.compile(f"{before}(.+){behind}", re.IGNORECASE)
     headers = (*table.headers, *table.other_names)
     found = [match[1] for header in headers if (match := form.fullmatch(header.strip()))]
@@ -134,13 +133,10 @@ def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
 def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
     """Return the joints of a table that no call with these columns could mean as one; empty if it could."""
     given = columns or {}
-    position = given.get("position")
-    if isinstance(position, str) and _MARK in position:
+    if is_one(table, given):
+        return ()
+    if given.get("position") is not None:
         return joints_of(table, given)
-    if position is not None:
-        return ()
-    if any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers):
-        return ()
     joints = joint_headers(table.headers)
     if sum(map(len, joints.values())) == len(table.headers):  # a matrix: one of them is the time
         return ()
@@ -171,13 +167,13 @@ def _index(table: Table, column: object, joint: str, signal: str) -> int | None:
     check_signal_name(signal, "columns")
     if column is None:
         return None
-    if isinstance(column, str) and _MARK in column:
-        column = column.replace(_MARK, joint)
+    if isinstance(column, str) and MARK in column:
+        column = column.replace(MARK, joint)
     return column_index(table, column, f"columns.{signal}")
 
 
 def _extra_index(table: Table, column: str | int, joint: str, name: str) -> int:
-    header = column.replace(_MARK, joint) if isinstance(column, str) else column
+    header = column.replace(MARK, joint) if isinstance(column, str) else column
     return column_index(table, header, f"extra.{name}")
 
 

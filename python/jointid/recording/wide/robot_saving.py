@@ -12,7 +12,8 @@ from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
 from jointid.recording.extra import PREFIX as EXTRA
-from jointid.recording.saving import CSV_MARK, ENDINGS, NPZ_MEMBER, SCHEMA
+from jointid.recording.saved import CSV_MARK, NPZ_MEMBER, SCHEMA
+from jointid.recording.saving import ENDINGS
 from jointid.recording.signals import FloatArray, header_unit
 
 if TYPE_CHECKING:

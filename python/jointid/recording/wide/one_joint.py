@@ -1,0 +1,89 @@
+"""The one joint of a table that `load` reads; a table of one joint needs nothing else from this folder."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import field
+
+from jointid.base.values import dataclass
+from jointid.recording.headers import ALIASES, parsed
+from jointid.recording.table import Table
+
+MARK = "{joint}"
+"""What stands in a header of `columns` for the joint."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneJoint:
+    """A table of one joint.
+
+    Attributes
+    ----------
+    table : Table
+    columns : mapping of str to str, int or None, or None
+        As `read_contents` takes them.
+    extra : collection, mapping or None
+        As `read_contents` takes it.
+    side : str
+        Of the gear, on which the position is: "joint" or "motor".
+    other_sides : mapping of str to str
+        Signal → its side, where that is another one.
+    joint : str
+        Its name; empty for a table without names of joints.
+    gear_ratio : float or None
+        As saved; None: not known.
+    """
+
+    table: Table
+    columns: Mapping[str, str | int | None] | None
+    extra: Collection[str] | Mapping[str, str | int] | None = None
+    side: str = "joint"
+    other_sides: Mapping[str, str] = field(default_factory=dict)
+    joint: str = ""
+    gear_ratio: float | None = None
+
+
+def one_joint(
+    table: Table,
+    joint: str | int | None,
+    columns: Mapping[str, str | int | None] | None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
+) -> OneJoint:
+    """Return one joint of a table; the table itself if it is of one joint.
+
+    Parameters
+    ----------
+    table : Table
+    joint : str, int or None
+        None: the only one.
+    columns : mapping or None
+        As given to `load`.
+    extra : collection, mapping or None
+        As given to `load`; also columns of other joints.
+
+    Raises
+    ------
+    InputError
+        There is no such joint, or several and none is named; two columns could be the same signal.
+    """
+    if joint is None and (not isinstance(columns or {}, Mapping) or is_one(table, columns)):
+        return OneJoint(table=table, columns=columns, extra=extra)
+    # Most files hold one joint, and these are as many modules as all that read them.
+    from jointid.recording.wide.choosing import chosen_joint
+
+    return chosen_joint(table, joint, columns, extra)
+
+
+def is_one(table: Table, columns: Mapping[str, str | int | None] | None) -> bool:
+    """Whether a table has a position that is of no joint in particular, by its headers or by `columns`.
+
+    Parameters
+    ----------
+    table : Table
+    columns : mapping or None
+        As given to `load`.
+    """
+    position = (columns or {}).get("position")
+    if position is not None:
+        return not isinstance(position, str) or MARK not in position
+    return any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers)
