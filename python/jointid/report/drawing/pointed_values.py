@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +10,6 @@ from numpy.typing import NDArray
 
 from jointid.base.html import Html, element
 from jointid.report.drawing.marks import Bars, Line, Mark, Panel, Points, numbers
-from jointid.report.drawing.paths import area_path
 from jointid.report.drawing.scale import Scale, drawable
 
 Array = NDArray[np.float64]
@@ -43,21 +43,23 @@ def readouts(panels: Sequence[Panel], across: Scale, top: int, foot: int) -> lis
         if not panel.names
         for mark in panel.marks
     ]
-    columns = [(*_named(label, up), values) for label, up, values in read if values is not None]
+    columns = [
+        (*_named(label, up), values.tolist()) for label, up, values in read if values is not None
+    ]
     name, unit = _named("", panels[-1].across)
-    places = across.places(edges)
+    places = across.places(edges).tolist()
     strips = []
     for number, middle in enumerate(middles.tolist()):
         said = [
-            f"{label}: {_shown(float(values[number]))}{unit}"
+            f"{label}: {_shown(values[number])}{unit}"
             for label, unit, values in columns
-            if np.isfinite(values[number])
+            if math.isfinite(values[number])
         ]
         if not said:
             continue
         title = "\n".join([f"{name}: {_shown(middle)}{unit}", *said])
-        ends, there = places[number : number + 2], np.ones(2, dtype=np.int64)
-        path = area_path(ends, foot * there, top * there)
+        left, right = places[number : number + 2]
+        path = f"M{left} {foot}V{top}H{right}V{foot}z"
         strips.append(element("path", element("title", title), class_="readout", d=path))
     return strips
 
