@@ -6,6 +6,7 @@
 #include "diagnose/ripple.hpp"
 #include "identify/compressed/compressed_penalty.hpp"
 #include "identify/solve/refit.hpp"
+#include "identify/solve/window_shifts.hpp"
 
 namespace jointid::bind {
 
@@ -148,6 +149,21 @@ void bind_penalty(py::module_& m) {
           py::arg("theta"),
           "Penalty, window residuals with the reading itself, and the derivatives of the penalty's "
           "residuals, in one pass: what the sandwich of an estimate's covariance is made of.")
+      .def(
+          "balance_at",
+          [](const Penalty& p, const Eigen::VectorXd& theta) {
+            Eigen::VectorXd residual;
+            Eigen::MatrixXd jacobian;
+            Eigen::MatrixXd columns;
+            double penalty = 0.0;
+            {
+              const py::gil_scoped_release nogil;
+              penalty = p.linearise(theta, residual, jacobian, columns);
+            }
+            return std::make_tuple(penalty, std::move(residual), std::move(jacobian),
+                                   std::move(columns));
+          },
+          py::arg("theta"), "The same, and what `columns` returns at its shapes.")
       .def(
           "residuals",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
@@ -293,6 +309,26 @@ void bind_penalty(py::module_& m) {
           py::arg("threads") = 0,
           "Number of windows, sum of squared mean residuals, and the magnitude of their sum over "
           "each half multiple of the motor's angle.");
+  m.def(
+      "window_shifts",
+      [](const Penalty& penalty, const Recordings& recordings,
+         const std::vector<std::string>& terms, bool mask_standstill, double gear_ratio,
+         const std::vector<std::string>& per_recording, Eigen::VectorXd lower,
+         Eigen::VectorXd upper, const Eigen::VectorXd& best, int threads) {
+        const search::Domain domain{std::move(lower), std::move(upper)};
+        const py::gil_scoped_release nogil;
+        return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
+          auto found =
+              identify::window_shifts(penalty, all_masked(recordings, mask_standstill, pool), terms,
+                                      gear_ratio, per_recording, domain, best, pool);
+          return std::make_pair(std::move(found.halved), std::move(found.doubled));
+        });
+      },
+      py::arg("penalty"), py::kw_only(), py::arg("recordings"), py::arg("terms"),
+      py::arg("mask_standstill"), py::arg("gear_ratio"), py::arg("per_recording"), py::arg("lower"),
+      py::arg("upper"), py::arg("best"), py::arg("threads") = 0,
+      "The minima with each window halved and with neighbours joined in pairs; None where there "
+      "are no such windows.");
 }
 
 }  // namespace jointid::bind

@@ -116,6 +116,7 @@ __all__: list[str] = [
     "window_duration",
     "window_integrals",
     "window_means",
+    "window_shifts",
 ]
 
 class Control(enum.Enum):
@@ -449,6 +450,17 @@ class Penalty(PenaltyFunction):
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
+    def balance_at(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> tuple[
+        float,
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    ]:
+        """
+        The same, and what `columns` returns at its shapes.
+        """
     def bending(
         self,
         recordings: collections.abc.Sequence[Recording],
@@ -3941,6 +3953,26 @@ def window_means(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
     Weighted sums of a signal over windows.
+    """
+
+def window_shifts(
+    penalty: Penalty,
+    *,
+    recordings: collections.abc.Sequence[Recording],
+    terms: collections.abc.Sequence[str],
+    mask_standstill: bool,
+    gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+    per_recording: collections.abc.Sequence[str],
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    best: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
+]:
+    """
+    The minima with each window halved and with neighbours joined in pairs; None where there are no such windows.
     """
 
 __version__: str

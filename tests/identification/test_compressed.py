@@ -161,7 +161,10 @@ def test_the_direct_sum_verifies_the_result(excited: jid.Recording) -> None:
     best, _, settled = engine.polished(domain, 0.5 * (domain.lower + domain.upper))
     assert settled
     outcome = Outcome(best=best, convergence=None, status="converged", message="found")
-    assert engine.verified(outcome, domain) is outcome
+    verified = engine.verified(outcome, domain)
+    assert verified == outcome  # not polished again
+    assert verified.balance is not None
+    assert verified.balance[0] == penalty(best)
     wrong = Engine(direct=other, form=engine.form, reason="")
     polished = wrong.verified(outcome, domain)
     assert "did not agree" in polished.message

@@ -161,14 +161,20 @@ ShapeTable::ShapeTable(std::vector<ShapeAxis> axes, const Samples& samples, int 
 
 void ShapeTable::build_line(const Eigen::MatrixXd& values) {
   const auto order = static_cast<Eigen::Index>(order_);
+  const auto pieces = static_cast<Eigen::Index>(axes_[0].pieces());
   const Eigen::MatrixXd points = at_pieces(axes_[0], order, values);
-  const Powers powers(order);
-  rows_.assign(static_cast<std::size_t>(axes_[0].pieces()) * terms_ * width_, 0.0);
-  for (std::int64_t piece = 0; piece < axes_[0].pieces(); ++piece) {
+  // All pieces at once, a row for each function of each: (piece, function) x local point.
+  Eigen::MatrixXd local(pieces * functions_, order);
+  for (Eigen::Index piece = 0; piece < pieces; ++piece) {
+    local.middleRows(piece * functions_, functions_) = points.middleCols(piece * order, order);
+  }
+  const Eigen::MatrixXd powers = Powers(order).of(local);
+  rows_.assign(static_cast<std::size_t>(pieces) * terms_ * width_, 0.0);
+  for (Eigen::Index piece = 0; piece < pieces; ++piece) {
     Eigen::Map<Eigen::MatrixXd> target(
         rows_.data() + static_cast<std::size_t>(piece) * terms_ * width_,
         static_cast<Eigen::Index>(width_), order);
-    target.topRows(functions_) = powers.of(points.middleCols(piece * order, order));
+    target.topRows(functions_) = powers.middleRows(piece * functions_, functions_);
   }
 }
 

@@ -147,6 +147,7 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
     }
     choice_.noise_share = std::max(choice_.noise_share, choice.noise_share);
     choice_.noise_limited = choice_.noise_limited || choice.noise_limited;
+    cut_durations_.push_back(choice.duration);
     auto windows =
         cut_windows(recordings[i]->recording(), recordings[i]->usable(), choice.duration);
     recording_of_.insert(recording_of_.end(), windows.size(), static_cast<int>(i));
@@ -319,82 +320,6 @@ void Penalty::accumulate(Eigen::Ref<Eigen::VectorXd> values) const {
     const auto r = static_cast<std::size_t>(row);
     if (recording_of_[r] == recording_of_[r - 1]) values[row] += values[row - 1];
   }
-}
-
-void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
-                      const base::Cancel* cancel) const {
-  result = columns_;
-  for (const auto& s : shaped_) {
-    shaped_column(s, shapes.data(), cancel, result.col(s.coefficient));
-  }
-  if (cumulative_ && load_ >= 0) {
-    for (Eigen::Index j = 0; j < result.cols(); ++j) {
-      if (!is_shaped(j)) accumulate(result.col(j));
-    }
-  }
-}
-
-double Penalty::operator()(const Eigen::VectorXd& theta, const base::Cancel* cancel) const {
-  Eigen::VectorXd residual;
-  residuals(theta, residual, nullptr, cancel);
-  return residual.squaredNorm();
-}
-
-void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
-                        Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
-  check(theta);
-  const Eigen::Index p = coefficients();
-  if (load_ >= 0) {
-    loaded_residuals(theta, residual, jacobian, cancel);
-    divide_by_gain(theta, residual, jacobian);
-    return;
-  }
-  if (jacobian != nullptr) {
-    jacobian->resize(window_count(), parameters());
-    jacobian->leftCols(p) = -columns_;
-    jacobian->rightCols(parameters() - p).setZero();
-  }
-  residual = target_;
-  residual.noalias() -= columns_ * theta.head(p);
-  Eigen::MatrixXd own(shaped_.empty() ? 0 : window_count(), 1);
-  const double* shapes = theta.data() + p;
-  for (const auto& s : shaped_) {
-    const double coefficient = theta[s.coefficient];
-    if (jacobian == nullptr) {
-      shaped_column(s, shapes, cancel, own.col(0));
-    } else {
-      shaped_slopes(s, shapes, cancel, own);
-    }
-    residual.noalias() -= coefficient * own.col(0);
-    if (jacobian == nullptr) continue;
-    jacobian->col(s.coefficient) -= own.col(0);
-    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
-      jacobian->col(p + s.shapes[i]) -= coefficient * own.col(static_cast<Eigen::Index>(i) + 1);
-    }
-  }
-  divide_by_gain(theta, residual, jacobian);
-}
-
-void Penalty::divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
-                             Eigen::MatrixXd* jacobian) const {
-  if (residual_ != Residual::sensor) return;
-  const double scale = 1.0 / theta[gain_index_];
-  residual *= scale;
-  if (jacobian != nullptr) {
-    *jacobian *= scale;
-    jacobian->col(gain_index_) -= scale * residual;
-  }
-}
-
-void Penalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
-                       base::Pool& pool) const {
-  penalties.resize(candidates.cols());
-  pool.for_each(
-      static_cast<std::size_t>(candidates.cols()), [&](std::size_t begin, std::size_t end) {
-        for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
-          penalties[i] = (*this)(candidates.col(i), &pool.cancel());
-        }
-      });
 }
 
 }  // namespace jointid::identify

@@ -64,6 +64,10 @@ class Penalty final : public PenaltyFunction {
                     const base::Cancel* cancel = nullptr) const override;
   void residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian,
                  const base::Cancel* cancel = nullptr) const override;
+  /// Residuals and columns with the reading itself, and the derivatives of the penalty's own
+  /// residuals, in one pass; returns the penalty.
+  double linearise(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                   Eigen::MatrixXd& jacobian, Eigen::MatrixXd& columns) const;
   void evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
                 base::Pool& pool) const override;
   void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
@@ -76,6 +80,12 @@ class Penalty final : public PenaltyFunction {
   [[nodiscard]] const std::optional<FirstStage>& first_stage() const { return first_stage_; }
   /// Integrals of the sensor's reading itself. Only with a gain.
   [[nodiscard]] Eigen::VectorXd reading() const;
+  /// What may explain the reading where these parameters vary and there are so many windows.
+  [[nodiscard]] Instruments instruments(const std::vector<Eigen::Index>& free,
+                                        std::size_t windows) const;
+  /// The instruments over some windows; of running sums, over all.
+  [[nodiscard]] Eigen::MatrixXd instrument_rows(const Instruments& instruments,
+                                                const Stretch& windows) const;
   /// Turns `residuals` into those with the reading itself, whose scatter is the estimate's; they
   /// are the same unless the reading is projected.
   void observe(const Eigen::VectorXd& theta, Eigen::VectorXd& residual) const;
@@ -96,6 +106,8 @@ class Penalty final : public PenaltyFunction {
   /// First and last sample of each window, a row each.
   [[nodiscard]] Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> window_bounds() const;
   [[nodiscard]] const std::vector<int>& recording_of() const { return recording_of_; }
+  /// With which each recording was cut [s].
+  [[nodiscard]] const std::vector<double>& cut_durations() const { return cut_durations_; }
   /// How far the torque rises over each window's usable intervals; `recordings` are those it was
   /// cut from.
   [[nodiscard]] Eigen::VectorXd torque_steps(const Masked& recordings) const;
@@ -114,6 +126,9 @@ class Penalty final : public PenaltyFunction {
 
  private:
   void add_term(const std::string& key);
+  /// Residuals, and where they are not null their derivatives and the columns.
+  void balance(const Eigen::VectorXd& theta, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian,
+               Eigen::MatrixXd* columns, const base::Cancel* cancel) const;
   friend class PenaltyParts;
   void weigh_link();
   /// Calls work(recording, its windows, the first of their rows) for each recording.
@@ -137,15 +152,10 @@ class Penalty final : public PenaltyFunction {
   void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
   void accumulate_all();
   void integrate_link(const RecordingView& recording, Eigen::Index first, Eigen::Index count);
-  [[nodiscard]] Instruments instruments(const std::vector<Eigen::Index>& free,
-                                        std::size_t windows) const;
   /// Window sums of the instruments' decays: by those of the samples where a window's nodes are its
   /// samples.
   void sum_decays(const FrictionNodes& nodes, const Stretch& windows,
                   const std::vector<double>& rates, Eigen::Ref<Eigen::MatrixXd> columns) const;
-  /// The instruments over some windows; of running sums, over all.
-  [[nodiscard]] Eigen::MatrixXd instrument_rows(const Instruments& instruments,
-                                                const Stretch& windows) const;
   /// Of (instruments, reading).
   [[nodiscard]] Eigen::MatrixXd instrument_triangle(const Instruments& instruments,
                                                     base::Pool* pool);
@@ -196,6 +206,7 @@ class Penalty final : public PenaltyFunction {
   std::vector<int> recording_of_;
   Eigen::VectorXd usable_duration_;
   WindowChoice choice_;
+  std::vector<double> cut_durations_;
   std::int64_t standing_ = 0;
   std::int64_t unusable_ = 0;
   std::int64_t total_ = 0;

@@ -1,5 +1,7 @@
 #include "identify/penalty/penalty_parts.hpp"
 
+#include <utility>
+
 namespace jointid::identify {
 
 namespace {
@@ -20,10 +22,30 @@ PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<
   frame_.cut(recordings, windows);
   windows_.swap(frame_.windows_);
   recording_of_.swap(frame_.recording_of_);
+  divide({});
+}
+
+PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
+                           CutWindows windows, const std::vector<std::size_t>& ends,
+                           Residual residual, double gear_ratio,
+                           const std::vector<std::string>& per_recording)
+    : recordings_(recordings),
+      gear_ratio_(gear_ratio),
+      per_recording_(per_recording),
+      frame_(recordings, terms, residual, gear_ratio),
+      windows_(std::move(windows.windows)),
+      recording_of_(std::move(windows.recording_of)) {
+  divide(ends);
+}
+
+void PenaltyParts::divide(const std::vector<std::size_t>& ends) {
   first_.push_back(0);
   std::int64_t held = 0;
+  auto end = ends.begin();
   for (std::size_t w = 0; w < windows_.size(); ++w) {
-    if (held >= kSamples && !frame_.cumulative_) {
+    while (end != ends.end() && *end < w) ++end;
+    const bool whole = ends.empty() || (end != ends.end() && *end == w);
+    if (held >= kSamples && whole && !frame_.cumulative_) {
       first_.push_back(w);
       held = 0;
     }
@@ -33,10 +55,10 @@ PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<
   Penalty whole = frame_;
   whole.columns_.setZero(0, static_cast<Eigen::Index>(whole.terms_.size()));
   whole.backward_.setZero(0, whole.columns_.cols());
-  whole.own_columns(per_recording, recordings.size());
+  whole.own_columns(per_recording_, recordings_.size());
   names_ = whole.parameters();
   coefficients_ = whole.coefficients();
-  if (residual == Residual::sensor) divisor_ = whole.gain_index();
+  if (frame_.residual() == Residual::sensor) divisor_ = whole.gain_index();
 }
 
 Penalty PenaltyParts::part(std::size_t index) const {

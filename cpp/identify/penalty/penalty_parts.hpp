@@ -13,8 +13,19 @@
 
 namespace jointid::identify {
 
+/// Windows that are known, and the recording of each.
+struct CutWindows {
+  std::vector<Window> windows;
+  std::vector<int> recording_of;
+};
+
 class PenaltyParts {
  public:
+  /// Over windows that are known. A part ends only where one of `ends` begins; without any,
+  /// anywhere.
+  PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
+               CutWindows windows, const std::vector<std::size_t>& ends, Residual residual,
+               double gear_ratio, const std::vector<std::string>& per_recording);
   /// As for `Penalty`. Cumulative windows stay one part.
   PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
                const WindowOptions& windows, Residual residual, double gear_ratio,
@@ -24,6 +35,8 @@ class PenaltyParts {
   [[nodiscard]] Eigen::Index window_count() const {
     return static_cast<Eigen::Index>(windows_.size());
   }
+  /// The first window of a part; of the number of parts, the number of windows.
+  [[nodiscard]] std::size_t first(std::size_t part) const { return first_[part]; }
   [[nodiscard]] Eigen::Index parameters() const { return names_; }
   [[nodiscard]] std::int64_t samples() const { return frame_.total_samples(); }
   /// Whether the residuals are not linear in this parameter: a shape, or a gain that divides them.
@@ -43,6 +56,8 @@ class PenaltyParts {
   }
 
  private:
+  void divide(const std::vector<std::size_t>& ends);
+
   Penalty::Masked recordings_;
   double gear_ratio_;
   std::vector<std::string> per_recording_;

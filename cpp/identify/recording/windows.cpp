@@ -43,6 +43,13 @@ double covered(const RecordingView& r) {
   return sum;
 }
 
+/// Windows of a duration in a stretch.
+std::int64_t count_in(const RecordingView& r, const Stretch& stretch, double duration) {
+  const double length = r.time[stretch.end] - r.time[stretch.begin];
+  const auto wanted = static_cast<std::int64_t>(std::llround(length / duration));
+  return std::clamp<std::int64_t>(wanted, 1, stretch.end - stretch.begin);
+}
+
 }  // namespace
 
 void WindowOptions::validate() const {
@@ -92,9 +99,7 @@ std::vector<Window> cut_windows(const RecordingView& r, const std::vector<std::u
   std::vector<Window> windows;
   for (const auto& stretch : stretches(r)) {
     const auto intervals = stretch.end - stretch.begin;
-    const double length = r.time[stretch.end] - r.time[stretch.begin];
-    const auto wanted = static_cast<std::int64_t>(std::llround(length / duration));
-    const auto count = std::clamp<std::int64_t>(wanted, 1, intervals);
+    const auto count = count_in(r, stretch, duration);
     windows.reserve(windows.size() + static_cast<std::size_t>(count));
     for (std::int64_t i = 0; i < count; ++i) {
       const Window window{stretch.begin + intervals * i / count,
@@ -106,6 +111,23 @@ std::vector<Window> cut_windows(const RecordingView& r, const std::vector<std::u
     }
   }
   return windows;
+}
+
+std::vector<std::int64_t> places_of(const RecordingView& r, std::span<const Window> windows,
+                                    double duration) {
+  std::vector<std::int64_t> places;
+  places.reserve(windows.size());
+  auto window = windows.begin();
+  for (const auto& stretch : stretches(r)) {
+    const auto intervals = stretch.end - stretch.begin;
+    const auto count = count_in(r, stretch, duration);
+    for (; window != windows.end() && window->end <= stretch.end; ++window) {
+      // The place whose window begins there: begin = intervals place / count, rounded down.
+      const auto begin = window->begin - stretch.begin;
+      places.push_back((begin * count + intervals - 1) / intervals);
+    }
+  }
+  return places;
 }
 
 double duration_for(const std::vector<RecordingView>& recordings, std::int64_t count) {

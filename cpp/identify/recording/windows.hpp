@@ -49,6 +49,11 @@ WindowChoice choose_window(const RecordingView& recording, const std::vector<std
 std::vector<Window> cut_windows(const RecordingView& recording,
                                 const std::vector<std::uint8_t>& usable, double duration);
 
+/// How many windows each of these has before it in its stretch, those left out included. They were
+/// cut with that duration.
+std::vector<std::int64_t> places_of(const RecordingView& recording, std::span<const Window> windows,
+                                    double duration);
+
 /// The duration that gives about `count` windows over the gap-free stretches of all recordings.
 double duration_for(const std::vector<RecordingView>& recordings, std::int64_t count);
 

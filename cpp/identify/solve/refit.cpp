@@ -15,16 +15,9 @@ namespace {
 
 constexpr int kMostSteps = 60;
 constexpr double kNear = 2e-5;    // standard errors left to go
-constexpr double kEnough = 1e-3;  // of an expected miss; the last step need not be checked then
+constexpr double kEnough = 1e-4;  // of an expected miss; the last step need not be checked then
 constexpr double kFloor = 1e-13;  // damping that never disturbs, and keeps the equations solvable
 constexpr std::int64_t kKept = 1 << 20;  // samples up to which the parts are kept between steps
-
-/// Sums over the windows at one point.
-struct Sums {
-  Eigen::MatrixXd square;    ///< J'J
-  Eigen::VectorXd gradient;  ///< J'r
-  double penalty = 0.0;
-};
 
 class Windows {
  public:
@@ -40,8 +33,8 @@ class Windows {
     for (auto& part : kept_) part->project_reading(*stage_);
   }
 
-  [[nodiscard]] Sums at(const Eigen::VectorXd& theta) {
-    std::vector<Sums> each(parts_.count());
+  [[nodiscard]] Balanced at(const Eigen::VectorXd& theta) {
+    std::vector<Balanced> each(parts_.count());
     for_each(parts_.count(), pool_, [&](std::size_t i) {
       Eigen::VectorXd residual;
       Eigen::MatrixXd jacobian;
@@ -56,7 +49,7 @@ class Windows {
       each[i].gradient = jacobian.transpose() * residual;
       each[i].penalty = residual.squaredNorm();
     });
-    Sums all = each[0];
+    Balanced all = each[0];
     for (std::size_t i = 1; i < each.size(); ++i) {  // always in this order: always the same bits
       all.square += each[i].square;
       all.gradient += each[i].gradient;
@@ -73,7 +66,7 @@ class Windows {
 };
 
 /// The damped step over the parameters that may move: free, and not held at a bound.
-Eigen::VectorXd step_from(const Sums& sums, const search::Domain& domain,
+Eigen::VectorXd step_from(const Balanced& sums, const search::Domain& domain,
                           const Eigen::VectorXd& theta, double damping) {
   std::vector<Eigen::Index> moving;
   for (const auto i : domain.free()) {
@@ -118,14 +111,14 @@ double nonlinearity(const PenaltyParts& parts, const Eigen::VectorXd& at,
 
 }  // namespace
 
-Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
-                      const Eigen::VectorXd& start, base::Pool* pool) {
-  domain.validate();
-  Windows windows(parts, domain, pool);
+Eigen::VectorXd descend(const std::function<Balanced(const Eigen::VectorXd&)>& at,
+                        const PenaltyParts& alike, Eigen::Index windows,
+                        const search::Domain& domain, const Eigen::VectorXd& start,
+                        const Balanced& first, double share) {
   const double freedom = static_cast<double>(
-      std::max<Eigen::Index>(1, parts.window_count() - static_cast<Eigen::Index>(domain.size())));
-  Eigen::VectorXd best = start.cwiseMax(domain.lower).cwiseMin(domain.upper);
-  Sums sums = windows.at(best);
+      std::max<Eigen::Index>(1, windows - static_cast<Eigen::Index>(domain.size())));
+  Eigen::VectorXd best = start;
+  Balanced sums = first;
   double damping = kFloor;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMostSteps; ++i) {
@@ -138,10 +131,11 @@ Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
                                  std::max(sums.penalty, std::numeric_limits<double>::min()));
     // Each step is shorter by about as much as the one before was; the first one misses by what the
     // residuals are nonlinear over it.
-    const double shrunk = std::isfinite(before) ? way / before : nonlinearity(parts, best, moved);
+    const double shrunk = std::isfinite(before) ? way / before : nonlinearity(alike, best, moved);
     const double left = way * std::min(1.0, shrunk);
-    if (way < kNear || (damping == kFloor && !cut && left < 0.1 * kEnough)) return trial;
-    const Sums there = windows.at(trial);
+    if (way < kNear || (damping == kFloor && !cut && (left < kEnough || shrunk < share)))
+      return trial;
+    const Balanced there = at(trial);
     if (there.penalty <= sums.penalty * (1.0 + 1e-12)) {
       best = trial;
       sums = there;
@@ -153,6 +147,15 @@ Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
     }
   }
   return best;
+}
+
+Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
+                      const Eigen::VectorXd& start, base::Pool* pool) {
+  domain.validate();
+  Windows windows(parts, domain, pool);
+  const auto at = [&](const Eigen::VectorXd& theta) { return windows.at(theta); };
+  const Eigen::VectorXd inside = start.cwiseMax(domain.lower).cwiseMin(domain.upper);
+  return descend(at, parts, parts.window_count(), domain, inside, at(inside), 0.0);
 }
 
 }  // namespace jointid::identify

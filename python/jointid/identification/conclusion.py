@@ -34,6 +34,7 @@ from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
+from jointid.identification.search.engine import Balance
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
@@ -56,6 +57,7 @@ def infer(
     penalty: _core.Penalty,
     domain: SearchDomain,
     best: Array,
+    balance: Balance,
     shifts: tuple[Array | None, Array | None],
     beside: Mapping[str, Array | None],
     convergence: Convergence | None,
@@ -70,6 +72,8 @@ def infer(
 
     Parameters
     ----------
+    balance : tuple
+        What the penalty's `balance_at` returns at the minimum.
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
     refinements : Refinements
@@ -83,8 +87,7 @@ def infer(
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
     # of an hour fills the memory.
     inspections = tuple(inspect(run, threads) for run in problem.recordings)
-    value, residual, jacobian = penalty.linearised(best)
-    columns = penalty.columns(best[penalty.coefficients :])
+    value, residual, jacobian, columns = balance
     sizes = np.linalg.norm(jacobian, axis=0)
     noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
     alone = noise / np.where(

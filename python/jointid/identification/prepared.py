@@ -139,11 +139,13 @@ class Prepared:
         """Return the estimate at one minimum; `known` are causes that were taken away before it."""
         domain = self.domain
         best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
+        known_there = outcome.balance if np.array_equal(best, outcome.best) else None
         return infer(
             problem=self.problem,
             penalty=self.penalty,
             domain=domain,
             best=best,
+            balance=known_there or self.penalty.balance_at(best),
             shifts=self._window_shifts(best),
             beside={
                 "residual_side": of_residual_side(self.problem, self.windows, domain, best),
@@ -198,9 +200,33 @@ class Prepared:
 
     def _window_shifts(self, best: Array) -> tuple[Array | None, Array | None]:
         """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
-        problem, domain = self.problem, self.domain
-        options = problem.window_options(self.windows)
+        problem, penalty, domain = self.problem, self.penalty, self.domain
         lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
+        if penalty.cumulative or not penalty.is_linear:  # their rows are no sums
+            return self._refitted_shifts(lower, upper, best)
+        halved, doubled = _core.window_shifts(
+            penalty,
+            recordings=problem.in_core,
+            terms=list(problem.choice.terms),
+            mask_standstill=problem.mask_standstill,
+            gear_ratio=problem.choice.gear_ratio,
+            per_recording=list(problem.choice.per_recording),
+            lower=lower,
+            upper=upper,
+            best=best,
+            threads=problem.threads,
+        )
+        return (
+            None if halved is None else halved - best,
+            None if doubled is None else doubled - best,
+        )
+
+    def _refitted_shifts(
+        self, lower: Array, upper: Array, best: Array
+    ) -> tuple[Array | None, Array | None]:
+        """Return the same by windows that are cut anew."""
+        problem = self.problem
+        options = problem.window_options(self.windows)
         shifts: list[Array | None] = []
         for factor in (0.5, 2.0):
             try:

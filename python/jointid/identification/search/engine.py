@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,19 @@ Array = NDArray[np.float64]
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-13
 
 
+# Penalty, residuals, their derivatives, and columns.
+Balance = tuple[float, Array, Array, Array]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """The result of a search; generations and evaluations are those before the polish."""
+    """The result of a search; generations and evaluations are those before the polish.
+
+    Attributes
+    ----------
+    balance : tuple or None
+        The direct sum at `best`, where the search has verified itself by it.
+    """
 
     best: Array
     convergence: Convergence | None
@@ -29,6 +39,7 @@ class Outcome:
     message: str
     generations: int = 0
     evaluations: int = 0
+    balance: Balance | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,10 +97,11 @@ class Engine:
         gain = 1.0
         if direct.residual == _core.Residual.sensor:
             gain = float(best[direct.names.index("sensor_gain")])
-        expected = direct(best)
+        balance = direct.balance_at(best)
+        expected = balance[0]
         size = inner(direct.target, direct.target) / gain**2
         if abs(self.form(best) - expected) <= _RELATIVE * expected + _ABSOLUTE * size:
-            return outcome
+            return replace(outcome, balance=balance)
         found = _core.polish(direct, domain.lower, domain.upper, best)
         message = f"{outcome.message}, and a polish by the direct sum, which did not agree"
         return replace(outcome, best=found.best, message=message)
