@@ -14,12 +14,10 @@ from dataclasses import replace
 import numpy as np
 
 from jointid.estimate.delays import Delay
-from jointid.identification.refinements.balance_columns import stacked
 from jointid.identification.refinements.balance_misfit import fits_better
 from jointid.identification.refinements.balances import SMALL, SUSPECT, Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
-from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
 from jointid.identification.refinements.stretches import Piece, few_of, pieces_of
 from jointid.problem.problem import Problem
 from jointid.recording.shifting import shifted
@@ -125,19 +123,16 @@ def _velocity(pieces: Sequence[Piece], glance: bool = False) -> tuple[Shift, boo
     pieces = [piece for piece in pieces if not piece.stretch.derived]
     if not pieces:
         return None
-    windows = []
-    for piece in pieces:
-        half = half_length(replace(piece.stretch, derived=True))
-        windows.append(
-            SmoothWindows(
-                stretch=piece.stretch,
-                half=half,
-                stride=half,
-                margin=margin(piece),
-                usable_only=False,
-            )
+    windows = [
+        piece.stretch.windows(
+            piece.stretch.half_length(by_position=True), margin=margin(piece), usable_only=False
         )
-    columns = stacked([[each.rate(each.stretch.position)] for each in windows])
+        for piece in pieces
+    ]
+    columns = [
+        each.rates(piece.stretch.position)[:, None]
+        for each, piece in zip(windows, pieces, strict=True)
+    ]
     balance = Balance(
         windows=windows,
         signals=[piece.stretch.velocity for piece in pieces],

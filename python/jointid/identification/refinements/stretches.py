@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.refinements.smooth_windows import Stretch, half_length
+from jointid.identification.refinements.smooth_windows import Stretch
 from jointid.problem.own_balance import OwnSignal, own_signals
 from jointid.problem.problem import Problem
 
@@ -53,7 +53,7 @@ class Piece:
     @cached_property
     def half(self) -> int:
         """Half the length of a window, in samples."""
-        return half_length(self.stretch)
+        return self.stretch.half_length()
 
     @cached_property
     def circle(self) -> tuple[Array, Array]:
