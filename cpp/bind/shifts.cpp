@@ -149,6 +149,14 @@ void bind_shifts(py::module_& m) {
       py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(), py::arg("held"),
       "Of the first column, in least squares of the signals, not shifted, on the columns.");
   m.def(
+      "even_grid",
+      [](const Array& time) {
+        if (time.size() < 2) throw std::invalid_argument("two samples are needed");
+        auto found = signals::even_grid(signal(time));
+        return std::make_pair(std::move(found.time), found.apart);
+      },
+      py::arg("time"), "Even times from the first to the last, and how far off the times are [s].");
+  m.def(
       "half_length",
       [](const Array& values, double period, bool position) {
         if (values.size() < 4) throw std::invalid_argument("the signal is too short");

@@ -1,5 +1,6 @@
 #include "signals/shift_fit.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -111,17 +112,16 @@ class Projection {
   }
 
   [[nodiscard]] Index rank() const { return basis_.cols(); }
-  [[nodiscard]] VectorXd coefficients(const VectorXd& signal) const {
+  [[nodiscard]] VectorXd coefficients(const Eigen::Ref<const VectorXd>& signal) const {
     const VectorXd matched = weights_ == nullptr
                                  ? base::products(columns_, signal)
                                  : base::products(columns_, signal.cwiseProduct(*weights_));
     const VectorXd inner = basis_.transpose() * matched;
     return basis_ * inner;
   }
-  /// What the columns leave of a signal.
-  void rest(const VectorXd& signal, VectorXd& result) const {
-    result = signal;
-    base::subtract_sum(columns_, coefficients(signal), result);
+  /// Leaves of a signal what the columns cannot make.
+  void take_from(Eigen::Ref<VectorXd> signal) const {
+    base::subtract_sum(columns_, coefficients(signal), signal);
   }
 
  private:
@@ -129,8 +129,18 @@ class Projection {
     VectorXd scale = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
     scale = (scale.array() > 0.0).select(scale, std::numeric_limits<double>::infinity());
     const VectorXd inverse = scale.cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(inverse.asDiagonal() * gram *
-                                                         inverse.asDiagonal());
+    const MatrixXd scaled = inverse.asDiagonal() * gram * inverse.asDiagonal();
+    const Eigen::LLT<MatrixXd> factor(scaled);
+    if (factor.info() == Eigen::Success) {
+      // The trace of the inverse bounds its largest eigenvalue, the width the largest one itself.
+      const auto width = static_cast<double>(gram.rows());
+      basis_ = factor.matrixU().solve(MatrixXd::Identity(gram.rows(), gram.rows()));
+      if (basis_.squaredNorm() * kSingular * width < 1.0) {
+        basis_ = inverse.asDiagonal() * basis_;
+        return;
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
     const VectorXd& values = solver.eigenvalues();
     const double least = kSingular * values[values.size() - 1];
     Index first = 0;
@@ -163,7 +173,7 @@ class Rates {
     }
   }
 
-  void of(const VectorXd& level, VectorXd& rate) const {
+  void of(const VectorXd& level, Eigen::Ref<VectorXd> rate) const {
     const auto count = static_cast<std::size_t>(level.size());
     take_rates(level.data(), between_.data(), count, rate.data());
     rate[0] = 0.0;  // the first and the last row have no two neighbours
@@ -174,20 +184,24 @@ class Rates {
   VectorXd between_;  ///< 1 over the time between both neighbours; 0 where one is left out
 };
 
-/// The number of the piece of motion that each row belongs to.
-std::vector<std::size_t> clusters_of(const ShiftRows& rows) {
-  std::vector<std::size_t> groups;
-  groups.reserve(static_cast<std::size_t>(rows.columns.rows()));
-  std::size_t first = 0;
+/// Behind the last row of each piece of the motion that counts as one observation.
+std::vector<Index> pieces_of(const ShiftRows& rows) {
+  std::vector<Index> ends;
+  Index row = 0;
   for (const auto& each : rows.stretches) {
     const double start = each.time[0];
     const double length = std::min(kCluster, (each.time[each.time.size() - 1] - start) / 20.0);
+    std::int64_t piece = -1;
     for (const auto middle : each.windows.used) {
-      groups.push_back(static_cast<std::size_t>((each.time[middle] - start) / length) + first);
+      const auto own = static_cast<std::int64_t>((each.time[middle] - start) / length);
+      if (own != piece) ends.push_back(row);
+      piece = own;
+      ++row;
     }
-    if (!each.windows.used.empty()) first = groups.back() + 1;
   }
-  return groups;
+  if (!ends.empty()) ends.erase(ends.begin());
+  ends.push_back(row);
+  return ends;
 }
 
 /// Inverse of one or two products; a singular pair's by its eigenvectors.
@@ -204,21 +218,21 @@ MatrixXd inverse_of(const MatrixXd& gram) {
 /// `weighted` are the slopes times the weights.
 VectorXd errors_of(const Eigen::Ref<const MatrixXd>& slopes,
                    const Eigen::Ref<const MatrixXd>& weighted, const VectorXd& missed,
-                   const VectorXd& weights, const std::vector<std::size_t>& groups, Index rank) {
+                   const VectorXd& weights, const std::vector<Index>& pieces, Index rank) {
   const Index width = slopes.cols();
   const MatrixXd inverse = inverse_of(base::symmetric_products(slopes, weighted));
-  MatrixXd outer = MatrixXd::Zero(width, width);
-  std::size_t pieces = 0;
-  for (std::size_t row = 0; row < groups.size(); ++pieces) {  // they come in order
-    Eigen::Vector2d sums = Eigen::Vector2d::Zero();
-    for (const std::size_t group = groups[row]; row < groups.size() && groups[row] == group;) {
-      const auto at = static_cast<Index>(row++);
-      for (Index part = 0; part < width; ++part) sums[part] += weighted(at, part) * missed[at];
+  MatrixXd sums(static_cast<Index>(pieces.size()), width);
+  for (Index part = 0; part < width; ++part) {
+    const VectorXd scores = weighted.col(part).cwiseProduct(missed);
+    Index first = 0;
+    Index piece = 0;
+    for (const Index end : pieces) {
+      sums(piece++, part) = scores.segment(first, end - first).sum();
+      first = end;
     }
-    outer += sums.head(width) * sums.head(width).transpose();
   }
-  const double used = std::max(2.0, static_cast<double>(pieces));
-  const MatrixXd clustered = inverse * outer * inverse * used / (used - 1.0);
+  const double used = std::max(2.0, static_cast<double>(pieces.size()));
+  const MatrixXd clustered = inverse * (sums.transpose() * sums) * inverse * used / (used - 1.0);
   const double noise = missed.dot(weights.cwiseProduct(missed)) /
                        static_cast<double>(std::max<Index>(1, missed.size() - rank - 1));
   return clustered.diagonal().cwiseMax(noise * inverse.diagonal()).cwiseSqrt();
@@ -236,7 +250,8 @@ double least_misfit(const ShiftRows& rows, const Levels& levels, const Projectio
     if (cancel != nullptr) cancel->check();
     const double delay = k == static_cast<int>(count) ? reach : k * (2.0 * reach / count) - reach;
     levels.at(delay, level);
-    projection.rest(level, rest);
+    rest = level;
+    projection.take_from(rest);
     const double misfit = rest.squaredNorm() / std::max(level.squaredNorm(), kTiny);
     if (misfit < least) {
       found = delay;
@@ -273,8 +288,6 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
   VectorXd level;
   VectorXd rest;
   VectorXd fitted;
-  VectorXd rate(count);
-  VectorXd slope;
   VectorXd missed;
   VectorXd total;
   VectorXd heavy;  // the total slope times the weights
@@ -296,9 +309,8 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
         fitted =
             base::sum_of(rows.columns.middleCols(first, columns), found.segment(first, columns));
         rest -= fitted;
-        rates.of(fitted, rate);
-        projection.rest(rate, slope);
-        slopes.col(part) = slope;
+        rates.of(fitted, slopes.col(part));
+        projection.take_from(slopes.col(part));
       }
       total = slopes.col(0);
       if (rubs) total += slopes.col(1);
@@ -321,15 +333,15 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
     }
   }
   const double unexplained = missed.squaredNorm();
-  const auto groups = clusters_of(rows);
-  const double own = errors_of(total, heavy, missed, weights, groups, projection.rank())[0];
+  const auto pieces = pieces_of(rows);
+  const double own = errors_of(total, heavy, missed, weights, pieces, projection.rank())[0];
   FittedShift result{{delay, own}, {delay, own}, {delay, own}, 0.0, leading};
   if (rubs && !none) {
     const MatrixXd weighted = weights.asDiagonal() * slopes;
     const MatrixXd inverse = inverse_of(base::symmetric_products(slopes, weighted));
     const VectorXd apart = -inverse * base::products(weighted, rest);
     missed = rest + slopes * apart;
-    const VectorXd errors = errors_of(slopes, weighted, missed, weights, groups, projection.rank());
+    const VectorXd errors = errors_of(slopes, weighted, missed, weights, pieces, projection.rank());
     result.conservative = {delay + apart[0], errors[0]};
     result.friction = {delay + apart[1], errors[1]};
   }

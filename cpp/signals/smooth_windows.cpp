@@ -133,11 +133,46 @@ double counted_step(const Signal& signal) {
   return kFinest * largest < smallest && std::isfinite(smallest) ? smallest : 0.0;
 }
 
+JOINTID_CLONES double make_even(const double* time, std::size_t count, double step, double* grid) {
+  base::Four most{};
+  const base::Four places{0.0, 1.0, 2.0, 3.0};
+  std::size_t i = 0;
+  for (; i + base::kFour <= count; i += base::kFour) {
+    base::Four place;
+    base::Four start;
+    base::Four own;
+    base::fill(place, static_cast<double>(i));
+    base::fill(start, time[0]);
+    base::load(own, time + i);
+    const base::Four even = (place + places) * step + start;
+    base::store(grid + i, even);
+    base::Four apart = even - own;
+    base::take_size(apart);
+    base::raise(most, apart);
+  }
+  double result = base::most_of(most);
+  for (; i < count; ++i) {
+    grid[i] = static_cast<double>(i) * step + time[0];
+    result = std::max(result, std::fabs(grid[i] - time[i]));
+  }
+  return result;
+}
+
 double variance(const VectorXd& values) {
   return (values.array() - values.mean()).square().mean();
 }
 
 }  // namespace
+
+EvenGrid even_grid(const Signal& time) {
+  EvenGrid result{VectorXd(time.size()), 0.0};
+  const Index last = time.size() - 1;
+  const double step = (time[last] - time[0]) / static_cast<double>(last);
+  result.apart =
+      make_even(time.data(), static_cast<std::size_t>(time.size()), step, result.time.data());
+  result.time[last] = time[last];
+  return result;
+}
 
 SmoothWindows smooth_windows(const EvenStretch& stretch, const WindowRules& rules) {
   const Index count = stretch.time.size();

@@ -40,6 +40,13 @@ struct SmoothWindows {
   Eigen::VectorXd between;
 };
 
+/// Even times from the first to the last one, and how far the times are from them at most [s].
+struct EvenGrid {
+  Eigen::VectorXd time;
+  double apart;
+};
+EvenGrid even_grid(const Signal& time);
+
 /// Throws std::invalid_argument where a window could reach beyond the stretch.
 SmoothWindows smooth_windows(const EvenStretch& stretch, const WindowRules& rules);
 

@@ -14,30 +14,45 @@ namespace {
 using base::Four;
 using base::kFour;
 
-/// Adds `weight` times four samples each to as many sums.
-template <std::size_t kSums>
-[[gnu::always_inline]] inline void smooth_some(const double* signal, const double* weight,
-                                               std::size_t width, double* result) {
-  std::array<Four, kSums> sum{};
+/// The sums of weighted samples from four neighbours on.
+[[gnu::always_inline]] inline void smooth_four(const double* signal, const double* weight,
+                                               std::size_t width, Four& sum) {
+  sum = Four{};
   for (std::size_t k = 0; k < width; ++k) {
-    for (std::size_t j = 0; j < kSums; ++j) {
-      Four samples;
-      base::load(samples, signal + k + kFour * j);
-      sum[j] = sum[j] + samples * weight[k];
-    }
+    Four samples;
+    base::load(samples, signal + k);
+    sum = sum + samples * weight[k];
   }
-  for (std::size_t j = 0; j < kSums; ++j) base::store(result + kFour * j, sum[j]);
 }
 
-/// Sums of `width` samples' weighted values from each sample on, several outputs side by side.
+/// Sums of `width` samples' weighted values from each sample on, sixteen outputs side by side.
 JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, std::size_t width,
                                   std::size_t count, double* result) {
-  constexpr std::size_t kSums = 6;
   std::size_t i = 0;
-  for (; i + kSums * kFour <= count; i += kSums * kFour) {
-    smooth_some<kSums>(signal + i, weight, width, result + i);
+  for (; i + 4 * kFour <= count; i += 4 * kFour) {
+    Four one{}, two{}, three{}, four{};  // an array of them would live in memory
+    for (std::size_t k = 0; k < width; ++k) {
+      const double* x = signal + i + k;
+      Four a, b, c, d;
+      base::load(a, x);
+      base::load(b, x + kFour);
+      base::load(c, x + 2 * kFour);
+      base::load(d, x + 3 * kFour);
+      one = one + a * weight[k];
+      two = two + b * weight[k];
+      three = three + c * weight[k];
+      four = four + d * weight[k];
+    }
+    base::store(result + i, one);
+    base::store(result + i + kFour, two);
+    base::store(result + i + 2 * kFour, three);
+    base::store(result + i + 3 * kFour, four);
   }
-  for (; i + kFour <= count; i += kFour) smooth_some<1>(signal + i, weight, width, result + i);
+  for (; i + kFour <= count; i += kFour) {
+    Four sum;
+    smooth_four(signal + i, weight, width, sum);
+    base::store(result + i, sum);
+  }
   for (; i < count; ++i) {
     double sum = 0.0;
     for (std::size_t k = 0; k < width; ++k) sum += weight[k] * signal[i + k];

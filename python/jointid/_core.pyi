@@ -76,6 +76,7 @@ __all__: list[str] = [
     "circle",
     "clustered",
     "covering_half_width",
+    "even_grid",
     "find_control_character",
     "fit_shift",
     "friction_basis",
@@ -3615,6 +3616,13 @@ def covering_half_width(
 ) -> float:
     """
     Half the width of the symmetric interval that holds a normal variable of this mean and deviation 1.
+    """
+
+def even_grid(
+    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
+    """
+    Even times from the first to the last, and how far off the times are [s].
     """
 
 def find_control_character(content: bytes) -> int:

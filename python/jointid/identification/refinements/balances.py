@@ -15,6 +15,7 @@ from jointid.identification.refinements.shift_fit import (
     fit_shift,
     leading_coefficient,
 )
+from jointid.identification.refinements.smooth_windows import Stretch
 from jointid.identification.refinements.stretches import Piece
 from jointid.problem.own_balance import OwnSignal
 
@@ -31,10 +32,9 @@ def reach(period: float) -> float:
     return max(REACH, 3.0 * period)
 
 
-def margin(piece: Piece) -> int:
+def margin(stretch: Stretch) -> int:
     """Samples that its signals may be shifted by."""
-    period = piece.stretch.period
-    return int(2.0 * reach(period) / period) + 2
+    return int(2.0 * reach(stretch.period) / stretch.period) + 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +75,7 @@ class Motion:
         """
         windows, columns, count = [], [], 0
         for piece in self.pieces:
-            half, spare = piece.half, margin(piece)
+            half, spare = piece.half, margin(piece.stretch)
             each = piece.stretch.windows(half, margin=spare, clear=half + spare if clear else 0)
             own = _series(piece.own, friction=False, taken=False)
             windows.append(each)
@@ -116,7 +116,7 @@ class Motion:
         for piece in self.pieces:
             half = factor * piece.half
             each = piece.stretch.windows(
-                half, margin=margin(piece), clear=half + _CLEAR, usable_only=False
+                half, margin=margin(piece.stretch), clear=half + _CLEAR, usable_only=False
             )
             # Of a control cycle: the reading is taken before the new command acts. Where the torque jumps, the
             # acceleration is then that of the interval before the sample.
