@@ -33,33 +33,48 @@ constexpr double kAnswer = 0.1;  // samples: how far the joint's own answer to n
 constexpr std::size_t kSums = 5;              // vectors of lags side by side
 constexpr std::size_t kLags = kSums * kFour;  // for which the torque has zeros behind its end
 
-double third(const double* x) {
-  return ((x[3] - x[2]) - (x[2] - x[1])) - ((x[2] - x[1]) - (x[1] - x[0]));
-}
-
-JOINTID_CLONES void third_sizes(const double* x, std::size_t count, std::size_t apart,
-                                double* sizes) {
-  for (std::size_t i = 0; i < count; ++i) sizes[i] = std::fabs(third(x + apart * i));
-}
-
-JOINTID_CLONES void clipped_thirds(const double* x, std::size_t count, double divisor, double most,
-                                   double* result) {
+JOINTID_CLONES void take_thirds(const double* x, std::size_t count, double* thirds) {
   for (std::size_t i = 0; i < count; ++i) {
-    const double change = third(x + i) / divisor;
-    const double low = change < -most ? -most : change;
-    result[i] = low > most ? most : low;
+    const double change = x[i + 2] - x[i + 1];
+    thirds[i] = ((x[i + 3] - x[i + 2]) - change) - (change - (x[i + 1] - x[i]));
   }
+}
+
+JOINTID_CLONES void clip(double* values, std::size_t count, double divisor, double most) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double change = values[i] / divisor;
+    const double low = change < -most ? -most : change;
+    values[i] = low > most ? most : low;
+  }
+}
+
+/// Third differences, and `beyond` zeros.
+VectorXd thirds_of(const Signal& signal, Index beyond = 0) {
+  const Index count = std::max<Index>(0, signal.size() - 3);
+  VectorXd result(count + beyond);
+  take_thirds(signal.data(), static_cast<std::size_t>(count), result.data());
+  result.tail(beyond).setZero();
+  return result;
+}
+
+/// Their standard deviation, as the median of every second one tells it.
+double size_of(const VectorXd& thirds, Index count) {
+  if (count == 0) return 0.0;
+  VectorXd sizes((count + 1) / 2);  // not set to zero before
+  for (Index i = 0; i < sizes.size(); ++i) sizes[i] = std::fabs(thirds[2 * i]);
+  const auto middle = sizes.begin() + sizes.size() / 2;
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  if (sizes.size() % 2 == 1) return kOfMedian * *middle;
+  return kOfMedian * 0.5 * (*middle + *std::max_element(sizes.begin(), middle));
 }
 
 /// Third differences over their usual size, clipped, and `beyond` zeros.
 VectorXd differences(const Signal& signal, double clipped, Index beyond = 0) {
-  const Index count = std::max<Index>(0, signal.size() - 3);
-  VectorXd result(count + beyond);
-  result.tail(beyond).setZero();
-  const double size = roughness(signal);
+  VectorXd result = thirds_of(signal, beyond);
+  const Index count = result.size() - beyond;
+  const double size = size_of(result, count);
   if (!(size > 0.0)) return result.setZero();
-  clipped_thirds(signal.data(), static_cast<std::size_t>(count), std::max(size, 1e-300), clipped,
-                 result.data());
+  clip(result.data(), static_cast<std::size_t>(count), std::max(size, 1e-300), clipped);
   return result;
 }
 
@@ -107,14 +122,8 @@ MatrixXd products_of(const std::vector<NoisyPair>& pairs) {
 }  // namespace
 
 double roughness(const Signal& signal) {
-  const Index differences = signal.size() - 3;
-  if (differences <= 0) return 0.0;
-  VectorXd sizes((differences + 1) / 2);  // not set to zero before
-  third_sizes(signal.data(), static_cast<std::size_t>(sizes.size()), 2, sizes.data());
-  const auto middle = sizes.begin() + sizes.size() / 2;
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  if (sizes.size() % 2 == 1) return kOfMedian * *middle;
-  return kOfMedian * 0.5 * (*middle + *std::max_element(sizes.begin(), middle));
+  const VectorXd thirds = thirds_of(signal);
+  return size_of(thirds, thirds.size());
 }
 
 MatrixXd noise_products(const Signal& reading, const Signal& torque, Index blocks, Index longest,

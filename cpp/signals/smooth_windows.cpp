@@ -11,7 +11,6 @@
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
 #include "base/four.hpp"
-#include "base/quantile.hpp"
 
 namespace jointid::signals {
 
@@ -104,21 +103,28 @@ Index next_unusable(const EvenStretch& stretch, Index from) {
   return found == nullptr ? count : static_cast<const bool*>(found) - stretch.usable;
 }
 
-/// Standard deviation of white noise on a smooth signal: third differences, few of them large.
-double noise_of(const Signal& signal) {
-  const Index count = (signal.size() - 1) / 3;
-  VectorXd sizes(count);
-  for (Index i = 0; i < count; ++i) {
+/// Sizes of a signal's third differences, of every third sample: few of them are large.
+VectorXd third_differences(const Signal& signal) {
+  VectorXd sizes((signal.size() - 1) / 3);
+  for (Index i = 0; i < sizes.size(); ++i) {
     const double* x = signal.data() + 3 * i;
     const double change = x[2] - x[1];
     sizes[i] = std::fabs(((x[3] - x[2]) - change) - (change - (x[1] - x[0])));
   }
-  const auto kept = static_cast<std::size_t>(count);
-  const double median = base::quantile(kept, kept, 0.5, [&](std::size_t i, double& out) {
-    out = sizes[static_cast<Index>(i)];
-    return true;
-  });
-  return kOfMedian * median / std::sqrt(20.0);
+  return sizes;
+}
+
+/// Whether more than half of the sizes are at most as large: then their median is.
+JOINTID_CLONES bool mostly_below(const double* sizes, std::size_t count, double limit) {
+  double below = 0.0;
+  std::array<double, 8> some{};
+  std::size_t i = 0;
+  for (; i + some.size() <= count; i += some.size()) {
+    for (std::size_t l = 0; l < some.size(); ++l) some[l] += sizes[i + l] <= limit ? 1.0 : 0.0;
+  }
+  for (; i < count; ++i) below += sizes[i] <= limit ? 1.0 : 0.0;
+  for (const double each : some) below += each;
+  return 2.0 * below > static_cast<double>(count);
 }
 
 /// The smallest step of a signal that has steps, as a counter does; 0 of others.
@@ -224,8 +230,8 @@ VectorXd curvature_weight(std::int64_t half, double period) {
 }
 
 std::int64_t half_length(const Signal& signal, double period, bool position) {
-  double noise = noise_of(signal);
-  if (position) noise = std::max(noise, counted_step(signal) / std::sqrt(12.0));
+  const VectorXd sizes = third_differences(signal);
+  const double rounded = position ? counted_step(signal) / std::sqrt(12.0) : 0.0;
   for (const auto half : kHalfLengths) {
     const VectorXd weight = position ? curvature_weight(half, period) : slope_weight(half, period);
     if (4 * weight.size() > signal.size()) return half;
@@ -234,7 +240,10 @@ std::int64_t half_length(const Signal& signal, double period, bool position) {
     for (Index at = beside; at < signal.size() - beside; at += half) middles.push_back(at);
     VectorXd rough(static_cast<Index>(middles.size()));
     window_means(signal, weight, middles, rough.data());
-    if (noise * noise * weight.squaredNorm() <= kNoiseShare * variance(rough)) return half;
+    const double limit = std::sqrt(kNoiseShare * variance(rough) / weight.squaredNorm());
+    const bool calm = mostly_below(sizes.data(), static_cast<std::size_t>(sizes.size()),
+                                   limit * std::sqrt(20.0) / kOfMedian);
+    if (calm && rounded <= limit) return half;
   }
   return kHalfLengths.back();
 }
