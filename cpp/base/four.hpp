@@ -3,6 +3,7 @@
 // lanes that live through a loop. All by reference, since vectors as arguments depend on the
 // host's width.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -69,6 +70,25 @@ inline Four operator*(const Four& a, double factor) {
 /// ((0 + 1) + (2 + 3)).
 [[gnu::always_inline]] inline double sum_of(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);
+}
+
+/// sum_of each of four, side by side.
+[[gnu::always_inline]] inline void sums_of(const std::array<Four, kFour>& each, Four& sums) {
+#if defined(__GNUC__) && defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define JOINTID_SHUFFLES
+#endif
+#endif
+#ifdef JOINTID_SHUFFLES
+  const Four one = __builtin_shufflevector(each[0], each[1], 0, 4, 2, 6) +
+                   __builtin_shufflevector(each[0], each[1], 1, 5, 3, 7);
+  const Four other = __builtin_shufflevector(each[2], each[3], 0, 4, 2, 6) +
+                     __builtin_shufflevector(each[2], each[3], 1, 5, 3, 7);
+  sums = __builtin_shufflevector(one, other, 0, 1, 4, 5) +
+         __builtin_shufflevector(one, other, 2, 3, 6, 7);
+#else
+  for (std::size_t l = 0; l < kFour; ++l) sums[l] = sum_of(each[l]);
+#endif
 }
 
 [[gnu::always_inline]] inline void take_size(Four& four) {

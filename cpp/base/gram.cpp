@@ -68,7 +68,7 @@ Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
 }
 
 void subtract_sum(const Eigen::Ref<const Eigen::MatrixXd>& columns,
-                  const Eigen::VectorXd& coefficients, Eigen::VectorXd& rest) {
+                  const Eigen::VectorXd& coefficients, Eigen::Ref<Eigen::VectorXd> rest) {
   subtract(columns.data(), static_cast<std::size_t>(columns.outerStride()), coefficients.data(),
            static_cast<std::size_t>(columns.cols()), static_cast<std::size_t>(columns.rows()),
            rest.data());

@@ -20,6 +20,6 @@ Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
 
 /// Takes a sum of columns, each times its coefficient, from `rest`.
 void subtract_sum(const Eigen::Ref<const Eigen::MatrixXd>& columns,
-                  const Eigen::VectorXd& coefficients, Eigen::VectorXd& rest);
+                  const Eigen::VectorXd& coefficients, Eigen::Ref<Eigen::VectorXd> rest);
 
 }  // namespace jointid::base

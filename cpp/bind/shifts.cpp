@@ -3,6 +3,7 @@
 #include <pybind11/eigen.h>
 
 #include "bind/recording.hpp"
+#include "signals/balance_columns.hpp"
 #include "signals/repeated_noise.hpp"
 #include "signals/shift_fit.hpp"
 #include "signals/window_integrals.hpp"
@@ -22,48 +23,54 @@ signals::Signal signal(const Array& array) {
   return {array.data(), static_cast<Eigen::Index>(array.size())};
 }
 
-/// The middles; an error where a window reaches beyond the signal.
-signals::Middles middles_of(const Indices& middles, const Array& signal, const Array& weight) {
-  signals::Middles result(middles.data(), middles.data() + middles.size());
-  const auto half = static_cast<std::int64_t>(weight.size()) / 2;
-  const auto last = static_cast<std::int64_t>(signal.size()) - 1 - half;
-  for (const auto middle : result) {
-    if (middle < half || middle > last) {
-      throw std::invalid_argument("a window reaches beyond the signal");
-    }
-  }
-  return result;
-}
-
-/// One stretch's windows and signal, with the arrays that they are views of.
-struct StretchArrays {
+/// Smooth windows, with the arrays that their stretch is a view of.
+struct WindowsOfArrays {
   Array time;
-  Array signal;
-  Array weight;
-  Indices middles;
-  Flags kept;
-  std::int64_t stride;
+  Array position;
+  Array velocity;
+  Flags usable;
+  bool derived;
+  signals::SmoothWindows windows;
+
+  WindowsOfArrays(Array time_, Array position_, Array velocity_, Flags usable_, bool derived_,
+                  const signals::WindowRules& rules)
+      : time(std::move(time_)),
+        position(std::move(position_)),
+        velocity(std::move(velocity_)),
+        usable(std::move(usable_)),
+        derived(derived_) {
+    for (const auto size : {position.size(), velocity.size(), usable.size()}) {
+      if (size != time.size()) throw std::invalid_argument("signals must have one length");
+    }
+    windows = signals::smooth_windows(stretch(), rules);
+  }
+
+  [[nodiscard]] signals::EvenStretch stretch() const {
+    return {signal(time), signal(position), signal(velocity), usable.data(), derived};
+  }
+  /// A signal of the same samples.
+  [[nodiscard]] signals::Signal own(const Array& values) const {
+    if (values.size() != time.size()) throw std::invalid_argument("signals must have one length");
+    return signal(values);
+  }
 };
 
-ShiftRows rows_of(const std::vector<StretchArrays>& stretches,
+using Windows = std::vector<const WindowsOfArrays*>;
+
+ShiftRows rows_of(const Windows& windows, const std::vector<Array>& signals,
                   const Eigen::Ref<const Eigen::MatrixXd>& columns, Eigen::Index conservative,
                   bool held) {
   ShiftRows rows{{}, columns, conservative, held};
-  Eigen::Index used = 0;
-  for (const auto& each : stretches) {
-    if (each.kept.size() != each.middles.size() || each.signal.size() != each.time.size() ||
-        each.signal.size() < 4) {
-      throw std::invalid_argument("signal, windows and time must match");
-    }
-    const double duration = each.time.data()[each.time.size() - 1] - each.time.data()[0];
-    rows.stretches.push_back(
-        {signal(each.time), signal(each.signal), signal(each.weight),
-         middles_of(each.middles, each.signal, each.weight),
-         std::vector<bool>(each.kept.data(), each.kept.data() + each.kept.size()), each.stride,
-         duration / static_cast<double>(each.time.size() - 1)});
-    for (const bool kept : rows.stretches.back().kept) used += kept ? 1 : 0;
+  if (windows.empty() || windows.size() != signals.size()) {
+    throw std::invalid_argument("each stretch needs its signal");
   }
-  if (used != columns.rows() || stretches.empty() || conservative > columns.cols()) {
+  Eigen::Index used = 0;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const auto& each = *windows[i];
+    rows.stretches.push_back({signal(each.time), each.own(signals[i]), each.windows});
+    used += static_cast<Eigen::Index>(each.windows.used.size());
+  }
+  if (used != columns.rows() || columns.cols() < 1 || conservative > columns.cols()) {
     throw std::invalid_argument("columns need a row for each window that is used");
   }
   return rows;
@@ -73,48 +80,90 @@ ShiftRows rows_of(const std::vector<StretchArrays>& stretches,
 
 void bind_shifts(py::module_& m) {
   using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
-  py::class_<StretchArrays>(m, "SmoothStretch", "A signal and the smooth windows over it.")
-      .def(py::init([](Array time, Array signal, Array weight, Indices middles, Flags kept,
-                       std::int64_t stride) {
-             return StretchArrays{std::move(time),    std::move(signal), std::move(weight),
-                                  std::move(middles), std::move(kept),   stride};
+  py::class_<WindowsOfArrays>(m, "SmoothWindows", "Smooth windows over a stretch without a gap.")
+      .def(py::init([](Array time, Array position, Array velocity, Flags usable, bool derived,
+                       std::int64_t half, std::int64_t margin, std::int64_t clear,
+                       bool usable_only) {
+             return WindowsOfArrays(std::move(time), std::move(position), std::move(velocity),
+                                    std::move(usable), derived, {half, margin, clear, usable_only});
            }),
-           py::kw_only(), py::arg("time"), py::arg("signal"), py::arg("weight"), py::arg("middles"),
-           py::arg("kept"), py::arg("stride"));
+           py::arg("time"), py::arg("position"), py::arg("velocity"), py::arg("usable"),
+           py::kw_only(), py::arg("derived"), py::arg("half"), py::arg("margin"),
+           py::arg("clear") = 0, py::arg("usable_only") = true)
+      .def_property_readonly(
+          "used",
+          [](const WindowsOfArrays& of) {
+            const auto& used = of.windows.used;
+            return py::array_t<std::int64_t>(static_cast<py::ssize_t>(used.size()), used.data());
+          },
+          "Middle samples of the windows that are used.")
+      .def(
+          "rates",
+          [](const WindowsOfArrays& of, const Array& values) {
+            return signals::mean_rates(of.own(values), of.windows);
+          },
+          py::arg("signal"), "Mean rate of a signal in each window.")
+      .def(
+          "columns",
+          [](const WindowsOfArrays& of, const Array& cosine, const Array& sine, bool varying,
+             bool friction, const std::vector<Array>& own, const std::vector<Array>& own_friction,
+             const std::optional<Array>& jumping, double answer) {
+            signals::ColumnChoice choice{of.own(cosine), of.own(sine), varying, {},
+                                         friction,       {},           {},      answer};
+            for (const auto& each : own) choice.own.push_back(of.own(each));
+            for (const auto& each : own_friction) choice.own_friction.push_back(of.own(each));
+            if (jumping) choice.jumping.emplace(of.own(*jumping));
+            const py::gil_scoped_release nogil;
+            return signals::balance_columns(of.stretch(), of.windows, choice);
+          },
+          py::arg("cosine"), py::arg("sine"), py::kw_only(), py::arg("varying"),
+          py::arg("friction"), py::arg("own") = std::vector<Array>{},
+          py::arg("own_friction") = std::vector<Array>{}, py::arg("jumping") = py::none(),
+          py::arg("answer") = 0.0, "What a torque or a reading may be a sum of; a row a window.");
   py::class_<signals::FittedShift>(m, "FittedShift", "A shift, with its standard error [s].")
       .def_readonly("whole", &signals::FittedShift::whole)
       .def_readonly("conservative", &signals::FittedShift::conservative)
       .def_readonly("friction", &signals::FittedShift::friction)
       .def_readonly("unexplained", &signals::FittedShift::unexplained)
-      .def_readonly("unshifted", &signals::FittedShift::unshifted,
-                    "Coefficients of the columns without a shift; empty where one was searched.");
+      .def_readonly("leading", &signals::FittedShift::leading,
+                    "The first column's coefficient without a shift; None where one was searched.");
   m.def(
       "fit_shift",
-      [](const std::vector<StretchArrays>& stretches, const Matrix& columns,
+      [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
          Eigen::Index conservative, bool held, double reach, bool robust, double least) {
+        const auto rows = rows_of(windows, signals, columns, conservative, held);
         const py::gil_scoped_release nogil;
-        return signals::fit_shift(rows_of(stretches, columns, conservative, held),
-                                  {reach, robust, least}, nullptr);
+        return signals::fit_shift(rows, {reach, robust, least}, nullptr);
       },
-      py::arg("stretches"), py::arg("columns"), py::kw_only(), py::arg("conservative"),
-      py::arg("held"), py::arg("reach"), py::arg("robust"), py::arg("least"),
-      "The shift that a balance asks for, or None.");
+      py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(),
+      py::arg("conservative"), py::arg("held"), py::arg("reach"), py::arg("robust"),
+      py::arg("least"), "The shift that a balance asks for, or None.");
   m.def(
-      "shift_coefficients",
-      [](const std::vector<StretchArrays>& stretches, const Matrix& columns, bool held) {
+      "leading_coefficient",
+      [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
+         bool held) {
+        const auto rows = rows_of(windows, signals, columns, 0, held);
         const py::gil_scoped_release nogil;
-        return signals::shift_coefficients(rows_of(stretches, columns, 0, held));
+        return signals::leading_coefficient(rows);
       },
-      py::arg("stretches"), py::arg("columns"), py::kw_only(), py::arg("held"),
-      "Least squares of the signals, not shifted, on the columns.");
+      py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(), py::arg("held"),
+      "Of the first column, in least squares of the signals, not shifted, on the columns.");
   m.def(
-      "window_means",
-      [](const Array& values, const Array& weight, const Indices& middles) {
-        return signals::window_means(signal(values), signal(weight),
-                                     middles_of(middles, values, weight));
+      "even_grid",
+      [](const Array& time) {
+        if (time.size() < 2) throw std::invalid_argument("two samples are needed");
+        auto found = signals::even_grid(signal(time));
+        return std::make_pair(std::move(found.time), found.apart);
       },
-      py::arg("signal"), py::arg("weight"), py::arg("middles"),
-      "Weighted sums of a signal over windows.");
+      py::arg("time"), "Even times from the first to the last, and how far off the times are [s].");
+  m.def(
+      "half_length",
+      [](const Array& values, double period, bool position) {
+        if (values.size() < 4) throw std::invalid_argument("the signal is too short");
+        return signals::half_length(signal(values), period, position);
+      },
+      py::arg("signal"), py::arg("period"), py::kw_only(), py::arg("position"),
+      "Half the length of a window that averages the acceleration's noise.");
   m.def(
       "window_integrals",
       [](const Array& values, const Array& weights, const Indices& windows, bool rise) {
@@ -133,12 +182,6 @@ void bind_shifts(py::module_& m) {
       py::arg("rise") = false,
       "Integrals over windows, one row a window, or how far the values rise there.");
   m.def(
-      "smoothed",
-      [](const Array& values, const Array& weight) {
-        return signals::smoothed(signal(values), signal(weight));
-      },
-      py::arg("signal"), py::arg("weight"), "Weighted sums around each sample.");
-  m.def(
       "circle",
       [](const Array& angle) {
         auto found = signals::circle_of(signal(angle));
@@ -146,35 +189,28 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("angle"), "Cosine and sine.");
   m.def(
-      "friction_means",
-      [](const Array& velocity, const Array& smooth, const Array& cosine, const Array& sine,
-         double longest, const Array& weight, const Indices& middles) {
-        if (smooth.size() != velocity.size() || cosine.size() != velocity.size() ||
-            sine.size() != velocity.size()) {
-          throw std::invalid_argument("signals must have one length");
-        }
-        return signals::friction_means(
-            {signal(velocity), signal(smooth), signal(cosine), signal(sine)}, longest,
-            signal(weight), middles_of(middles, velocity, weight));
-      },
-      py::arg("velocity"), py::arg("smooth"), py::arg("cosine"), py::arg("sine"), py::kw_only(),
-      py::arg("longest"), py::arg("weight"), py::arg("middles"),
-      "Window means of friction as any smooth function of the speed.");
-  m.def(
       "roughness", [](const Array& values) { return signals::roughness(signal(values)); },
       py::arg("signal"), "Standard deviation of a signal's third differences.");
+  py::class_<signals::RepeatedNoise>(m, "RepeatedNoise", "Noise of a reading in the torque.")
+      .def_readonly("earlier", &signals::RepeatedNoise::earlier,
+                    "By how many samples the torque has it earlier.")
+      .def_readonly("error", &signals::RepeatedNoise::error, "Standard error, in samples.")
+      .def_readonly("share", &signals::RepeatedNoise::share, "Correlation of both noises.");
   m.def(
-      "noise_products",
-      [](const Array& reading, const Array& torque, Eigen::Index blocks, Eigen::Index longest,
-         double clipped) {
-        if (reading.size() != torque.size() || blocks < 1 ||
-            static_cast<Eigen::Index>(reading.size()) < 3 + 2 * longest + blocks) {
-          throw std::invalid_argument("signals are too short");
+      "repeated_noise",
+      [](const std::vector<std::pair<Array, Array>>& pairs) {
+        std::vector<signals::NoisyPair> both;
+        for (const auto& [reading, torque] : pairs) {
+          if (reading.size() != torque.size() || reading.size() < signals::kShortestNoise) {
+            throw std::invalid_argument("signals are too short");
+          }
+          both.push_back({signal(reading), signal(torque)});
         }
-        return signals::noise_products(signal(reading), signal(torque), blocks, longest, clipped);
+        const py::gil_scoped_release nogil;
+        return signals::repeated_noise(both);
       },
-      py::arg("reading"), py::arg("torque"), py::kw_only(), py::arg("blocks"), py::arg("longest"),
-      py::arg("clipped"), "Products of two signals' third differences, block by block.");
+      py::arg("pairs"),
+      "The noise of readings that the torque repeats, of pairs of both; None where it does not.");
 }
 
 }  // namespace jointid::bind

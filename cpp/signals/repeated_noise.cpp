@@ -1,88 +1,191 @@
 #include "signals/repeated_noise.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <cstdlib>
 
 #include "base/clones.hpp"
+#include "base/four.hpp"
 
 namespace jointid::signals {
 
 namespace {
 
-constexpr double kOfMedian = 1.4826;  // standard deviations of normal noise in a median of sizes
-constexpr std::size_t kLanes = 8;     // lags side by side
+using base::Four;
+using base::kFour;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-double third(const double* x) {
-  return ((x[3] - x[2]) - (x[2] - x[1])) - ((x[2] - x[1]) - (x[1] - x[0]));
+constexpr double kOfMedian = 1.4826;  // standard deviations of normal noise in a median of sizes
+constexpr Index kLag = 9;             // samples, the longest
+constexpr double kClipped = 4.0;      // standard deviations of a difference
+// Of the third differences of white noise, over its variance.
+constexpr std::array<double, 4> kAutocorrelation{1.0, -0.75, 0.3, -0.05};
+constexpr Index kReach = 3;         // of these, to either side
+constexpr double kSure = 8.0;       // standard errors of the noise's share in the torque
+constexpr double kExplained = 0.9;  // of the cross-correlation, by one delay
+constexpr Index kBlocks = 60;       // of the recording, whose spread gives the standard errors
+constexpr Index kUsual = 6000;      // samples that are cut into so many blocks
+constexpr double kAnswer = 0.1;  // samples: how far the joint's own answer to noise moves the delay
+constexpr std::size_t kSums = 5;              // vectors of lags side by side
+constexpr std::size_t kLags = kSums * kFour;  // for which the torque has zeros behind its end
+
+JOINTID_CLONES void take_thirds(const double* x, std::size_t count, double* thirds) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double change = x[i + 2] - x[i + 1];
+    thirds[i] = ((x[i + 3] - x[i + 2]) - change) - (change - (x[i + 1] - x[i]));
+  }
 }
 
-/// Third differences over their usual size, clipped, and `beyond` zeros.
-Eigen::VectorXd differences(const Signal& signal, double clipped, Eigen::Index beyond = 0) {
-  const Eigen::Index count = std::max<Eigen::Index>(0, signal.size() - 3);
-  Eigen::VectorXd result(count + beyond);
-  result.tail(beyond).setZero();
-  const double size = roughness(signal);
-  if (!(size > 0.0)) return result.setZero();
-  const double* x = signal.data();
-  const double divisor = std::max(size, 1e-300);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double change = third(x + i) / divisor;
-    result[i] = std::min(std::max(change, -clipped), clipped);
+JOINTID_CLONES void clip(double* values, std::size_t count, double divisor, double most) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double change = values[i] / divisor;
+    const double low = change < -most ? -most : change;
+    values[i] = low > most ? most : low;
   }
+}
+
+/// Third differences, and `beyond` zeros.
+VectorXd thirds_of(const Signal& signal, Index beyond = 0) {
+  const Index count = std::max<Index>(0, signal.size() - 3);
+  VectorXd result(count + beyond);
+  take_thirds(signal.data(), static_cast<std::size_t>(count), result.data());
+  result.tail(beyond).setZero();
   return result;
 }
 
-/// Sums of reading times torque, the torque kLanes samples in turn: later[l] = torque[i + l].
-JOINTID_CLONES void lagged_sums(const double* reading, const double* torque, std::size_t count,
-                                double* sums) {
-  std::array<double, kLanes> sum{};
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t l = 0; l < kLanes; ++l) sum[l] += reading[i] * torque[i + l];
-  }
-  for (std::size_t l = 0; l < kLanes; ++l) sums[l] = sum[l];
-}
-
-}  // namespace
-
-double roughness(const Signal& signal) {
-  const Eigen::Index differences = signal.size() - 3;
-  if (differences <= 0) return 0.0;
-  Eigen::VectorXd sizes((differences + 1) / 2);  // not set to zero before
-  const double* x = signal.data();
-  for (Eigen::Index i = 0; i < sizes.size(); ++i) sizes[i] = std::fabs(third(x + 2 * i));
+/// Their standard deviation, as the median of every second one tells it.
+double size_of(const VectorXd& thirds, Index count) {
+  if (count == 0) return 0.0;
+  VectorXd sizes((count + 1) / 2);  // not set to zero before
+  for (Index i = 0; i < sizes.size(); ++i) sizes[i] = std::fabs(thirds[2 * i]);
   const auto middle = sizes.begin() + sizes.size() / 2;
   std::nth_element(sizes.begin(), middle, sizes.end());
   if (sizes.size() % 2 == 1) return kOfMedian * *middle;
   return kOfMedian * 0.5 * (*middle + *std::max_element(sizes.begin(), middle));
 }
 
-Eigen::MatrixXd noise_products(const Signal& reading, const Signal& torque, Eigen::Index blocks,
-                               Eigen::Index longest, double clipped) {
-  const Eigen::Index lags = 2 * longest + 1;
-  const auto lanes = static_cast<Eigen::Index>(kLanes);
-  const Eigen::VectorXd first = differences(reading, clipped);
-  const Eigen::VectorXd second = differences(torque, clipped, lanes);
-  if (!(first.array() != 0.0).any() || !(second.array() != 0.0).any()) {
-    return Eigen::MatrixXd(0, lags);
+/// Third differences over their usual size, clipped, and `beyond` zeros.
+VectorXd differences(const Signal& signal, double clipped, Index beyond = 0) {
+  VectorXd result = thirds_of(signal, beyond);
+  const Index count = result.size() - beyond;
+  const double size = size_of(result, count);
+  if (!(size > 0.0)) return result.setZero();
+  clip(result.data(), static_cast<std::size_t>(count), std::max(size, 1e-300), clipped);
+  return result;
+}
+
+/// Sums of reading times torque, the torque so many samples in turn: later[l] = torque[i + l].
+JOINTID_CLONES void lagged_sums(const double* reading, const double* torque, std::size_t count,
+                                double* sums) {
+  std::array<Four, kSums> sum{};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < kSums; ++j) {
+      Four later;
+      base::load(later, torque + i + kFour * j);
+      sum[j] = sum[j] + later * reading[i];
+    }
   }
-  const Eigen::Index length = (first.size() - 2 * longest) / blocks;
-  Eigen::MatrixXd result(blocks, lags);
-  std::array<double, kLanes> sums;
-  for (Eigen::Index block = 0; block < blocks; ++block) {
-    const Eigen::Index begin = block * length;
+  for (std::size_t j = 0; j < kSums; ++j) base::store(sums + kFour * j, sum[j]);
+}
+
+/// How alike noise is to itself so many samples later.
+double alike(Index lag) {
+  const auto size = static_cast<std::size_t>(std::abs(lag));
+  return size < kAutocorrelation.size() ? kAutocorrelation[size] : 0.0;
+}
+
+/// The cross-correlation of a torque that repeats the noise so many samples earlier, a column each.
+MatrixXd taps() {
+  return MatrixXd::NullaryExpr(2 * kLag + 1, 2 * (kLag - kReach) + 1,
+                               [](Index lag, Index place) { return alike(lag - place - kReach); });
+}
+
+/// Products of all pairs, block by block.
+MatrixXd products_of(const std::vector<NoisyPair>& pairs) {
+  MatrixXd all(0, 2 * kLag + 1);
+  for (const auto& pair : pairs) {
+    const Index count = pair.reading.size() - 3;
+    const double part =
+        static_cast<double>(kBlocks * count) / static_cast<double>(std::max(count, kUsual));
+    const Index blocks = std::max<Index>(2, static_cast<Index>(std::nearbyint(part)));
+    const MatrixXd own = noise_products(pair.reading, pair.torque, blocks, kLag, kClipped);
+    all.conservativeResize(all.rows() + own.rows(), Eigen::NoChange);
+    all.bottomRows(own.rows()) = own;
+  }
+  return all;
+}
+
+}  // namespace
+
+double roughness(const Signal& signal) {
+  const VectorXd thirds = thirds_of(signal);
+  return size_of(thirds, thirds.size());
+}
+
+MatrixXd noise_products(const Signal& reading, const Signal& torque, Index blocks, Index longest,
+                        double clipped) {
+  const Index lags = 2 * longest + 1;
+  const auto together = static_cast<Index>(kLags);
+  const VectorXd first = differences(reading, clipped);
+  const VectorXd second = differences(torque, clipped, together);
+  if (!(first.array() != 0.0).any() || !(second.array() != 0.0).any()) return MatrixXd(0, lags);
+  const Index length = (first.size() - 2 * longest) / blocks;
+  MatrixXd result(blocks, lags);
+  std::array<double, kLags> sums;
+  for (Index block = 0; block < blocks; ++block) {
+    const Index begin = block * length;
     // Column k has the torque `longest` - k samples behind the reading: columns from the last one.
-    for (Eigen::Index lag = 0; lag < lags; lag += lanes) {
+    for (Index lag = 0; lag < lags; lag += together) {
       lagged_sums(first.data() + longest + begin, second.data() + begin + lag,
                   static_cast<std::size_t>(length), sums.data());
-      for (Eigen::Index l = 0; l < std::min(lanes, lags - lag); ++l) {
+      for (Index l = 0; l < std::min(together, lags - lag); ++l) {
         result(block, lags - 1 - lag - l) =
             sums[static_cast<std::size_t>(l)] / static_cast<double>(length);
       }
     }
   }
   return result;
+}
+
+std::optional<RepeatedNoise> repeated_noise(const std::vector<NoisyPair>& pairs) {
+  const MatrixXd means = products_of(pairs);
+  if (means.rows() < kBlocks / 2) return std::nullopt;
+  const VectorXd seen = means.colwise().mean();
+  // Each two neighbouring delays share the noise between them; their normal equations are alike.
+  const MatrixXd kernel = taps();
+  const VectorXd matched = kernel.transpose() * seen;
+  Eigen::Matrix2d gram;
+  gram(0, 0) = gram(1, 1) = kernel.col(0).squaredNorm();
+  gram(0, 1) = gram(1, 0) = kernel.col(0).dot(kernel.col(1));
+  const Eigen::Matrix2d shares_of = gram.inverse();
+  Index place = 0;
+  double most = -1.0;
+  for (Index i = 0; i + 1 < matched.size(); ++i) {
+    const Eigen::Vector2d pair = matched.segment<2>(i);
+    const Eigen::Vector2d both = shares_of * pair;
+    const double explained = both.prod() >= 0.0 ? pair.dot(both) : 0.0;
+    if (explained > most) {
+      place = i;
+      most = explained;
+    }
+  }
+  if (most < kExplained * seen.squaredNorm()) return std::nullopt;
+  const Eigen::MatrixX2d shares = means * kernel.middleCols<2>(place) * shares_of;
+  const Eigen::RowVector2d mean = shares.colwise().mean();
+  const Eigen::MatrixX2d apart = shares.rowwise() - mean;
+  const auto count = static_cast<double>(shares.rows());
+  const Eigen::Matrix2d spread = apart.transpose() * apart / ((count - 1.0) * count);
+  const double total = mean.sum();
+  if (!(total > kSure * std::sqrt(spread.sum()))) return std::nullopt;
+  const double part = mean[1] / total;
+  const Eigen::Vector2d slope = Eigen::Vector2d(-part, 1.0 - part) / total;
+  const double variance = slope.dot(spread * slope);
+  return RepeatedNoise{static_cast<double>(place - kLag + kReach) + part,
+                       std::sqrt(variance + kAnswer * kAnswer), total};
 }
 
 }  // namespace jointid::signals

@@ -1,6 +1,9 @@
 #pragma once
-// Noise of one signal that another one repeats: products of third differences, in which smooth
-// motion does not appear.
+// Noise of a reading that the torque repeats: products of third differences, in which smooth motion
+// does not appear.
+
+#include <optional>
+#include <vector>
 
 #include "signals/signal.hpp"
 
@@ -15,5 +18,23 @@ double roughness(const Signal& signal);
 /// noise.
 Eigen::MatrixXd noise_products(const Signal& reading, const Signal& torque, Eigen::Index blocks,
                                Eigen::Index longest, double clipped);
+
+/// A reading and the torque of the same samples.
+struct NoisyPair {
+  Signal reading;
+  Signal torque;
+};
+
+/// Noise of the reading in the torque.
+struct RepeatedNoise {
+  double earlier;  ///< by how many samples the torque has it earlier
+  double error;    ///< standard error [samples]
+  double share;    ///< correlation of both noises
+};
+
+constexpr Eigen::Index kShortestNoise = 100;  ///< samples of a pair
+
+/// Nothing where the torque does not repeat the readings' noise at one delay.
+std::optional<RepeatedNoise> repeated_noise(const std::vector<NoisyPair>& pairs);
 
 }  // namespace jointid::signals

@@ -1,11 +1,13 @@
 #include "signals/shift_fit.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <vector>
 
+#include "base/clones.hpp"
 #include "base/gram.hpp"
 #include "base/quantile.hpp"
 
@@ -29,28 +31,28 @@ constexpr double kClearErrors = 6.0;
 constexpr double kSingular = 1e-11;  // of the largest eigenvalue of the scaled normal equations
 constexpr double kTiny = 1e-300;
 
+double period_of(const ShiftedStretch& stretch) {
+  const Signal& time = stretch.time;
+  return (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1);
+}
+
 /// The window means of a signal at any shift: the smoothed signal between samples, by a cubic.
 class Levels {
  public:
   explicit Levels(const ShiftRows& rows) : rows_(rows) {
     for (const auto& each : rows.stretches) {
-      smooth_.push_back(smoothed(each.signal, each.weight));
-      Middles used;
-      for (std::size_t i = 0; i < each.middles.size(); ++i) {
-        if (each.kept[i]) used.push_back(each.middles[i]);
-      }
-      used_.push_back(std::move(used));
+      smooth_.push_back(smoothed(each.signal, each.windows.weight));
     }
   }
 
-  [[nodiscard]] const std::vector<Middles>& used() const { return used_; }
-
   void at(double delay, VectorXd& level) const {
     level.resize(rows_.columns.rows());
-    Index to = 0;
-    for (std::size_t i = 0; i < used_.size(); ++i) {
+    double* to = level.data();
+    for (std::size_t i = 0; i < smooth_.size(); ++i) {
       const VectorXd& smooth = smooth_[i];
-      const double moved = delay / rows_.stretches[i].period - (rows_.held ? 0.5 : 0.0);
+      const Middles& used = rows_.stretches[i].windows.used;
+      if (used.empty()) continue;
+      const double moved = delay / period_of(rows_.stretches[i]) - (rows_.held ? 0.5 : 0.0);
       const double floor = std::floor(moved);
       const auto whole = static_cast<std::int64_t>(floor);
       const double p = moved - floor;
@@ -58,10 +60,16 @@ class Levels {
       const double b = (p + 1.0) * (p - 1.0) * (p - 2.0) / 2.0;
       const double c = (p + 1.0) * p * (p - 2.0) / 2.0;
       const double d = (p + 1.0) * p * (p - 1.0) / 6.0;
+      const auto between = [&](const double* y) {
+        return a * y[-1] + b * y[0] - c * y[1] + d * y[2];
+      };
       const std::int64_t last = smooth.size() - 3;
-      for (const auto middle : used_[i]) {
-        const double* y = smooth.data() + std::clamp<std::int64_t>(middle + whole, 1, last);
-        level[to++] = a * y[-1] + b * y[0] - c * y[1] + d * y[2];
+      if (used.front() + whole >= 1 && used.back() + whole <= last) {
+        for (const auto middle : used) *to++ = between(smooth.data() + middle + whole);
+      } else {
+        for (const auto middle : used) {
+          *to++ = between(smooth.data() + std::clamp<std::int64_t>(middle + whole, 1, last));
+        }
       }
     }
   }
@@ -69,98 +77,131 @@ class Levels {
  private:
   const ShiftRows& rows_;
   std::vector<VectorXd> smooth_;
-  std::vector<Middles> used_;
 };
 
 /// Weighted least squares on the columns, by scaled normal equations.
 class Projection {
  public:
-  Projection(const Eigen::Ref<const MatrixXd>& columns, const VectorXd* weights)
-      : columns_(columns) {
-    if (weights != nullptr) weighted_ = weights->asDiagonal() * columns;
-    const MatrixXd gram = base::symmetric_products(columns, weighted());
-    VectorXd scale = gram.diagonal().cwiseSqrt();
+  explicit Projection(const Eigen::Ref<const MatrixXd>& columns)
+      : columns_(columns), gram_(base::symmetric_products(columns, columns)) {
+    decompose(gram_);
+  }
+
+  /// Rows count for less, none for more: what they lack is taken from the normal equations.
+  void weigh(const VectorXd& weights) {
+    weights_ = &weights;
+    std::vector<Index> less;
+    for (Index row = 0; row < weights.size(); ++row) {
+      if (weights[row] < 1.0) less.push_back(row);
+    }
+    const auto count = static_cast<Index>(less.size());
+    if (count == 0) return;
+    MatrixXd rows(count, columns_.cols());
+    VectorXd lacking(count);
+    for (Index i = 0; i < count; ++i) {
+      lacking[i] = std::sqrt(1.0 - weights[less[static_cast<std::size_t>(i)]]);
+    }
+    for (Index j = 0; j < rows.cols(); ++j) {
+      const double* column = columns_.col(j).data();
+      double* to = rows.col(j).data();
+      for (Index i = 0; i < count; ++i) {
+        to[i] = lacking[i] * column[less[static_cast<std::size_t>(i)]];
+      }
+    }
+    decompose(gram_ - base::symmetric_products(rows, rows));
+  }
+
+  [[nodiscard]] Index rank() const { return basis_.cols(); }
+  [[nodiscard]] VectorXd coefficients(const Eigen::Ref<const VectorXd>& signal) const {
+    const VectorXd matched = weights_ == nullptr
+                                 ? base::products(columns_, signal)
+                                 : base::products(columns_, signal.cwiseProduct(*weights_));
+    const VectorXd inner = basis_.transpose() * matched;
+    return basis_ * inner;
+  }
+  /// Leaves of a signal what the columns cannot make.
+  void take_from(Eigen::Ref<VectorXd> signal) const {
+    base::subtract_sum(columns_, coefficients(signal), signal);
+  }
+
+ private:
+  void decompose(const MatrixXd& gram) {
+    VectorXd scale = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
     scale = (scale.array() > 0.0).select(scale, std::numeric_limits<double>::infinity());
     const VectorXd inverse = scale.cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(inverse.asDiagonal() * gram *
-                                                         inverse.asDiagonal());
+    const MatrixXd scaled = inverse.asDiagonal() * gram * inverse.asDiagonal();
+    const Eigen::LLT<MatrixXd> factor(scaled);
+    if (factor.info() == Eigen::Success) {
+      // The trace of the inverse bounds its largest eigenvalue, the width the largest one itself.
+      const auto width = static_cast<double>(gram.rows());
+      basis_ = factor.matrixU().solve(MatrixXd::Identity(gram.rows(), gram.rows()));
+      if (basis_.squaredNorm() * kSingular * width < 1.0) {
+        basis_ = inverse.asDiagonal() * basis_;
+        return;
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
     const VectorXd& values = solver.eigenvalues();
     const double least = kSingular * values[values.size() - 1];
     Index first = 0;
     while (first < values.size() && !(values[first] > least)) ++first;
-    rank_ = values.size() - first;
-    basis_ = inverse.asDiagonal() * solver.eigenvectors().rightCols(rank_) *
-             values.tail(rank_).cwiseSqrt().cwiseInverse().asDiagonal();
-  }
-
-  [[nodiscard]] Index rank() const { return rank_; }
-  [[nodiscard]] VectorXd coefficients(const VectorXd& signal) const {
-    const VectorXd matched = base::products(weighted(), signal);
-    const VectorXd inner = basis_.transpose() * matched;
-    return basis_ * inner;
-  }
-  /// What the columns leave of a signal.
-  void rest(const VectorXd& signal, VectorXd& result) const {
-    result = signal;
-    base::subtract_sum(columns_, coefficients(signal), result);
-  }
-
- private:
-  [[nodiscard]] Eigen::Ref<const MatrixXd> weighted() const {
-    return weighted_.size() > 0 ? Eigen::Ref<const MatrixXd>(weighted_) : columns_;
+    const Index rank = values.size() - first;
+    basis_ = inverse.asDiagonal() * solver.eigenvectors().rightCols(rank) *
+             values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
   }
 
   const Eigen::Ref<const MatrixXd>& columns_;
-  MatrixXd weighted_;
+  const VectorXd* weights_ = nullptr;
+  MatrixXd gram_;  ///< without weights
   MatrixXd basis_;
-  Index rank_ = 0;
 };
+
+JOINTID_CLONES void take_rates(const double* level, const double* between, std::size_t count,
+                               double* rate) {
+  for (std::size_t i = 1; i + 1 < count; ++i) rate[i] = (level[i + 1] - level[i - 1]) * between[i];
+}
 
 /// Rates of a fitted signal, from neighbouring windows; zero beside a window left out.
 class Rates {
  public:
-  explicit Rates(const ShiftRows& rows) : factor_(VectorXd::Zero(rows.columns.rows())) {
+  explicit Rates(const ShiftRows& rows) : between_(rows.columns.rows()) {
     Index row = 0;
     for (const auto& each : rows.stretches) {
-      const double factor = 1.0 / (2.0 * static_cast<double>(each.stride) * each.period);
-      bool before = false;
-      for (std::size_t i = 0; i < each.kept.size(); ++i) {
-        const bool here = each.kept[i];
-        if (here) {
-          if (before && i + 1 < each.kept.size() && each.kept[i + 1]) factor_[row] = factor;
-          ++row;
-        }
-        before = here;
-      }
+      const VectorXd& own = each.windows.between;
+      between_.segment(row, own.size()) = own;
+      row += own.size();
     }
   }
 
   void of(const VectorXd& level, Eigen::Ref<VectorXd> rate) const {
-    const Index inner = level.size() - 2;  // the first and the last row have no two neighbours
-    rate[0] = 0.0;
-    rate[inner + 1] = 0.0;
-    rate.segment(1, inner) =
-        (level.tail(inner) - level.head(inner)).cwiseProduct(factor_.segment(1, inner));
+    const auto count = static_cast<std::size_t>(level.size());
+    take_rates(level.data(), between_.data(), count, rate.data());
+    rate[0] = 0.0;  // the first and the last row have no two neighbours
+    rate[level.size() - 1] = 0.0;
   }
 
  private:
-  VectorXd factor_;  ///< of the difference of both neighbours; 0 where one of them is left out
+  VectorXd between_;  ///< 1 over the time between both neighbours; 0 where one is left out
 };
 
-/// The number of the piece of motion that each row belongs to.
-std::vector<std::size_t> clusters_of(const ShiftRows& rows, const std::vector<Middles>& used) {
-  std::vector<std::size_t> groups;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const auto& each = rows.stretches[i];
+/// Behind the last row of each piece of the motion that counts as one observation.
+std::vector<Index> pieces_of(const ShiftRows& rows) {
+  std::vector<Index> ends;
+  Index row = 0;
+  for (const auto& each : rows.stretches) {
     const double start = each.time[0];
     const double length = std::min(kCluster, (each.time[each.time.size() - 1] - start) / 20.0);
-    for (const auto middle : used[i]) {
-      groups.push_back(static_cast<std::size_t>((each.time[middle] - start) / length) + first);
+    std::int64_t piece = -1;
+    for (const auto middle : each.windows.used) {
+      const auto own = static_cast<std::int64_t>((each.time[middle] - start) / length);
+      if (own != piece) ends.push_back(row);
+      piece = own;
+      ++row;
     }
-    if (!used[i].empty()) first = groups.back() + 1;
   }
-  return groups;
+  if (!ends.empty()) ends.erase(ends.begin());
+  ends.push_back(row);
+  return ends;
 }
 
 /// Inverse of one or two products; a singular pair's by its eigenvectors.
@@ -174,24 +215,23 @@ MatrixXd inverse_of(const MatrixXd& gram) {
 }
 
 /// Standard errors: the larger of the classical ones and those clustered over pieces of the motion.
-VectorXd errors_of(const MatrixXd& slopes, const VectorXd& missed, const VectorXd& weights,
-                   const std::vector<std::size_t>& groups, Index rank) {
-  const MatrixXd weighted = weights.asDiagonal() * slopes;
-  const MatrixXd inverse = inverse_of(slopes.transpose() * weighted);
-  const auto count = static_cast<Index>(groups.empty() ? 0 : groups.back() + 1);
-  MatrixXd sums = MatrixXd::Zero(count, slopes.cols());
-  for (Index part = 0; part < slopes.cols(); ++part) {
-    const double* slope = weighted.col(part).data();
-    double* sum = sums.col(part).data();
-    for (std::size_t row = 0; row < groups.size(); ++row) {
-      sum[groups[row]] += slope[row] * missed[static_cast<Index>(row)];
+/// `weighted` are the slopes times the weights.
+VectorXd errors_of(const Eigen::Ref<const MatrixXd>& slopes,
+                   const Eigen::Ref<const MatrixXd>& weighted, const VectorXd& missed,
+                   const VectorXd& weights, const std::vector<Index>& pieces, Index rank) {
+  const Index width = slopes.cols();
+  const MatrixXd inverse = inverse_of(base::symmetric_products(slopes, weighted));
+  MatrixXd sums(static_cast<Index>(pieces.size()), width);
+  for (Index part = 0; part < width; ++part) {
+    const VectorXd scores = weighted.col(part).cwiseProduct(missed);
+    Index first = 0;
+    Index piece = 0;
+    for (const Index end : pieces) {
+      sums(piece++, part) = scores.segment(first, end - first).sum();
+      first = end;
     }
   }
-  std::size_t pieces = groups.empty() ? 0 : 1;  // they come in order
-  for (std::size_t row = 1; row < groups.size(); ++row) {
-    pieces += groups[row] != groups[row - 1] ? 1 : 0;
-  }
-  const double used = std::max(2.0, static_cast<double>(pieces));
+  const double used = std::max(2.0, static_cast<double>(pieces.size()));
   const MatrixXd clustered = inverse * (sums.transpose() * sums) * inverse * used / (used - 1.0);
   const double noise = missed.dot(weights.cwiseProduct(missed)) /
                        static_cast<double>(std::max<Index>(1, missed.size() - rank - 1));
@@ -200,7 +240,7 @@ VectorXd errors_of(const MatrixXd& slopes, const VectorXd& missed, const VectorX
 
 double least_misfit(const ShiftRows& rows, const Levels& levels, const Projection& projection,
                     double reach, const base::Cancel* cancel) {
-  const double period = rows.stretches.front().period;
+  const double period = period_of(rows.stretches.front());
   const double count = std::min(48.0, std::ceil(2.0 * reach / std::min(0.5 * period, 5e-4)));
   double found = 0.0;
   double least = std::numeric_limits<double>::infinity();
@@ -210,7 +250,8 @@ double least_misfit(const ShiftRows& rows, const Levels& levels, const Projectio
     if (cancel != nullptr) cancel->check();
     const double delay = k == static_cast<int>(count) ? reach : k * (2.0 * reach / count) - reach;
     levels.at(delay, level);
-    projection.rest(level, rest);
+    rest = level;
+    projection.take_from(rest);
     const double misfit = rest.squaredNorm() / std::max(level.squaredNorm(), kTiny);
     if (misfit < least) {
       found = delay;
@@ -237,9 +278,9 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
   if (count < 3 * width + 20) return std::nullopt;
   const Levels levels(rows);
   const Rates rates(rows);
-  std::optional<Projection> projection(std::in_place, rows.columns, nullptr);
+  Projection projection(rows.columns);
   double delay =
-      search.reach > 0.0 ? least_misfit(rows, levels, *projection, search.reach, cancel) : 0.0;
+      search.reach > 0.0 ? least_misfit(rows, levels, projection, search.reach, cancel) : 0.0;
   const double bound = search.reach > 0.0 ? 2.0 * search.reach : kFarthest;
   const bool rubs = rows.conservative < width;
   const int rounds = search.robust ? kRounds : 1;
@@ -247,12 +288,11 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
   VectorXd level;
   VectorXd rest;
   VectorXd fitted;
-  VectorXd rate(count);
-  VectorXd slope;
   VectorXd missed;
   VectorXd total;
+  VectorXd heavy;  // the total slope times the weights
   MatrixXd slopes(count, rubs ? 2 : 1);
-  VectorXd unshifted;
+  std::optional<double> leading;
   bool none = false;
   for (int turn = 0; turn < rounds; ++turn) {
     double step = 0.0;
@@ -260,8 +300,8 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
     for (int i = 0; i < kSteps; ++i) {
       if (cancel != nullptr) cancel->check();
       levels.at(delay, level);
-      const VectorXd found = projection->coefficients(level);
-      if (turn == 0 && i == 0 && delay == 0.0) unshifted = found;
+      const VectorXd found = projection.coefficients(level);
+      if (turn == 0 && i == 0 && delay == 0.0) leading = found[0];
       rest = level;
       for (Index part = 0; part < slopes.cols(); ++part) {
         const Index first = part == 0 ? 0 : rows.conservative;
@@ -269,50 +309,51 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
         fitted =
             base::sum_of(rows.columns.middleCols(first, columns), found.segment(first, columns));
         rest -= fitted;
-        rates.of(fitted, rate);
-        projection->rest(rate, slope);
-        slopes.col(part) = slope;
+        rates.of(fitted, slopes.col(part));
+        projection.take_from(slopes.col(part));
       }
-      total = slopes.rowwise().sum();
-      energy = total.dot(weights.cwiseProduct(total));
+      total = slopes.col(0);
+      if (rubs) total += slopes.col(1);
+      heavy = weights.cwiseProduct(total);
+      energy = total.dot(heavy);
       if (!(energy > 0.0)) return std::nullopt;
-      step = -total.dot(weights.cwiseProduct(rest)) / energy;
-      step = std::clamp(step, -kLongestStep, kLongestStep);
+      step = std::clamp(-heavy.dot(rest) / energy, -kLongestStep, kLongestStep);
       delay += step;
       if (std::fabs(delay) > bound) return std::nullopt;
       if (std::fabs(step) < kNear || std::fabs(delay) < kClearlyShorter * search.least) break;
     }
     missed = rest + step * total;
-    const double noise = missed.squaredNorm() / static_cast<double>(count - projection->rank());
+    const double noise = missed.squaredNorm() / static_cast<double>(count - projection.rank());
     none = std::fabs(delay) + kClearErrors * std::sqrt(noise / energy) < search.least;
     if (none) break;
     if (turn + 1 < rounds) {
       const double usual = kClipped * median_size(missed) + kTiny;
       weights = (missed.cwiseAbs() / usual).cwiseMax(1.0).cwiseInverse();
-      projection.emplace(rows.columns, &weights);
+      projection.weigh(weights);
     }
   }
-  const auto groups = clusters_of(rows, levels.used());
-  const double own = errors_of(total, missed, weights, groups, projection->rank())[0];
-  FittedShift result{{delay, own}, {delay, own}, {delay, own}, 0.0, std::move(unshifted)};
+  const double unexplained = missed.squaredNorm();
+  const auto pieces = pieces_of(rows);
+  const double own = errors_of(total, heavy, missed, weights, pieces, projection.rank())[0];
+  FittedShift result{{delay, own}, {delay, own}, {delay, own}, 0.0, leading};
   if (rubs && !none) {
-    const MatrixXd inverse = inverse_of(slopes.transpose() * weights.asDiagonal() * slopes);
-    const VectorXd apart = -inverse * (slopes.transpose() * weights.cwiseProduct(rest));
-    const VectorXd errors =
-        errors_of(slopes, rest + slopes * apart, weights, groups, projection->rank());
+    const MatrixXd weighted = weights.asDiagonal() * slopes;
+    const MatrixXd inverse = inverse_of(base::symmetric_products(slopes, weighted));
+    const VectorXd apart = -inverse * base::products(weighted, rest);
+    missed = rest + slopes * apart;
+    const VectorXd errors = errors_of(slopes, weighted, missed, weights, pieces, projection.rank());
     result.conservative = {delay + apart[0], errors[0]};
     result.friction = {delay + apart[1], errors[1]};
   }
   const double mean = level.mean();
-  result.unexplained =
-      missed.squaredNorm() / std::max((level.array() - mean).square().sum(), kTiny);
+  result.unexplained = unexplained / std::max((level.array() - mean).square().sum(), kTiny);
   return result;
 }
 
-Eigen::VectorXd shift_coefficients(const ShiftRows& rows) {
+double leading_coefficient(const ShiftRows& rows) {
   VectorXd level;
   Levels(rows).at(0.0, level);
-  return Projection(rows.columns, nullptr).coefficients(level);
+  return Projection(rows.columns).coefficients(level)[0];
 }
 
 }  // namespace jointid::signals

@@ -7,19 +7,15 @@
 #include <vector>
 
 #include "base/cancel.hpp"
-#include "signals/window_means.hpp"
+#include "signals/smooth_windows.hpp"
 
 namespace jointid::signals {
 
-/// One stretch: a signal, the windows over which it is averaged, and which of these are used.
+/// One stretch: a signal, and the windows over which it is averaged.
 struct ShiftedStretch {
   Signal time;
   Signal signal;
-  Signal weight;
-  Middles middles;         ///< of all windows, at even strides
-  std::vector<bool> kept;  ///< which of them are used
-  std::int64_t stride;     ///< samples from one window to the next
-  double period;           ///< [s]
+  const SmoothWindows& windows;
 };
 
 /// What a signal's window means are a sum of. The first columns, `conservative` of them, have
@@ -45,7 +41,8 @@ struct FittedShift {
   std::array<double, 2> conservative;
   std::array<double, 2> friction;
   double unexplained;
-  Eigen::VectorXd unshifted;  ///< as `shift_coefficients`; empty where the search has a reach
+  /// As `leading_coefficient`, where that was a step on the way.
+  std::optional<double> leading;
 };
 
 /// The signal's window means, shifted, are regressed on the columns and on their own rate of
@@ -55,7 +52,7 @@ struct FittedShift {
 std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& search,
                                      const base::Cancel* cancel);
 
-/// Least squares of the signals, not shifted, on the columns.
-Eigen::VectorXd shift_coefficients(const ShiftRows& rows);
+/// Of the first column, in least squares of the signals, not shifted, on the columns.
+double leading_coefficient(const ShiftRows& rows);
 
 }  // namespace jointid::signals

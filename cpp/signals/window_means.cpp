@@ -2,30 +2,56 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "base/circle.hpp"
 #include "base/clones.hpp"
-#include "base/elementary.hpp"
+#include "base/four.hpp"
 
 namespace jointid::signals {
 
 namespace {
 
-constexpr std::size_t kLanes = 8;  // samples side by side
-constexpr std::size_t kDecays = 6;
-constexpr std::size_t kColumns = 10 + kDecays;
+using base::Four;
+using base::kFour;
 
-/// Sums of `width` samples' weighted values, kLanes outputs side by side.
+/// The sums of weighted samples from four neighbours on.
+[[gnu::always_inline]] inline void smooth_four(const double* signal, const double* weight,
+                                               std::size_t width, Four& sum) {
+  sum = Four{};
+  for (std::size_t k = 0; k < width; ++k) {
+    Four samples;
+    base::load(samples, signal + k);
+    sum = sum + samples * weight[k];
+  }
+}
+
+/// Sums of `width` samples' weighted values from each sample on, sixteen outputs side by side.
 JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, std::size_t width,
                                   std::size_t count, double* result) {
   std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    std::array<double, kLanes> sum{};
+  for (; i + 4 * kFour <= count; i += 4 * kFour) {
+    Four one{}, two{}, three{}, four{};  // an array of them would live in memory
     for (std::size_t k = 0; k < width; ++k) {
-      for (std::size_t l = 0; l < kLanes; ++l) sum[l] += weight[k] * signal[i + k + l];
+      const double* x = signal + i + k;
+      Four a, b, c, d;
+      base::load(a, x);
+      base::load(b, x + kFour);
+      base::load(c, x + 2 * kFour);
+      base::load(d, x + 3 * kFour);
+      one = one + a * weight[k];
+      two = two + b * weight[k];
+      three = three + c * weight[k];
+      four = four + d * weight[k];
     }
-    for (std::size_t l = 0; l < kLanes; ++l) result[i + l] = sum[l];
+    base::store(result + i, one);
+    base::store(result + i + kFour, two);
+    base::store(result + i + 2 * kFour, three);
+    base::store(result + i + 3 * kFour, four);
+  }
+  for (; i + kFour <= count; i += kFour) {
+    Four sum;
+    smooth_four(signal + i, weight, width, sum);
+    base::store(result + i, sum);
   }
   for (; i < count; ++i) {
     double sum = 0.0;
@@ -34,129 +60,98 @@ JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, st
   }
 }
 
-// As numbers: integers are not made into doubles side by side before AVX-512.
-constexpr std::array<double, kLanes> kPlaces{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
-
-struct Samples {
-  const double* velocity;
-  const double* smooth;
-  const double* cosine;
-  const double* sine;
-  double limit;  ///< speed of the longest decay
-  double step;   ///< of a time that goes from -1/2 to 1/2
-};
-
-/// All columns of one sample after the other.
-JOINTID_CLONES void friction_at(const Samples& of, std::size_t count, double* rows) {
-  std::array<std::array<double, kLanes>, kColumns> columns;
-  std::array<double, kLanes> decay;
-  std::array<std::array<double, kLanes>, 4> last{};  // samples that do not fill the lanes
-  for (std::size_t begin = 0; begin < count; begin += kLanes) {
-    const std::size_t lanes = std::min(kLanes, count - begin);
-    std::array<const double*, 4> from{of.velocity + begin, of.smooth + begin, of.cosine + begin,
-                                      of.sine + begin};
-    for (std::size_t k = 0; lanes < kLanes && k < 4; ++k) {
-      for (std::size_t l = 0; l < lanes; ++l) last[k][l] = from[k][l];
-      from[k] = last[k].data();
-    }
-    const auto first = static_cast<double>(begin);
-    const double* velocity = from[0];
-    const double* smooth = from[1];
-    const double* cosine = from[2];
-    const double* sine = from[3];
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double v = velocity[l];
-      const double speed = std::fabs(v);
-      const double sign = (v > 0.0 ? 1.0 : 0.0) - (v < 0.0 ? 1.0 : 0.0);
-      const double time = (first + kPlaces[l]) * of.step - 0.5;
-      const double ratio = smooth[l] / of.limit;
-      decay[l] = base::exp_decay(ratio * ratio);
-      columns[0][l] = sign;
-      columns[1][l] = v;
-      columns[2][l] = v * speed;
-      columns[3][l] = speed;
-      columns[kColumns - 6][l] = sign * cosine[l];
-      columns[kColumns - 5][l] = sign * sine[l];
-      columns[kColumns - 4][l] = v * cosine[l];
-      columns[kColumns - 3][l] = v * sine[l];
-      columns[kColumns - 2][l] = sign * time;
-      columns[kColumns - 1][l] = v * time;
-    }
-    for (std::size_t k = 0; k < kDecays; ++k) {
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        columns[4 + k][l] = columns[0][l] * decay[l];
-        const double square = decay[l] * decay[l];
-        decay[l] = square * square;  // of half the speed
-      }
-    }
-    for (std::size_t l = 0; l < lanes; ++l) {
-      double* row = rows + (begin + l) * kColumns;
-      for (std::size_t k = 0; k < kColumns; ++k) row[k] = columns[k][l];
-    }
+/// One window's weighted samples, in four sums side by side.
+[[gnu::always_inline]] inline void weigh(const double* samples, const double* weight,
+                                         std::size_t fours, Four& sum) {
+  sum = Four{};
+  for (std::size_t k = 0; k < fours; ++k) {
+    Four some;
+    Four factor;
+    base::load(some, samples + kFour * k);
+    base::load(factor, weight + kFour * k);
+    sum = sum + some * factor;
   }
 }
 
-/// Sums of `width` rows, weighted; they lie one after the other.
-JOINTID_CLONES void sum_rows(const double* rows, const double* weight, std::size_t width,
-                             double* result) {
-  std::array<double, kColumns> sum{};
-  for (std::size_t k = 0; k < width; ++k) {
-    for (std::size_t c = 0; c < kColumns; ++c) sum[c] += weight[k] * rows[k * kColumns + c];
-  }
-  for (std::size_t c = 0; c < kColumns; ++c) result[c] = sum[c];
-}
-
-/// Sums of `width` weighted samples from each of the firsts on. Windows are short: four of them
-/// share what a loop costs.
-void sum_windows(const double* signal, const double* weight, std::size_t width,
-                 const std::int64_t* first, std::size_t count, double* result) {
+[[gnu::always_inline]] inline void sum_fours(const double* signal, const double* weight,
+                                             std::size_t fours, const std::int64_t* first,
+                                             std::size_t count, double* sums) {
   std::size_t w = 0;
-  for (; w + 4 <= count; w += 4) {
-    const double* one = signal + first[w];
-    const double* two = signal + first[w + 1];
-    const double* three = signal + first[w + 2];
-    const double* four = signal + first[w + 3];
-    double a = 0.0;
-    double b = 0.0;
-    double c = 0.0;
-    double d = 0.0;
-    for (std::size_t k = 0; k < width; ++k) {
-      const double factor = weight[k];
-      a += factor * one[k];
-      b += factor * two[k];
-      c += factor * three[k];
-      d += factor * four[k];
-    }
-    result[w] = a;
-    result[w + 1] = b;
-    result[w + 2] = c;
-    result[w + 3] = d;
+  for (; w + kFour <= count; w += kFour) {
+    std::array<Four, kFour> each;
+    for (std::size_t l = 0; l < kFour; ++l) weigh(signal + first[w + l], weight, fours, each[l]);
+    Four together;
+    base::sums_of(each, together);
+    base::store(sums + w, together);
   }
   for (; w < count; ++w) {
-    const double* x = signal + first[w];
-    double sum = 0.0;
-    for (std::size_t k = 0; k < width; ++k) sum += weight[k] * x[k];
-    result[w] = sum;
+    Four sum;
+    weigh(signal + first[w], weight, fours, sum);
+    sums[w] = base::sum_of(sum);
+  }
+}
+
+/// The shortest windows are the usual ones: their loops are unrolled.
+JOINTID_CLONES void sum_some(const double* signal, const double* weight, std::size_t fours,
+                             const std::int64_t* first, std::size_t count, double* sums) {
+  if (fours == 3) {
+    sum_fours(signal, weight, 3, first, count, sums);
+  } else {
+    sum_fours(signal, weight, fours, first, count, sums);
   }
 }
 
 }  // namespace
 
-Eigen::VectorXd window_means(const Signal& signal, const Signal& weight, const Middles& middles) {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(middles.size()));
-  sum_windows(signal.data() - weight.size() / 2, weight.data(),
-              static_cast<std::size_t>(weight.size()), middles.data(), middles.size(),
-              result.data());
+void sum_windows(const double* signal, const double* weight, std::size_t width,
+                 const std::int64_t* first, std::size_t count, double* sums) {
+  sum_some(signal, weight, width / kFour, first, count, sums);
+}
+
+Eigen::VectorXd filled_up(const Eigen::VectorXd& weight) {
+  const auto fours = static_cast<Eigen::Index>(kFour);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero((weight.size() + fours - 1) / fours * fours);
+  result.head(weight.size()) = weight;
   return result;
 }
 
-Eigen::VectorXd smoothed(const Signal& signal, const Signal& weight) {
-  const auto half = static_cast<std::size_t>(weight.size()) / 2;
-  const auto count = static_cast<std::size_t>(signal.size());
-  Eigen::VectorXd padded = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count + 2 * half));
-  padded.segment(static_cast<Eigen::Index>(half), signal.size()) = signal;
-  Eigen::VectorXd result(signal.size());
-  smooth_inside(padded.data(), weight.data(), 2 * half + 1, count, result.data());
+void window_means(const Signal& signal, const Eigen::VectorXd& weight, const Middles& middles,
+                  double* means) {
+  if (middles.empty()) return;
+  const Eigen::VectorXd filled = filled_up(weight);
+  const auto width = static_cast<std::size_t>(filled.size());
+  const std::int64_t before = weight.size() / 2;
+  if (middles.back() - before + filled.size() <= signal.size()) {
+    sum_windows(signal.data() - before, filled.data(), width, middles.data(), middles.size(),
+                means);
+    return;
+  }
+  Eigen::VectorXd longer = Eigen::VectorXd::Zero(signal.size() + filled.size());
+  longer.head(signal.size()) = signal;
+  sum_windows(longer.data() - before, filled.data(), width, middles.data(), middles.size(), means);
+}
+
+Eigen::VectorXd smoothed(const Signal& signal, const Eigen::VectorXd& weight) {
+  const Eigen::Index half = weight.size() / 2;
+  const Eigen::Index count = signal.size();
+  Eigen::VectorXd result(count);
+  const Eigen::Index inside = std::max<Eigen::Index>(0, count - 2 * half);
+  if (inside > 0) {
+    smooth_inside(signal.data(), weight.data(), static_cast<std::size_t>(weight.size()),
+                  static_cast<std::size_t>(inside), result.data() + half);
+  }
+  const auto beside = [&](Eigen::Index from, Eigen::Index to) {
+    for (Eigen::Index i = from; i < to; ++i) {
+      double sum = 0.0;
+      for (Eigen::Index k = std::max<Eigen::Index>(0, half - i);
+           k < weight.size() && i + k - half < count; ++k) {
+        sum += weight[k] * signal[i + k - half];
+      }
+      result[i] = sum;
+    }
+  };
+  beside(0, std::min(half, count));
+  beside(std::min(half, count) + inside, count);
   return result;
 }
 
@@ -164,31 +159,6 @@ Circle circle_of(const Signal& angle) {
   Circle result{Eigen::VectorXd(angle.size()), Eigen::VectorXd(angle.size())};
   base::circle(angle.data(), static_cast<std::size_t>(angle.size()), result.cosine.data(),
                result.sine.data());
-  return result;
-}
-
-Eigen::MatrixXd friction_means(const Rubbing& rubbing, double longest, const Signal& weight,
-                               const Middles& middles) {
-  const auto count = static_cast<std::size_t>(rubbing.velocity.size());
-  Eigen::MatrixXd result(static_cast<Eigen::Index>(middles.size()),
-                         static_cast<Eigen::Index>(kColumns));
-  if (middles.empty()) return result;
-  const double peak = std::max(rubbing.velocity.cwiseAbs().maxCoeff(), 1e-300);
-  const Samples samples{
-      rubbing.velocity.data(), rubbing.smooth.data(),
-      rubbing.cosine.data(),   rubbing.sine.data(),
-      longest * peak,          1.0 / static_cast<double>(std::max<std::size_t>(1, count - 1))};
-  Eigen::VectorXd rows(static_cast<Eigen::Index>(count * kColumns));  // not set to zero before
-  friction_at(samples, count, rows.data());
-  const auto width = static_cast<std::size_t>(weight.size());
-  std::array<double, kColumns> sum;
-  for (std::size_t w = 0; w < middles.size(); ++w) {
-    const auto first = static_cast<std::size_t>(middles[w]) - width / 2;
-    sum_rows(rows.data() + first * kColumns, weight.data(), width, sum.data());
-    for (std::size_t c = 0; c < kColumns; ++c) {
-      result(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(c)) = sum[c];
-    }
-  }
   return result;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Weighted means of signals over short windows around given samples.
+// Weighted sums of signals over short windows around given samples.
 
 #include <cstdint>
 #include <vector>
@@ -11,12 +11,23 @@ namespace jointid::signals {
 /// Middle samples of windows.
 using Middles = std::vector<std::int64_t>;
 
-/// Of each window the sum of weight times signal; the weight has an odd number of samples, and
-/// every window lies within the signal.
-Eigen::VectorXd window_means(const Signal& signal, const Signal& weight, const Middles& middles);
+/// Of each window the sum of weight times signal; every window lies within the signal, and they
+/// come in order. The weight has as many samples before the middle as behind it, or one more before
+/// it.
+void window_means(const Signal& signal, const Eigen::VectorXd& weight, const Middles& middles,
+                  double* means);
 
-/// At each sample the sum over the window around it; zeros beyond the signal's ends.
-Eigen::VectorXd smoothed(const Signal& signal, const Signal& weight);
+/// The same of windows that begin `first[w] - before`, from a signal that may be read up to three
+/// samples beyond each window: for weights filled up with zeros to whole fours.
+void sum_windows(const double* signal, const double* weight, std::size_t width,
+                 const std::int64_t* first, std::size_t count, double* sums);
+
+/// A weight, and zeros up to whole fours.
+Eigen::VectorXd filled_up(const Eigen::VectorXd& weight);
+
+/// At each sample the sum over the window around it; zeros beyond the signal's ends. The weight has
+/// an odd number of samples.
+Eigen::VectorXd smoothed(const Signal& signal, const Eigen::VectorXd& weight);
 
 /// Cosine and sine of an angle, sample by sample.
 struct Circle {
@@ -24,19 +35,5 @@ struct Circle {
   Eigen::VectorXd sine;
 };
 Circle circle_of(const Signal& angle);
-
-/// What friction may be a sum of.
-struct Rubbing {
-  Signal velocity;
-  Signal smooth;  ///< the velocity from which decays are computed
-  Signal cosine;
-  Signal sine;
-};
-
-/// Window means of friction as any smooth function of the speed that may depend on direction, angle
-/// and time; windows x columns. Decays exp(-(speed / limit)^2) at `longest` of the peak speed, each
-/// next one at half the speed.
-Eigen::MatrixXd friction_means(const Rubbing& rubbing, double longest, const Signal& weight,
-                               const Middles& middles);
 
 }  // namespace jointid::signals

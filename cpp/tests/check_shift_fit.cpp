@@ -3,7 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
-#include <numbers>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include "check.hpp"
 #include "identify/solve/clustered.hpp"
 #include "identify/solve/regression.hpp"
+#include "signals/balance_columns.hpp"
 #include "signals/repeated_noise.hpp"
 #include "signals/shift_fit.hpp"
 
@@ -40,38 +44,29 @@ double motion(double t, Index column) {
 struct Late {
   VectorXd time = VectorXd::LinSpaced(kSamples, 0.0, kPeriod*(kSamples - 1));
   VectorXd signal = VectorXd(kSamples);
-  VectorXd weight = VectorXd(2 * kHalf - 1);
-  signals::Middles middles;
-  std::vector<bool> kept;
+  std::unique_ptr<bool[]> usable = std::make_unique<bool[]>(kSamples);
+  signals::SmoothWindows windows;
   MatrixXd columns;
 
   explicit Late(double delay) {
-    for (Index k = 0; k < weight.size(); ++k) {
-      weight[k] = 1.0 + std::cos(std::numbers::pi * static_cast<double>(k - kHalf + 1) / kHalf);
-    }
-    weight /= weight.sum();
-    std::vector<std::int64_t> used;
-    for (Index m = 40; m + 40 < kSamples; m += kHalf) {
-      middles.push_back(m);
-      kept.push_back(m % 17 != 0);
-      if (kept.back()) used.push_back(m);
-    }
-    columns.resize(static_cast<Index>(used.size()), 3);
     for (Index i = 0; i < kSamples; ++i) {
+      usable[static_cast<std::size_t>(i)] = i % 97 != 0;
       const double t = time[i] - delay;
       signal[i] = 2.0 * motion(t, 0) - 0.7 * motion(t, 1) + 0.3;
     }
+    windows = signals::smooth_windows(stretch(), {kHalf, 12, 0, true});
+    columns.resize(static_cast<Index>(windows.used.size()), 3);
     for (Index j = 0; j < 3; ++j) {
       VectorXd own(kSamples);
       for (Index i = 0; i < kSamples; ++i) own[i] = motion(time[i], j);
-      columns.col(j) = signals::window_means(view(own), view(weight), used);
+      signals::window_means(view(own), windows.weight, windows.used, columns.col(j).data());
     }
   }
+  [[nodiscard]] signals::EvenStretch stretch() const {
+    return {view(time), view(signal), view(signal), usable.get(), false};
+  }
   [[nodiscard]] signals::ShiftRows rows() const {
-    return {{{view(time), view(signal), view(weight), middles, kept, kHalf, kPeriod}},
-            columns,
-            1,
-            false};
+    return {{{view(time), view(signal), windows}}, columns, 1, false};
   }
 };
 
@@ -90,24 +85,101 @@ CHECK_CASE("shift: a late signal's delay is found, whole, in parts, and from afa
   }
 }
 
-CHECK_CASE("shift: coefficients are those of the columns; too few rows say nothing") {
+CHECK_CASE("shift: the leading coefficient is that of the columns; too few rows say nothing") {
   Late late(0.0);
-  const VectorXd found = signals::shift_coefficients(late.rows());
-  CHECK_CLOSE(found[0], 2.0, 1e-3);
-  CHECK_CLOSE(found[1], -0.7, 1e-3);
-  CHECK_CLOSE(found[2], 0.3, 1e-3);
-  late.middles.resize(20);
-  late.kept.assign(20, true);
+  CHECK_CLOSE(signals::leading_coefficient(late.rows()), 2.0, 1e-3);
+  const auto found = signals::fit_shift(late.rows(), {0.0, true, 0.0}, nullptr);
+  CHECK(found.has_value() && found->leading == signals::leading_coefficient(late.rows()));
+  late.windows.used.resize(20);
+  late.windows.between.conservativeResize(20);
   late.columns = MatrixXd(late.columns.topRows(20));
   CHECK(!signals::fit_shift(late.rows(), {0.0, true, 0.0}, nullptr).has_value());
 }
 
-CHECK_CASE("shift: smoothing is the window mean around each sample") {
+CHECK_CASE("shift: smoothing is the window mean around each sample, zeros beyond the ends") {
   const Late late(0.0);
-  const VectorXd smooth = signals::smoothed(view(late.signal), view(late.weight));
-  const VectorXd means = signals::window_means(view(late.signal), view(late.weight), {50, 777});
+  const VectorXd& weight = late.windows.weight;
+  const VectorXd smooth = signals::smoothed(view(late.signal), weight);
+  VectorXd means(2);
+  signals::window_means(view(late.signal), weight, {50, kSamples - kHalf}, means.data());
   CHECK_CLOSE(smooth[50], means[0], 1e-15);
-  CHECK_CLOSE(smooth[777], means[1], 1e-15);
+  CHECK_CLOSE(smooth[kSamples - kHalf], means[1], 1e-15);
+  CHECK_CLOSE(smooth[0], weight.tail(kHalf).dot(late.signal.head(kHalf)), 1e-15);
+}
+
+CHECK_CASE("shift: windows keep clear of unusable samples and changes of direction") {
+  const Late late(0.0);
+  const auto found = signals::smooth_windows(late.stretch(), {kHalf, 12, 9, true});
+  signals::Middles wanted;
+  const VectorXd& v = late.signal;
+  for (Index middle = kHalf + 14; middle < kSamples - kHalf - 14; middle += kHalf) {
+    bool kept = true;
+    for (Index i = middle - kHalf; i < middle + kHalf; ++i) kept = kept && i % 97 != 0;
+    for (Index i = middle - 8; i <= middle + 9; ++i) kept = kept && v[i] * v[i - 1] > 0.0;
+    if (kept) wanted.push_back(middle);
+  }
+  CHECK(wanted.size() > 100 && found.used == wanted);
+  for (Index i = 0; i < found.between.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool inner =
+        i > 0 && i + 1 < found.between.size() && wanted[at + 1] - wanted[at - 1] == 2 * kHalf;
+    CHECK_CLOSE(found.between[i], inner ? 1.0 / (2 * kHalf * kPeriod) : 0.0, 1e-9);
+  }
+  CHECK_CLOSE(signals::mean_rates(view(late.time), found).maxCoeff(), 1.0, 1e-12);
+  CHECK_CLOSE(
+      signals::curvature_weight(kHalf, kPeriod)
+          .dot(VectorXd::LinSpaced(2 * kHalf + 1, -kHalf * kPeriod, kHalf * kPeriod).cwiseAbs2()),
+      2.0, 1e-9);
+  CHECK_REFUSED(signals::smooth_windows(late.stretch(), {kHalf, 3, 0, true}), "beyond its stretch");
+}
+
+CHECK_CASE("shift: columns are the means of what friction may be; a jump is half of it earlier") {
+  const Late late(0.0);
+  const auto& windows = late.windows;
+  const VectorXd cosine = late.time.array().cos();
+  const VectorXd sine = late.time.array().sin();
+  signals::ColumnChoice choice{view(cosine), view(sine), true,         {view(late.time)},
+                               true,         {},         std::nullopt, 0.5};
+  const MatrixXd found = signals::balance_columns(late.stretch(), windows, choice);
+  CHECK(found.cols() == 8 + 1 + 16);
+  const double limit = 0.4 * late.signal.cwiseAbs().maxCoeff();
+  double apart = 0.0;
+  for (Index row = 0; row < found.rows(); ++row) {
+    const auto middle = windows.used[static_cast<std::size_t>(row)];
+    VectorXd sums = VectorXd::Zero(4);
+    for (Index k = 0; k < windows.weight.size(); ++k) {
+      const Index i = middle - kHalf + 1 + k;
+      const double v = late.signal[i];
+      const double sign = v > 0.0 ? 1.0 : -1.0;
+      const double time = static_cast<double>(i) / (kSamples - 1) - 0.5;
+      sums += windows.weight[k] * Eigen::Vector4d(v * v * sine[i], v * std::fabs(v),
+                                                  sign * std::exp(-std::pow(4.0 * v / limit, 2.0)),
+                                                  v * time);
+    }
+    const Eigen::Vector4d own(found(row, 7), found(row, 11), found(row, 15), found(row, 24));
+    apart = std::max(apart, (own - sums).cwiseAbs().maxCoeff());
+  }
+  CHECK_CLOSE(apart, 0.0, 1e-12);
+  CHECK_CLOSE(found.col(8).minCoeff(), 1.0, 1e-12);
+  choice.jumping.emplace(view(late.time));  // by a period at each sample
+  const MatrixXd earlier = signals::balance_columns(late.stretch(), windows, choice);
+  CHECK_CLOSE((found - earlier).col(0).maxCoeff(), 0.5 * kPeriod, 1e-12);
+  CHECK_CLOSE((found - earlier).rightCols(24).cwiseAbs().maxCoeff(), 0.0, 0.0);
+}
+
+CHECK_CASE("shift: windows are as long as the noise of the acceleration asks for") {
+  VectorXd signal(kSamples);
+  for (Index i = 0; i < kSamples; ++i) signal[i] = motion(kPeriod * static_cast<double>(i), 1);
+  CHECK(signals::half_length(view(signal), kPeriod, false) == 6);
+  std::uint64_t state = 11;
+  for (auto& one : signal) {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    one += 0.02 * (static_cast<double>(state >> 11U) * 0x1p-53 - 0.5);
+  }
+  const auto noisy = signals::half_length(view(signal), kPeriod, false);
+  CHECK_WITH(noisy > 6 && noisy < 56, std::to_string(noisy));
+  for (auto& one : signal) one = std::round(one * 20.0) / 20.0;  // a counter's steps
+  CHECK(signals::half_length(view(signal), kPeriod, true) > noisy);
 }
 
 CHECK_CASE("noise: what a torque repeats two samples earlier shows at that lag") {
@@ -119,6 +191,8 @@ CHECK_CASE("noise: what a torque repeats two samples earlier shows at that lag")
   }
   VectorXd torque = VectorXd::Zero(kSamples);
   torque.head(kSamples - 2) = 3.0 * noise.tail(kSamples - 2);
+  const VectorXd late =
+      VectorXd::LinSpaced(kSamples, -4.0, 9.0).array().sin() + 0.1 * noise.reverse().array();
   const MatrixXd found = signals::noise_products(view(noise), view(torque), 60, 9, 4.0);
   CHECK(found.rows() == 60 && found.cols() == 19);
   Index most = 0;
@@ -127,6 +201,15 @@ CHECK_CASE("noise: what a torque repeats two samples earlier shows at that lag")
   CHECK_CLOSE(signals::roughness(view(torque)) / signals::roughness(view(noise)), 3.0, 0.01);
   CHECK(signals::noise_products(view(VectorXd::Ones(kSamples)), view(torque), 60, 9, 4.0).rows() ==
         0);
+  torque.head(kSamples - 3) = 2.4 * noise.segment(2, kSamples - 3) + 0.6 * noise.tail(kSamples - 3);
+  const auto told = signals::repeated_noise({{view(noise), view(torque)}});
+  CHECK(told.has_value());
+  if (told) {
+    CHECK_CLOSE(told->earlier, 2.2, 0.03);
+    CHECK(told->share > 0.9);
+    CHECK_CLOSE(told->error, 0.1, 0.01);
+  }
+  CHECK(!signals::repeated_noise({{view(noise), view(late)}}).has_value());
 }
 
 CHECK_CASE("circle: the bits of one angle after the other, of any size") {

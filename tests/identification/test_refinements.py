@@ -46,6 +46,18 @@ def test_a_late_signal_is_named_and_shifted_back(
     assert "taken away" in estimate.report()
 
 
+def test_a_reading_late_before_the_controller_is_named() -> None:
+    # Noise in the torque tells only what happens behind the point where the controller reads.
+    run = jid.load(WELL_EXCITED)
+    assert run.sensor is not None
+    weight = np.hanning(13) / np.hanning(13).sum()
+    smooth = np.convolve(run.sensor, weight, mode="same")
+    lag = np.interp(run.time - 0.002, run.time, smooth) - smooth
+    found = identified(run.with_signals(sensor=run.sensor + lag)).delays["sensor"]
+    assert found.certain
+    assert found.value == pytest.approx(0.002, abs=2.0 * found.stderr)
+
+
 @pytest.mark.parametrize("early", [0.0007, 0.0025])
 def test_an_early_torque_may_be_a_gear_that_gives_way(run: jid.Recording, early: float) -> None:
     estimate = identified(late(run, "torque", -early))

@@ -27,21 +27,21 @@ def fitted(
     noise = 0.05 * rng.normal(size=TIME.size)
     for place in rng.integers(0, TIME.size - 40, 12):
         noise[place : place + 20] += knocks * rng.choice([-1.0, 1.0])
-    weight = np.hanning(41)
-    weight /= weight.sum()
-    middles = np.arange(100, TIME.size - 100, 20)
-    around = middles[:, None] + np.arange(-20, 21)
-    stretch = _core.SmoothStretch(
-        time=TIME,
-        signal=unit * (parts(TIME - delay).sum(axis=1) + noise),
-        weight=weight,
-        middles=middles,
-        kept=np.ones(middles.size, dtype=bool),
-        stride=20,
+    windows = _core.SmoothWindows(
+        TIME,
+        TIME,
+        TIME,
+        np.ones(TIME.size, dtype=bool),
+        derived=False,
+        half=20,
+        margin=80,
     )
+    weight = np.hanning(41)[1:-1] / 20.0
+    around = np.asarray(windows.used)[:, None] + np.arange(-19, 20)
     return _core.fit_shift(
-        [stretch],
-        np.einsum("w,rwc->rc", weight, parts(TIME)[around]),
+        [windows],
+        [unit * (parts(TIME - delay).sum(axis=1) + noise)],
+        np.asfortranarray(np.einsum("w,rwc->rc", weight, parts(TIME)[around])),
         conservative=1,
         held=False,
         reach=reach,

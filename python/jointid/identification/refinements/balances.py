@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
-from jointid.identification.refinements.balance_columns import (
-    conservative,
-    friction,
-    own_columns,
-    stacked,
+from jointid.identification.refinements.shift_fit import (
+    Balance,
+    Shift,
+    fit_shift,
+    leading_coefficient,
 )
-from jointid.identification.refinements.shift_fit import Balance, Shift, coefficients, fit_shift
-from jointid.identification.refinements.smooth_windows import SmoothWindows
+from jointid.identification.refinements.smooth_windows import Stretch
 from jointid.identification.refinements.stretches import Piece
+from jointid.problem.own_balance import OwnSignal
 
 Array = NDArray[np.float64]
 
@@ -32,10 +32,9 @@ def reach(period: float) -> float:
     return max(REACH, 3.0 * period)
 
 
-def margin(piece: Piece) -> int:
+def margin(stretch: Stretch) -> int:
     """Samples that its signals may be shifted by."""
-    period = piece.stretch.period
-    return int(2.0 * reach(period) / period) + 2
+    return int(2.0 * reach(stretch.period) / stretch.period) + 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,8 +62,8 @@ class Motion:
     def inertia(self) -> float:
         """Of drive and link, as the torque says."""
         look = self.first_look
-        known = None if look is None else look.unshifted
-        return float((coefficients(self.torque) if known is None else known)[0])
+        known = None if look is None else look.leading
+        return leading_coefficient(self.torque) if known is None else known
 
     def torque_otherwise(self, *, clear: bool = False, varying: bool = False) -> Balance:
         """The torque's balance without the reversals, or with an inertia that varies with the angle.
@@ -76,25 +75,24 @@ class Motion:
         """
         windows, columns, count = [], [], 0
         for piece in self.pieces:
-            half, spare = piece.half, margin(piece)
-            each = SmoothWindows(
-                stretch=piece.stretch,
-                half=half,
-                stride=half,
-                margin=spare,
-                clear=half + spare if clear else 0,
-            )
-            first = conservative(each, piece.circle, varying=varying)
-            first += own_columns(each, piece.own, friction=False, taken=False)
-            rubbing = friction(each, piece.circle)
-            rubbing += own_columns(each, piece.own, friction=True, taken=False)
+            half, spare = piece.half, margin(piece.stretch)
+            each = piece.stretch.windows(half, margin=spare, clear=half + spare if clear else 0)
+            own = _series(piece.own, friction=False, taken=False)
             windows.append(each)
-            columns.append([*first, *rubbing])
-            count = len(first)
+            columns.append(
+                each.columns(
+                    *piece.circle,
+                    varying=varying,
+                    friction=True,
+                    own=own,
+                    own_friction=_series(piece.own, friction=True, taken=False),
+                )
+            )
+            count = (8 if varying else 4) + len(own)
         return Balance(
             windows=windows,
             signals=[piece.torque for piece in self.pieces],
-            columns=stacked(columns),
+            columns=columns,
             conservative=count,
             held=self.pieces[0].held,
         )
@@ -117,31 +115,39 @@ class Motion:
         windows, columns = [], []
         for piece in self.pieces:
             half = factor * piece.half
-            each = SmoothWindows(
-                stretch=piece.stretch,
-                half=half,
-                stride=half,
-                margin=margin(piece),
-                clear=half + _CLEAR,
-                usable_only=False,
+            each = piece.stretch.windows(
+                half, margin=margin(piece.stretch), clear=half + _CLEAR, usable_only=False
             )
-            first = conservative(each, piece.circle, varying=varying)
-            if piece.held and self.inertia > 0.0:
-                # Of a control cycle: the reading is taken before the new command acts. Where the torque jumps, the
-                # acceleration is then that of the interval before the sample.
-                jump = np.diff(piece.torque, prepend=piece.torque[:1])
-                first[0] = first[0] - 0.5 / self.inertia * each.mean(jump)
-            first += own_columns(each, piece.own, friction=False, taken=True)
+            # Of a control cycle: the reading is taken before the new command acts. Where the torque jumps, the
+            # acceleration is then that of the interval before the sample.
+            jumps = piece.held and self.inertia > 0.0
             windows.append(each)
-            columns.append(first)
+            columns.append(
+                each.columns(
+                    *piece.circle,
+                    varying=varying,
+                    friction=False,
+                    own=_series(piece.own, friction=False, taken=True),
+                    jumping=piece.torque if jumps else None,
+                    answer=0.5 / self.inertia if jumps else 0.0,
+                )
+            )
         return Balance(
             windows=windows,
             signals=[piece.sensor for piece in self.pieces if piece.sensor is not None],
-            columns=stacked(columns),
+            columns=columns,
             conservative=1,  # apart: a held torque's acceleration, and gravity
             held=False,
         )
 
     def answer(self) -> float:
         """What the reading changes by where the torque changes by 1: the link's share of the inertia."""
-        return float(coefficients(self.reading)[0]) / self.inertia if self.inertia else 0.0
+        return leading_coefficient(self.reading) / self.inertia if self.inertia else 0.0
+
+
+def _series(own: Sequence[OwnSignal], *, friction: bool, taken: bool) -> list[Array]:
+    """Integrals of own terms, whose rates are columns: friction or what is none, with known torques or without.
+
+    The drive's torque lacks the known torques already.
+    """
+    return [each.series for each in own if each.friction == friction and (taken or not each.taken)]

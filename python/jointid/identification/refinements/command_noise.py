@@ -10,23 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.refinements.shift_fit import Shift
 from jointid.identification.refinements.stretches import Piece
-
-Array = NDArray[np.float64]
-
-_LAG = 9  # samples, the longest
-_CLIPPED = 4.0  # standard deviations of a difference: a reversal's jump is not noise
-_AUTOCORRELATION = (20.0, -15.0, 6.0, -1.0)  # of the third differences of white noise
-_REACH = len(_AUTOCORRELATION) - 1
-_SURE = 8.0  # standard errors of the noise's share in the torque
-_EXPLAINED = 0.9  # of the cross-correlation, by one delay
-_BLOCKS = 60  # of the recording, whose spread gives the standard errors
-_ANSWER = 0.1  # samples: how far the joint's own answer to the noise moves the delay
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,33 +50,13 @@ def delay_in_command(pieces: Sequence[Piece]) -> Repeated | None:
     pieces : sequence of Piece
         Each with a sensor.
     """
-    products = [_products(piece) for piece in pieces if piece.sensor is not None]
-    means = np.concatenate([each for each in products if len(each)] or [np.zeros((0, 1))])
-    if len(means) < _BLOCKS // 2:
+    found = _core.repeated_noise(
+        [(piece.sensor, piece.torque) for piece in pieces if piece.sensor is not None]
+    )
+    if found is None:
         return None
-    seen = means.mean(axis=0)
-    # Each two neighbouring delays share the noise between them; their normal equations are alike.
-    kernel = _taps()
-    matched, gram = kernel.T @ seen, kernel.T @ kernel
-    pairs = np.column_stack([matched[:-1], matched[1:]])
-    shares_of = np.linalg.inv(gram[:2, :2])
-    both = pairs @ shares_of
-    explained = np.where(both.prod(axis=1) >= 0.0, (pairs * both).sum(axis=1), 0.0)
-    place = int(np.argmax(explained))
-    most, found = float(explained[place]), place - _LAG + _REACH
-    if most < _EXPLAINED * float(seen @ seen):
-        return None
-    shares = means @ kernel[:, place : place + 2] @ shares_of
-    first, second = shares.mean(axis=0)
-    spread = np.cov(shares.T) / len(shares)
-    total = float(first + second)
-    if not total > _SURE * float(np.sqrt(spread.sum())):
-        return None
-    part = float(second) / total
-    slope = np.array([-part, 1.0 - part]) / total
-    error = float(np.hypot(np.sqrt(slope @ spread @ slope), _ANSWER))
     period = pieces[0].stretch.period
-    value, stderr = (found + part) * period, error * period
+    value, stderr = found.earlier * period, found.error * period
     shift = Shift(
         value=value,
         stderr=stderr,
@@ -96,25 +64,4 @@ def delay_in_command(pieces: Sequence[Piece]) -> Repeated | None:
         friction=(value, stderr),
         unexplained=0.0,
     )
-    return Repeated(shift=shift, share=total, pieces=pieces)
-
-
-def _products(piece: Piece) -> Array:
-    """Of each block: means of the reading's differences times the torque's, by how much earlier the torque is."""
-    assert piece.sensor is not None
-    count = len(piece.sensor) - 3
-    blocks = max(2, round(_BLOCKS * count / max(count, 6000)))
-    return np.asarray(
-        _core.noise_products(
-            piece.sensor, piece.torque, blocks=blocks, longest=_LAG, clipped=_CLIPPED
-        )
-    )
-
-
-def _taps() -> Array:
-    """The cross-correlation of a torque that repeats the noise so many samples earlier, a column each."""
-    lags = np.arange(-_LAG, _LAG + 1)
-    shape = np.zeros(2 * _LAG + 1)
-    shape[: len(_AUTOCORRELATION)] = _AUTOCORRELATION
-    apart = np.abs(lags[:, None] - lags[_REACH:-_REACH])
-    return np.asarray(shape[apart] / shape[0])
+    return Repeated(shift=shift, share=found.share, pieces=pieces)

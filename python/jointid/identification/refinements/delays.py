@@ -14,13 +14,12 @@ from dataclasses import replace
 import numpy as np
 
 from jointid.estimate.delays import Delay
-from jointid.identification.refinements.balance_columns import stacked
 from jointid.identification.refinements.balance_misfit import fits_better
 from jointid.identification.refinements.balances import SMALL, SUSPECT, Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
-from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
-from jointid.identification.refinements.stretches import Piece, few_of, pieces_of
+from jointid.identification.refinements.smooth_windows import Stretch
+from jointid.identification.refinements.stretches import few_of, pieces_of
 from jointid.problem.problem import Problem
 from jointid.recording.shifting import shifted
 
@@ -115,37 +114,31 @@ def _measured(signal: str, motion: Motion) -> tuple[Shift, bool] | None:
             np.hypot(measured[0].stderr, _WITHIN_SAMPLE * motion.pieces[0].stretch.period)
         )
         return replace(measured[0], stderr=error), measured[1]
-    pieces = motion.pieces
-    few = few_of(pieces)
+    stretches = [piece.stretch for piece in motion.pieces if not piece.stretch.derived]
+    few = few_of(stretches)
     first = _velocity(few, glance=True) if few else None
-    return _velocity(pieces) if first is None or first[1] else first
+    return _velocity(stretches) if first is None or first[1] else first
 
 
-def _velocity(pieces: Sequence[Piece], glance: bool = False) -> tuple[Shift, bool] | None:
-    pieces = [piece for piece in pieces if not piece.stretch.derived]
-    if not pieces:
+def _velocity(stretches: Sequence[Stretch], glance: bool = False) -> tuple[Shift, bool] | None:
+    if not stretches:
         return None
-    windows = []
-    for piece in pieces:
-        half = half_length(replace(piece.stretch, derived=True))
-        windows.append(
-            SmoothWindows(
-                stretch=piece.stretch,
-                half=half,
-                stride=half,
-                margin=margin(piece),
-                usable_only=False,
-            )
-        )
-    columns = stacked([[each.rate(each.stretch.position)] for each in windows])
+    windows = [
+        each.windows(each.half_length(by_position=True), margin=margin(each), usable_only=False)
+        for each in stretches
+    ]
+    columns = [
+        each.rates(stretch.position)[:, None]
+        for each, stretch in zip(windows, stretches, strict=True)
+    ]
     balance = Balance(
         windows=windows,
-        signals=[piece.stretch.velocity for piece in pieces],
+        signals=[each.velocity for each in stretches],
         columns=columns,
         conservative=1,
         held=False,
     )
-    period = pieces[0].stretch.period
+    period = stretches[0].period
     if glance:
         found = fit_shift(balance, robust=False, least=SUSPECT * _VELOCITY * period)
         return None if found is None else (found, not _is_clearly_none(found, _VELOCITY * period))

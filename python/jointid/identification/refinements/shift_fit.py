@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.refinements.smooth_windows import SmoothWindows
 
 Array = NDArray[np.float64]
 
@@ -21,23 +20,28 @@ class Balance:
 
     Attributes
     ----------
-    windows : sequence of SmoothWindows
-        One for each stretch.
-    signals : sequence of ndarray
+    windows : list of _core.SmoothWindows
+        Of each stretch.
+    signals : list of ndarray
         The signal of each stretch, sample by sample.
-    columns : ndarray, shape (rows, columns)
-        Over the used windows of all stretches in turn.
+    columns : list of ndarray, each of shape (windows, columns)
+        Over the used windows of each stretch.
     conservative : int
         Number of columns, the first ones, that have nothing to do with friction.
     held : bool
         Whether the signal is held between samples: it then stands for the middle of the interval.
     """
 
-    windows: Sequence[SmoothWindows]
-    signals: Sequence[Array]
-    columns: Array
+    windows: list[_core.SmoothWindows]
+    signals: list[Array]
+    columns: list[Array]
     conservative: int
     held: bool
+
+    @cached_property
+    def matrix(self) -> Array:
+        """The columns over the windows of all stretches in turn."""
+        return self.columns[0] if len(self.columns) == 1 else np.concatenate(self.columns)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,8 +57,8 @@ class Shift:
         do with friction, and friction. Without friction the first only, twice.
     unexplained : float
         Variance that the columns leave, over that of the signal.
-    unshifted : ndarray or None
-        As `coefficients` returns them, where they were a step on the way.
+    leading : float or None
+        As `leading_coefficient` returns it, where that was a step on the way.
     """
 
     value: float
@@ -62,7 +66,7 @@ class Shift:
     conservative: tuple[float, float]
     friction: tuple[float, float]
     unexplained: float
-    unshifted: Array | None = field(default=None, compare=False, repr=False)
+    leading: float | None = field(default=None, compare=False, repr=False)
 
     def agrees(self, other: Shift, share: float) -> bool:
         """Whether another estimate is within three standard errors or a share of this delay."""
@@ -97,8 +101,9 @@ def fit_shift(
         A delay that is clearly shorter after one step is not refined [s]. Default 0.
     """
     found = _core.fit_shift(
-        _stretches(balance),
-        balance.columns,
+        balance.windows,
+        balance.signals,
+        balance.matrix,
         conservative=balance.conservative,
         held=balance.held,
         reach=reach,
@@ -107,32 +112,21 @@ def fit_shift(
     )
     if found is None:
         return None
+    value, stderr = found.whole
+    conservative, error = found.conservative
+    friction, other = found.friction
     return Shift(
-        value=found.whole[0],
-        stderr=found.whole[1],
-        conservative=(found.conservative[0], found.conservative[1]),
-        friction=(found.friction[0], found.friction[1]),
+        value=value,
+        stderr=stderr,
+        conservative=(conservative, error),
+        friction=(friction, other),
         unexplained=found.unexplained,
-        unshifted=np.array(found.unshifted) if len(found.unshifted) else None,
+        leading=found.leading,
     )
 
 
-def coefficients(balance: Balance) -> Array:
-    """Least squares of the signal, not shifted, on the columns."""
-    return np.asarray(
-        _core.shift_coefficients(_stretches(balance), balance.columns, held=balance.held)
+def leading_coefficient(balance: Balance) -> float:
+    """Of the first column, in least squares of the signal, not shifted, on the columns."""
+    return _core.leading_coefficient(
+        balance.windows, balance.signals, balance.matrix, held=balance.held
     )
-
-
-def _stretches(balance: Balance) -> list[_core.SmoothStretch]:
-    return [
-        _core.SmoothStretch(
-            time=windows.stretch.time,
-            signal=signal,
-            weight=windows.weight,
-            middles=windows.middles,
-            kept=windows.kept,
-            stride=windows.stride,
-        )
-        for windows, signal in zip(balance.windows, balance.signals, strict=True)
-    ]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.refinements.smooth_windows import Stretch, half_length
+from jointid.identification.refinements.smooth_windows import Stretch
 from jointid.problem.own_balance import OwnSignal, own_signals
 from jointid.problem.problem import Problem
 
@@ -53,7 +53,7 @@ class Piece:
     @cached_property
     def half(self) -> int:
         """Half the length of a window, in samples."""
-        return half_length(self.stretch)
+        return self.stretch.half_length()
 
     @cached_property
     def circle(self) -> tuple[Array, Array]:
@@ -82,35 +82,26 @@ def pieces_of(problem: Problem) -> list[Piece]:
     return [_piece(problem, *span, own[span[0]]) for span in spans]
 
 
-def few_of(pieces: Sequence[Piece]) -> list[Piece] | None:
-    """Return short parts of the pieces, evenly chosen, for a first look; None where there is little to leave out."""
+def few_of(stretches: Sequence[Stretch]) -> list[Stretch] | None:
+    """Return short parts of stretches, evenly chosen, for a first look; None where there is little to leave out."""
     cuts = [
-        (piece, first)
-        for piece in pieces
-        for first in range(0, len(piece.torque) - _PART + 1, _PART)
+        (stretch, first)
+        for stretch in stretches
+        for first in range(0, len(stretch.time) - _PART + 1, _PART)
     ]
     if len(cuts) < 2 * _PARTS:
         return None
-    places = np.linspace(0, len(cuts) - 1, 2 * _PARTS + 1).astype(int)[1::2]
-    return [_part(*cuts[i]) for i in places]
+    return [_part(*cuts[(len(cuts) - 1) * (2 * k + 1) // (2 * _PARTS)]) for k in range(_PARTS)]
 
 
-def _part(piece: Piece, first: int) -> Piece:
+def _part(whole: Stretch, first: int) -> Stretch:
     cut = slice(first, first + _PART)
-    whole = piece.stretch
-    return Piece(
-        stretch=Stretch(
-            time=whole.time[cut],
-            position=whole.position[cut],
-            velocity=whole.velocity[cut],
-            usable=whole.usable[cut],
-            derived=whole.derived,
-        ),
-        angle=piece.angle[cut],
-        torque=piece.torque[cut],
-        sensor=None if piece.sensor is None else piece.sensor[cut],
-        held=piece.held,
-        own=tuple(replace(each, series=each.series[cut]) for each in piece.own),
+    return Stretch(
+        time=whole.time[cut],
+        position=whole.position[cut],
+        velocity=whole.velocity[cut],
+        usable=whole.usable[cut],
+        derived=whole.derived,
     )
 
 
@@ -124,8 +115,8 @@ def _piece(
     both[1:] &= usable
     cut = slice(first, last)
     time = recording.time[cut]
-    grid = np.linspace(time[0], time[-1], len(time))
-    uneven = float(np.abs(grid - time).max()) > _UNEVEN * recording.sample_period
+    grid, apart = _core.even_grid(time)
+    uneven = apart > _UNEVEN * recording.sample_period
     torque = problem.unexplained_torque(number)
 
     def even(signal: Array) -> Array:
