@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "bind/recording.hpp"
 #include "identify/solve/clustered.hpp"
 #include "identify/solve/folds.hpp"
+#include "identify/solve/motion_cuts.hpp"
 #include "search/least_squares.hpp"
 
 namespace jointid::bind {
@@ -87,6 +89,27 @@ void bind_regression(py::module_& m) {
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
       "The sandwich of each clustering: segments are from one cut to the next.");
+  using Series = Eigen::Ref<const Eigen::VectorXd>;
+  m.def(
+      "motion_cuts",
+      [](const Series& start, const Series& stop, const Series& travel,
+         const std::vector<Eigen::Index>& edges, double length) {
+        if (stop.size() != start.size() || travel.size() != start.size() || edges.empty() ||
+            !std::is_sorted(edges.begin(), edges.end(), std::less_equal<>()) ||
+            edges.front() < 0 || edges.back() > start.size() || !(length > 0.0)) {
+          throw std::invalid_argument("edges must part the windows of the recordings");
+        }
+        const identify::MovingWindows windows{start, stop, travel};
+        std::vector<std::int64_t> cuts{edges.front()};
+        for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+          const auto own = identify::motion_cuts(windows, edges[i], edges[i + 1], length);
+          cuts.insert(cuts.end(), own.begin(), own.end());
+        }
+        return cuts;
+      },
+      py::arg("start"), py::arg("stop"), py::arg("travel"), py::arg("edges"), py::arg("length"),
+      "First windows of the segments of motion, and the end of the last one; `edges` are the first "
+      "windows of the recordings, and the end of the last one.");
   m.def(
       "variances_of_rows",
       [](const Matrix& jacobian, const Eigen::VectorXd& residual,

@@ -90,6 +90,7 @@ __all__: list[str] = [
     "model_names",
     "model_terms",
     "models",
+    "motion_cuts",
     "noise_products",
     "non_negative_least_squares",
     "number_list",
@@ -473,6 +474,15 @@ class Penalty(PenaltyFunction):
     ]:
         """
         Penalty, window residuals with the reading itself, and the derivatives of the penalty's residuals, in one pass: what the sandwich of an estimate's covariance is made of.
+        """
+    def link_motion(
+        self,
+        recordings: collections.abc.Sequence[Recording],
+        mask_standstill: bool,
+        periods: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        How a rigid link moves in each window, shape (window_count, 7): how much faster it becomes; cosine and sine of the angle in its middle, times the integrated time; that time; how far the torque rises over the usable intervals, times the recording's period in `periods`; the time from first to last sample; the mean velocity.
         """
     def project_reading(
         self,
@@ -3717,6 +3727,17 @@ def model_terms(name: str, *, asymmetric: bool = False) -> list[str]:
 def models() -> list[Model]:
     """
     All friction models.
+    """
+
+def motion_cuts(
+    start: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    stop: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    travel: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    length: typing.SupportsFloat | typing.SupportsIndex,
+) -> list[int]:
+    """
+    First windows of the segments of motion, and the end of the last one; `edges` are the first windows of the recordings, and the end of the last one.
     """
 
 def noise_products(

@@ -125,7 +125,11 @@ def parameters_of(
         Systematic errors of every parameter, by the name of their cause.
     """
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
-    factors = {i: quantile(0.975, f) for i, f in zip(freedom.indices, spread.freedom, strict=True)}
+    # Most have the same freedom: all of them, where the residuals are white.
+    known = {f: quantile(0.975, f) for f in set(spread.freedom.tolist())}
+    factors = dict(
+        zip(freedom.indices, map(known.__getitem__, spread.freedom.tolist()), strict=True)
+    )
     prismatic = problem.recordings[0].kind == "prismatic"
     own = problem.choice.model.resolved.terms
     result = {}

@@ -112,26 +112,24 @@ def _of_sampling(
     names = list(penalty.names)
     if not {"sensor_gain", "inertia"} <= set(names):
         return None
-    bounds = np.asarray(penalty.windows)
-    run = np.asarray(penalty.recording_of)
-    duration = np.asarray(penalty.usable_duration)
-    steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
-    accelerated, angle, stepped = np.zeros((3, run.size))
-    for number, recording in enumerate(problem.recordings):
-        if not held(problem, recording):
-            continue
-        mine = slice(*np.searchsorted(run, (number, number + 1)))
-        first, last = bounds[mine, 0], bounds[mine, 1]
-        accelerated[mine] = recording.velocity[last] - recording.velocity[first]
-        angle[mine] = 0.5 * (recording.position[first] + recording.position[last])
-        stepped[mine] = recording.sample_period * steps[mine]
-    if not np.any(stepped) or run.size < 50:
+    holds = [held(problem, recording) for recording in problem.recordings]
+    if not any(holds) or penalty.window_count < 50:
+        return None
+    periods = [
+        recording.sample_period if holds[number] else 0.0
+        for number, recording in enumerate(problem.recordings)
+    ]
+    motion = penalty.link_motion(problem.in_core, problem.mask_standstill, periods)
+    link, stepped = motion[:, :4], motion[:, 4]
+    for number in range(len(holds)):
+        if not holds[number]:  # it tells nothing of the link's share in a step
+            of = np.asarray(penalty.recording_of) == number
+            link[of] = link[of, 3:] * (0.0, 1.0, 0.0, 1.0)
+    if not np.any(stepped):
         return None
     gain = float(best[names.index("sensor_gain")])
     reading = columns[:, names.index("sensor_gain")]
-    link = np.column_stack(
-        [accelerated, duration * np.cos(angle), duration * np.sin(angle), duration, reading]
-    )
+    link = np.column_stack([link, reading])
     # The link's inertia over the gain.
     share = float(Triangle(link, problem.threads).solve([0, 1, 2, 3], 4, rcond=1e-10)[0][0])
     both = float(best[names.index("inertia")]) + share * gain
