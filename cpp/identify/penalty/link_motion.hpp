@@ -15,14 +15,18 @@ enum LinkMotion : Eigen::Index {
   kSine,      ///< of it
   kDuration,  ///< integrated time [s]
   kStep,      ///< how far the torque rises over the usable intervals, times the recording's period
+  kDry,       ///< friction of one size: the integrated time with the sign of the motion [s]
+  kViscous,   ///< the integrated time, times the mean velocity
+  kSlow,      ///< as kDry, fading with the mean speed over `slow`
+  kTorque,    ///< integral of the torque, as the penalty's target
+  kReading,   ///< integral of the sensor's reading
   kLasting,   ///< time from the first to the last sample [s]
-  kSpeed,     ///< mean velocity [rad/s or m/s]
   kLinkMotion
 };
 
-/// `periods`: a number for each of the recordings that the penalty was cut from, by which its
+/// Of a penalty with a gain. `periods`: a number for each of the recordings that the penalty was cut from, by which its
 /// torque's steps are multiplied.
 Eigen::MatrixXd link_motion(const Penalty& penalty, const Penalty::Masked& recordings,
-                            const std::vector<double>& periods);
+                            const std::vector<double>& periods, double slow);
 
 }  // namespace jointid::identify

@@ -23,17 +23,15 @@ constexpr double kFew = 0.5;
 /// scores -> (1 - shares)^(-1/2) scores, by the binomial series; false where it takes long to
 /// converge.
 bool correct_by_series(const MatrixXd& shares, VectorXd& scores) {
-  const double norm = shares.norm();
-  if (!(norm < kFew)) return false;
+  if (!(shares.norm() < kFew)) return false;
+  const double enough = 1e-17 * scores.norm();
   VectorXd term = scores;
   VectorXd next(term.size());
-  double left = 1.0;  // bound of a term
-  for (double k = 1.0; left > 1e-17; k += 1.0) {
+  for (double k = 1.0; term.norm() > enough; k += 1.0) {
     next.setZero();
     for (Index j = 0; j < next.size(); ++j) next += shares.col(j) * term[j];
     term = next * ((k - 0.5) / k);
     scores += term;
-    left *= norm;
   }
   return true;
 }

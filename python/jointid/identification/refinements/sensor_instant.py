@@ -156,14 +156,11 @@ def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Ar
         recording.sample_period if held[number] else 0.0
         for number, recording in enumerate(problem.recordings)
     ]
-    moved = penalty.link_motion(problem.in_core, problem.mask_standstill, periods)
-    duration, lasting, speed = moved[:, 3], moved[:, 5], moved[:, 6]
-    dry = np.sign(speed) * duration
-    slow = dry * np.exp(-np.abs(speed) / (0.1 * problem.peak_speed))
-    signals = [penalty.target, penalty.reading]
-    rows = np.column_stack([moved[:, :5], dry, duration * speed, slow, *signals])
+    slow = 0.1 * problem.peak_speed
+    moved = penalty.link_motion(problem.in_core, problem.mask_standstill, periods, slow)
+    rows, duration, lasting = moved[:, :-1], moved[:, 3], moved[:, -1]
     whole = np.abs(lasting - duration) < 1e-9 * lasting + 1e-12
-    return rows if whole.all() else rows[whole]
+    return rows if whole.all() else np.asfortranarray(rows[whole])
 
 
 def _rests_on_a_limit(recording: Recording) -> bool:
