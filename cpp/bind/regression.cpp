@@ -85,10 +85,12 @@ void bind_regression(py::module_& m) {
         for (const auto& each : cuts) {
           found.push_back(identify::cluster(rows, residual, whitening, each));
         }
-        return found;
+        return std::make_pair(std::move(found),
+                              identify::variances_of_rows(rows, residual, whitening));
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
-      "The sandwich of each clustering: segments are from one cut to the next.");
+      "The sandwich of each clustering, segments from one cut to the next, and White's variances: "
+      "each row a cluster.");
   using Series = Eigen::Ref<const Eigen::VectorXd>;
   m.def(
       "motion_cuts",
@@ -110,19 +112,6 @@ void bind_regression(py::module_& m) {
       py::arg("start"), py::arg("stop"), py::arg("travel"), py::arg("edges"), py::arg("length"),
       "First windows of the segments of motion, and the end of the last one; `edges` are the first "
       "windows of the recordings, and the end of the last one.");
-  m.def(
-      "variances_of_rows",
-      [](const Matrix& jacobian, const Eigen::VectorXd& residual,
-         const Eigen::MatrixXd& whitening) {
-        if (residual.size() != jacobian.rows() || whitening.cols() != jacobian.cols()) {
-          throw std::invalid_argument("residual and whitening must fit the Jacobian");
-        }
-        const py::gil_scoped_release nogil;
-        return identify::variances_of_rows(identify::whitened_rows(jacobian, whitening), residual,
-                                           whitening);
-      },
-      py::arg("jacobian"), py::arg("residual"), py::arg("whitening"),
-      "White's sandwich: each row a cluster.");
   using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
   py::class_<identify::Folds>(m, "Folds", "Cross-validated least squares on any of many columns.")
       .def(py::init([](const Rows& rows, const std::vector<std::int64_t>& edges) {

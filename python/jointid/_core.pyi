@@ -113,7 +113,6 @@ __all__: list[str] = [
     "timing_errors",
     "triangle",
     "usable_intervals",
-    "variances_of_rows",
     "window_duration",
     "window_integrals",
     "window_means",
@@ -480,9 +479,10 @@ class Penalty(PenaltyFunction):
         recordings: collections.abc.Sequence[Recording],
         mask_standstill: bool,
         periods: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+        slow: typing.SupportsFloat | typing.SupportsIndex,
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        How a rigid link moves in each window, shape (window_count, 7): how much faster it becomes; cosine and sine of the angle in its middle, times the integrated time; that time; how far the torque rises over the usable intervals, times the recording's period in `periods`; the time from first to last sample; the mean velocity.
+        How a rigid link moves in each window, shape (window_count, 11): how much faster it becomes; cosine and sine of the angle in its middle, times the integrated time; that time; how far the torque rises over the usable intervals, times the recording's period in `periods`; friction of one size, viscous, and fading with the speed over `slow`; the integrals of the torque and of the reading; the time from first to last sample.
         """
     def project_reading(
         self,
@@ -3564,9 +3564,9 @@ def clustered(
     cuts: collections.abc.Sequence[
         collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
     ],
-) -> list[Clustered]:
+) -> tuple[list[Clustered], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]:
     """
-    The sandwich of each clustering: segments are from one cut to the next.
+    The sandwich of each clustering, segments from one cut to the next, and White's variances: each row a cluster.
     """
 
 def covering_half_width(
@@ -3924,15 +3924,6 @@ def usable_intervals(
 ) -> numpy.typing.NDArray[numpy.uint8]:
     """
     One flag per sample interval: 1 where the joint moves and the recording has no gap.
-    """
-
-def variances_of_rows(
-    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    White's sandwich: each row a cluster.
     """
 
 def window_duration(

@@ -75,15 +75,17 @@ def statistics_of(
 ) -> ResidualStatistics:
     """Return statistics of the window residuals."""
     residual = table.residual
+    mean = residual / table.duration
+    power = inner(residual, residual)
     intervals = penalty.total_samples - len(problem.recordings)
     return ResidualStatistics(
         windows=penalty.window_count,
         window_duration=penalty.window_duration,
         noise_share=penalty.noise_share,
-        rms=float(np.sqrt(np.mean((residual / table.duration) ** 2))),
+        rms=math.sqrt(inner(mean, mean) / len(mean)),
         relative=relative_residual(table),
         r_squared=r_squared(table),
-        autocorrelation=inner(residual[1:], residual[:-1]) / max(inner(residual, residual), 1e-300),
+        autocorrelation=inner(residual[1:], residual[:-1]) / max(power, 1e-300),
         samples=penalty.total_samples,
         left_out=penalty.unusable_intervals / intervals,
         standing=penalty.standing_samples / penalty.total_samples,
