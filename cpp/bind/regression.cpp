@@ -97,8 +97,8 @@ void bind_regression(py::module_& m) {
       [](const Series& start, const Series& stop, const Series& travel,
          const std::vector<Eigen::Index>& edges, double length) {
         if (stop.size() != start.size() || travel.size() != start.size() || edges.empty() ||
-            !std::is_sorted(edges.begin(), edges.end(), std::less_equal<>()) ||
-            edges.front() < 0 || edges.back() > start.size() || !(length > 0.0)) {
+            !std::is_sorted(edges.begin(), edges.end(), std::less_equal<>()) || edges.front() < 0 ||
+            edges.back() > start.size() || !(length > 0.0)) {
           throw std::invalid_argument("edges must part the windows of the recordings");
         }
         const identify::MovingWindows windows{start, stop, travel};

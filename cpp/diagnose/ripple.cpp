@@ -42,8 +42,8 @@ struct Two {
 
 /// Adds residual times cosine and sine of `halves` multiples of the windows' angles: two sums a
 /// multiple, each in four parts. Each multiple follows from the two before it,
-/// cos (h + 1) a = 2 cos a cos h a - cos (h - 1) a. In explicit vectors, since compilers leave these
-/// lanes scalar.
+/// cos (h + 1) a = 2 cos a cos h a - cos (h - 1) a. In explicit vectors, since compilers leave
+/// these lanes scalar.
 JOINTID_CLONES void turn(const double* residual, const double* cosine, const double* sine,
                          std::size_t halves, double* sums) {
   using base::Four;

@@ -11,8 +11,8 @@ namespace jointid::identify {
 namespace {
 
 /// speed -> its product with the duration; beside it the frictions that do not grow with it.
-JOINTID_CLONES void frictions(double* speed, const double* duration, double slow,
-                              std::size_t count, double* dry, double* fading) {
+JOINTID_CLONES void frictions(double* speed, const double* duration, double slow, std::size_t count,
+                              double* dry, double* fading) {
   for (std::size_t i = 0; i < count; ++i) {
     const double v = speed[i];
     const double side = v > 0.0 ? duration[i] : (v < 0.0 ? -duration[i] : 0.0);

@@ -24,8 +24,8 @@ enum LinkMotion : Eigen::Index {
   kLinkMotion
 };
 
-/// Of a penalty with a gain. `periods`: a number for each of the recordings that the penalty was cut from, by which its
-/// torque's steps are multiplied.
+/// Of a penalty with a gain. `periods`: a number for each of the recordings that the penalty was
+/// cut from, by which its torque's steps are multiplied.
 Eigen::MatrixXd link_motion(const Penalty& penalty, const Penalty::Masked& recordings,
                             const std::vector<double>& periods, double slow);
 
