@@ -36,6 +36,24 @@ JOINTID_CLONES void subtract(const double* columns, std::size_t stride, const do
   }
 }
 
+/// A sum of columns, the first four of which are written instead of added to zeros.
+JOINTID_CLONES void combine(const double* columns, std::size_t stride, const double* c,
+                            std::size_t count, std::size_t rows, double* __restrict sum) {
+  const double* one = columns;
+  const double* two = one + stride;
+  const double* three = two + stride;
+  const double* four = three + stride;
+  const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3];
+  for (std::size_t i = 0; i < rows; ++i) {
+    sum[i] = (c0 * one[i] + c1 * two[i]) + (c2 * three[i] + c3 * four[i]);
+  }
+  for (std::size_t j = 4; j < count; ++j) {
+    const double* own = columns + j * stride;
+    const double coefficient = c[j];
+    for (std::size_t i = 0; i < rows; ++i) sum[i] += coefficient * own[i];
+  }
+}
+
 }  // namespace
 
 Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left,
@@ -62,8 +80,15 @@ Eigen::VectorXd products(const Eigen::Ref<const Eigen::MatrixXd>& left,
 
 Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
                        const Eigen::VectorXd& coefficients) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(columns.rows());
-  subtract_sum(columns, -coefficients, result);
+  if (columns.cols() < 4 || columns.cols() >= 8) {  // of eight and more, two times four go together
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(columns.rows());
+    subtract_sum(columns, -coefficients, result);
+    return result;
+  }
+  Eigen::VectorXd result(columns.rows());
+  combine(columns.data(), static_cast<std::size_t>(columns.outerStride()), coefficients.data(),
+          static_cast<std::size_t>(columns.cols()), static_cast<std::size_t>(columns.rows()),
+          result.data());
   return result;
 }
 

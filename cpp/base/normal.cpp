@@ -14,6 +14,7 @@ constexpr double kSeries = 2.0;  // below, the series about 0; beyond, Laplace's
 constexpr int kFraction = 160;   // its depth: 1e-16 at kSeries
 constexpr double kShifted = 16.0;  // asymptotic series hold to the last bit from here
 constexpr int kSteps = 60;
+constexpr double kNear = 1e-10;  // a step so small squares to nothing: Newton's last
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -83,7 +84,7 @@ double normal_quantile(double tail) {
     for (int step = 0; step < kSteps; ++step) {
       const double move = (centre - from_centre(x)) / normal_density(x);
       x += move;
-      if (std::fabs(move) <= 1e-16 * x) break;
+      if (std::fabs(move) <= kNear * x) break;
     }
     return x;
   }
@@ -94,7 +95,7 @@ double normal_quantile(double tail) {
     if (beyond == 0.0) return x;
     const double move = (base::log(beyond) - target) * beyond / normal_density(x);
     x += move;
-    if (std::fabs(move) <= 4e-16 * x) break;
+    if (std::fabs(move) <= kNear * x) break;
   }
   return x;
 }
@@ -111,7 +112,7 @@ double covering_half_width(double probability, double offset) {
     const double slope = normal_density(width - distance) + normal_density(width + distance);
     const double move = beyond / slope;
     width += move;
-    if (!(std::fabs(move) > 4e-16 * width)) break;
+    if (!(std::fabs(move) > kNear * width)) break;
   }
   return width;
 }

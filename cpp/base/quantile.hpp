@@ -3,6 +3,7 @@
 // one pass counts what is below and keeps the few values near it.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,7 @@ namespace quantile_detail {
 constexpr std::size_t kSample = 1024;
 constexpr std::size_t kCopied = 4096;  // so few are copied and partitioned as they are
 constexpr double kMargin = 0.06;       // share of the sample either side of the wanted rank
+constexpr std::size_t kFew = 256;      // values looked at together
 constexpr std::size_t kBlock = 65536;  // values between two looks at the cancel flag
 
 /// The values of rank `rank` and the next one (the same if there is none) of a scratch vector.
@@ -58,30 +60,34 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
       if (value(begin + state % stride, one)) near.push_back(one);
     }
     if (near.size() >= kSample / 4) {
-      std::sort(near.begin(), near.end());
       const auto last = static_cast<double>(near.size() - 1);
-      const double low = near[static_cast<std::size_t>(std::max(0.0, q - kMargin) * last)];
-      const double high = near[static_cast<std::size_t>(std::min(1.0, q + kMargin) * last)];
+      const auto at_share = [&](double place) {
+        const auto it = near.begin() + static_cast<std::ptrdiff_t>(place * last);
+        std::nth_element(near.begin(), it, near.end());
+        return *it;
+      };
+      const double low = at_share(std::max(0.0, q - kMargin));
+      const double high = at_share(std::min(1.0, q + kMargin));
       std::size_t below = 0;
       std::size_t at_low = 0;
       std::size_t at_high = 0;
       near.clear();
-      for (std::size_t begin = 0; begin < count; begin += kBlock) {
-        if (cancel != nullptr) cancel->check();
-        const std::size_t end = std::min(count, begin + kBlock);
-        for (std::size_t i = begin; i < end; ++i) {
-          if (!value(i, one)) continue;
+      std::array<double, kFew> between_both;  // each value is written, few stay: without a branch
+      for (std::size_t begin = 0; begin < count;) {
+        if (cancel != nullptr && begin % kBlock == 0) cancel->check();
+        const std::size_t end = std::min(count, begin + kFew);
+        std::size_t found = 0;
+        for (; begin < end; ++begin) {
+          if (!value(begin, one)) continue;
+          between_both[found] = one;
+          found += (one > low) & (one < high) ? 1U : 0U;
           below += one < low ? 1U : 0U;
-          if (one < low || one > high) continue;
-          if (one == low) {
-            ++at_low;
-          } else if (one == high) {
-            ++at_high;
-          } else {
-            near.push_back(one);
-          }
+          at_low += one == low ? 1U : 0U;
+          at_high += one == high ? 1U : 0U;
         }
+        near.insert(near.end(), between_both.data(), between_both.data() + found);
       }
+      if (low == high) at_high = 0;  // they are counted already
       const std::size_t reached = below + at_low + near.size() + at_high;
       if (rank >= below && rank + 1 < reached) {
         const std::size_t ends = below + at_low;  // values up to `low`

@@ -14,6 +14,16 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
+/// Adds 1 where a size is 0.
+[[gnu::always_inline]] inline void add_zeros(Four& count, const Four& size) {
+#if defined(__GNUC__)
+  const Four one = Four{} + 1.0;
+  count = count + (size > 0.0 ? Four{} : one);
+#else
+  for (std::size_t l = 0; l < kFour; ++l) count[l] += size[l] > 0.0 ? 0.0 : 1.0;
+#endif
+}
+
 /// Sizes of samples, or of the steps to the samples `ahead`.
 [[gnu::always_inline]] inline Least least(const double* x, std::size_t count, std::size_t ahead) {
   Four any;
@@ -71,6 +81,43 @@ JOINTID_CLONES Least least_sizes(const double* x, std::size_t count) {
 
 JOINTID_CLONES Least least_steps(const double* x, std::size_t steps) {
   return least(x, steps, 1);
+}
+
+JOINTID_CLONES Survey survey(const double* x, std::size_t steps) {
+  Four low;
+  Four high;
+  Four positive;
+  fill(low, x[steps]);
+  fill(high, x[steps]);
+  fill(positive, kNone);
+  Four same;  // counted in doubles, which is exact
+  fill(same, 0.0);
+  std::size_t i = 0;
+  for (; i + kFour <= steps; i += kFour) {
+    Four here;
+    Four size;
+    load(here, x + i);
+    load(size, x + i + 1);
+    lower(low, here);
+    raise(high, here);
+    subtract(size, here);
+    take_size(size);
+    add_zeros(same, size);
+    leave_out_zeros(size);
+    lower(positive, size);
+  }
+  Survey found{{least_of(low), most_of(high)}, least_of(positive), 0};
+  auto changes = static_cast<std::int64_t>(i) - static_cast<std::int64_t>(sum_of(same));
+  for (; i < steps; ++i) {
+    found.range.low = std::min(found.range.low, x[i]);
+    found.range.high = std::max(found.range.high, x[i]);
+    const double size = std::fabs(x[i + 1] - x[i]);
+    if (!(size > 0.0)) continue;
+    found.smallest = std::min(found.smallest, size);
+    ++changes;
+  }
+  found.changes = changes;
+  return found;
 }
 
 JOINTID_CLONES double largest_rate(const double* time, const double* x, std::size_t width,

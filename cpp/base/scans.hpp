@@ -3,6 +3,7 @@
 // recording ask for first. Any order of the samples gives the same bits.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace jointid::base {
 
@@ -21,6 +22,15 @@ struct Least {
 Least least_sizes(const double* x, std::size_t count);
 /// The smallest sizes of `steps` steps from one sample to the next.
 Least least_steps(const double* x, std::size_t steps);
+
+/// What a signal's samples and the steps between them are like.
+struct Survey {
+  Range range;
+  double smallest;       ///< of the steps that are not 0; infinite without one
+  std::int64_t changes;  ///< steps that are not 0
+};
+/// Of `steps` + 1 samples.
+Survey survey(const double* x, std::size_t steps);
 
 /// Samples `width` apart from their neighbours on both sides, on the same side of both: the largest
 /// distance from the nearer one, at `places` places; 0 without one.

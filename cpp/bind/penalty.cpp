@@ -5,6 +5,7 @@
 #include "bind/recording.hpp"
 #include "diagnose/ripple.hpp"
 #include "identify/compressed/compressed_penalty.hpp"
+#include "identify/penalty/link_motion.hpp"
 #include "identify/solve/refit.hpp"
 #include "identify/solve/window_shifts.hpp"
 
@@ -211,6 +212,24 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("recordings"), py::arg("mask_standstill"),
           "How far the torque rises over each window's usable intervals.")
+      .def(
+          "link_motion",
+          [](const Penalty& p, const Recordings& recordings, bool mask_standstill,
+             const std::vector<double>& periods, double slow) {
+            if (p.gain_index() < 0) throw std::invalid_argument("there is no reading");
+            if (periods.size() != recordings.size()) {
+              throw std::invalid_argument("periods must have a number for each recording");
+            }
+            const py::gil_scoped_release nogil;
+            return identify::link_motion(p, all_masked(recordings, mask_standstill, nullptr),
+                                         periods, slow);
+          },
+          py::arg("recordings"), py::arg("mask_standstill"), py::arg("periods"), py::arg("slow"),
+          "How a rigid link moves in each window, shape (window_count, 11): how much faster it "
+          "becomes; cosine and sine of the angle in its middle, times the integrated time; that "
+          "time; how far the torque rises over the usable intervals, times the recording's period "
+          "in `periods`; friction of one size, viscous, and fading with the speed over `slow`; "
+          "the integrals of the torque and of the reading; the time from first to last sample.")
       .def(
           "bending",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "bind/recording.hpp"
 #include "identify/solve/clustered.hpp"
 #include "identify/solve/folds.hpp"
+#include "identify/solve/motion_cuts.hpp"
 #include "search/least_squares.hpp"
 
 namespace jointid::bind {
@@ -83,23 +85,33 @@ void bind_regression(py::module_& m) {
         for (const auto& each : cuts) {
           found.push_back(identify::cluster(rows, residual, whitening, each));
         }
-        return found;
+        return std::make_pair(std::move(found),
+                              identify::variances_of_rows(rows, residual, whitening));
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
-      "The sandwich of each clustering: segments are from one cut to the next.");
+      "The sandwich of each clustering, segments from one cut to the next, and White's variances: "
+      "each row a cluster.");
+  using Series = Eigen::Ref<const Eigen::VectorXd>;
   m.def(
-      "variances_of_rows",
-      [](const Matrix& jacobian, const Eigen::VectorXd& residual,
-         const Eigen::MatrixXd& whitening) {
-        if (residual.size() != jacobian.rows() || whitening.cols() != jacobian.cols()) {
-          throw std::invalid_argument("residual and whitening must fit the Jacobian");
+      "motion_cuts",
+      [](const Series& start, const Series& stop, const Series& travel,
+         const std::vector<Eigen::Index>& edges, double length) {
+        if (stop.size() != start.size() || travel.size() != start.size() || edges.empty() ||
+            !std::is_sorted(edges.begin(), edges.end(), std::less_equal<>()) || edges.front() < 0 ||
+            edges.back() > start.size() || !(length > 0.0)) {
+          throw std::invalid_argument("edges must part the windows of the recordings");
         }
-        const py::gil_scoped_release nogil;
-        return identify::variances_of_rows(identify::whitened_rows(jacobian, whitening), residual,
-                                           whitening);
+        const identify::MovingWindows windows{start, stop, travel};
+        std::vector<std::int64_t> cuts{edges.front()};
+        for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+          const auto own = identify::motion_cuts(windows, edges[i], edges[i + 1], length);
+          cuts.insert(cuts.end(), own.begin(), own.end());
+        }
+        return cuts;
       },
-      py::arg("jacobian"), py::arg("residual"), py::arg("whitening"),
-      "White's sandwich: each row a cluster.");
+      py::arg("start"), py::arg("stop"), py::arg("travel"), py::arg("edges"), py::arg("length"),
+      "First windows of the segments of motion, and the end of the last one; `edges` are the first "
+      "windows of the recordings, and the end of the last one.");
   using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
   py::class_<identify::Folds>(m, "Folds", "Cross-validated least squares on any of many columns.")
       .def(py::init([](const Rows& rows, const std::vector<std::int64_t>& edges) {

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -14,11 +15,16 @@ namespace {
 constexpr Eigen::Index kLength = 8;  // samples a block
 constexpr std::size_t kFewest = 20;  // blocks
 constexpr double kTrim = 9.0;        // medians of what is missed
+constexpr std::size_t kLanes = 8;
 
-struct Row {
-  double path;
-  double change;
-  double moved;
+/// Blocks, a column a quantity.
+struct Blocks {
+  std::vector<double> path;    ///< by the velocity
+  std::vector<double> change;  ///< of the velocity
+  std::vector<double> moved;   ///< by the position
+  std::vector<double> kept;    ///< 1 or 0
+  Eigen::VectorXd missed;      ///< sizes
+  [[nodiscard]] std::size_t count() const { return path.size(); }
 };
 
 /// Of a velocity over a block, by the trapezoid rule.
@@ -48,9 +54,6 @@ struct Fit {
   double cross = 0.0;  ///< of the second along it
   double own = 0.0;    ///< norm of what is left of the second
 
-  [[nodiscard]] double miss(const Row& row) const {
-    return row.moved - (scale * row.path + lag * row.change);
-  }
   /// Smaller singular value over the larger one.
   [[nodiscard]] double condition() const {
     const double sum = path * path + cross * cross + own * own;
@@ -61,28 +64,40 @@ struct Fit {
   }
 };
 
-Fit fit(const std::vector<Row>& rows, const std::vector<char>& kept) {
-  double square = 0.0;
-  double product = 0.0;
-  double along = 0.0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (kept[i] == 0) continue;
-    square += rows[i].path * rows[i].path;
-    product += rows[i].path * rows[i].change;
-    along += rows[i].path * rows[i].moved;
+/// Sum of products of three series, in eight parts.
+JOINTID_CLONES double sum_of(const double* weight, const double* one, const double* other,
+                             std::size_t count) {
+  std::array<double, kLanes> sum{};
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) sum[l] += weight[i + l] * one[i + l] * other[i + l];
   }
+  for (std::size_t l = 0; i + l < count; ++l) sum[l] += weight[i + l] * one[i + l] * other[i + l];
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+/// What is left of a series beside a multiple of another one.
+JOINTID_CLONES void subtract(const double* series, double factor, const double* other,
+                             std::size_t count, double* left) {
+  for (std::size_t i = 0; i < count; ++i) left[i] = series[i] - factor * other[i];
+}
+
+Fit fit(const Blocks& blocks) {
+  const std::size_t count = blocks.count();
+  const double* weight = blocks.kept.data();
+  const double* path = blocks.path.data();
+  const double square = sum_of(weight, path, path, count);
+  const double product = sum_of(weight, path, blocks.change.data(), count);
+  const double along = sum_of(weight, path, blocks.moved.data(), count);
   const double slope = square > 0.0 ? product / square : 0.0;
   const double first = square > 0.0 ? along / square : 0.0;
-  double own = 0.0;
-  double rest = 0.0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (kept[i] == 0) continue;
-    const double left = rows[i].change - slope * rows[i].path;
-    own += left * left;
-    rest += left * (rows[i].moved - first * rows[i].path);
-  }
+  Eigen::VectorXd left(static_cast<Eigen::Index>(count));
+  Eigen::VectorXd rest(static_cast<Eigen::Index>(count));
+  subtract(blocks.change.data(), slope, path, count, left.data());
+  subtract(blocks.moved.data(), first, path, count, rest.data());
+  const double own = sum_of(weight, left.data(), left.data(), count);
   Fit result;
-  result.lag = own > 0.0 ? rest / own : 0.0;
+  result.lag = own > 0.0 ? sum_of(weight, left.data(), rest.data(), count) / own : 0.0;
   result.scale = first - slope * result.lag;
   result.path = std::sqrt(square);
   result.cross = slope * result.path;
@@ -90,50 +105,86 @@ Fit fit(const std::vector<Row>& rows, const std::vector<char>& kept) {
   return result;
 }
 
-}  // namespace
+/// What a fit leaves of each block's motion.
+JOINTID_CLONES void take_misses(const double* path, const double* change, const double* moved,
+                                double scale, double lag, std::size_t count, double* missed) {
+  for (std::size_t i = 0; i < count; ++i) {
+    missed[i] = std::fabs(moved[i] - (scale * path[i] + lag * change[i]));
+  }
+}
 
-std::optional<Agreement> velocity_agreement(const Signal& time, const Signal& position,
-                                            const Signal& velocity, double period,
-                                            const base::Cancel* cancel) {
-  std::vector<Row> rows;
-  rows.reserve(static_cast<std::size_t>(time.size() / kLength + 1));
+/// Keeps what misses by no more than the limit: how many these are, and how many others than
+/// before. Counted in doubles, which is exact.
+struct Trimmed {
+  double kept;
+  double changed;
+};
+JOINTID_CLONES Trimmed trim(const double* missed, double limit, std::size_t count, double* kept) {
+  double all = 0.0;
+  double changed = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double within = missed[i] <= limit ? 1.0 : 0.0;
+    changed += within == kept[i] ? 0.0 : 1.0;
+    kept[i] = within;
+    all += within;
+  }
+  return {all, changed};
+}
+
+double usual_miss(const Blocks& blocks, std::size_t kept, const base::Cancel* cancel) {
+  return base::quantile(
+      blocks.count(), kept, 0.5,
+      [&](std::size_t i, double& size) {
+        size = blocks.missed.data()[i];
+        return blocks.kept[i] != 0.0;
+      },
+      cancel);
+}
+
+Blocks blocks_of(const Signal& time, const Signal& position, const Signal& velocity, double period,
+                 const base::Cancel* cancel) {
+  Blocks blocks;
+  const auto most = static_cast<std::size_t>(time.size() / kLength + 1);
+  for (auto* column : {&blocks.path, &blocks.change, &blocks.moved}) column->reserve(most);
   const double usual = 1.5 * static_cast<double>(kLength) * period;
   for (Eigen::Index first = 0; first + kLength < time.size(); first += kLength) {
     if (cancel != nullptr && first % 65536 == 0) cancel->check();
     const Eigen::Index last = first + kLength;
     if (!(time[last] - time[first] < usual)) continue;
-    const double path = path_of(time.data() + first, velocity.data() + first);
-    rows.push_back({path, velocity[last] - velocity[first], position[last] - position[first]});
+    blocks.path.push_back(path_of(time.data() + first, velocity.data() + first));
+    blocks.change.push_back(velocity[last] - velocity[first]);
+    blocks.moved.push_back(position[last] - position[first]);
   }
-  if (rows.size() < kFewest) return std::nullopt;
-  std::vector<char> kept(rows.size(), 1);
-  std::size_t count = rows.size();
-  Fit found;
+  blocks.kept.assign(blocks.count(), 1.0);
+  blocks.missed.resize(static_cast<Eigen::Index>(blocks.count()));
+  return blocks;
+}
+
+}  // namespace
+
+std::optional<Agreement> velocity_agreement(const Signal& time, const Signal& position,
+                                            const Signal& velocity, double period,
+                                            const base::Cancel* cancel) {
+  Blocks blocks = blocks_of(time, position, velocity, period, cancel);
+  if (blocks.count() < kFewest) return std::nullopt;
+  std::size_t count = blocks.count();
+  Fit found = fit(blocks);
   double left = 0.0;
   for (int round = 0; round < 3; ++round) {  // a spike or a jump must not look like a lag
-    found = fit(rows, kept);
-    const double median = base::quantile(
-        rows.size(), count, 0.5,
-        [&](std::size_t i, double& size) {
-          size = std::fabs(found.miss(rows[i]));
-          return kept[i] != 0;
-        },
-        cancel);
-    const double limit = kTrim * median + 1e-300;
-    count = 0;
-    left = 0.0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double miss = found.miss(rows[i]);
-      kept[i] = std::fabs(miss) <= limit ? 1 : 0;
-      count += kept[i] != 0 ? 1 : 0;
-      left += kept[i] != 0 ? miss * miss : 0.0;
-    }
+    take_misses(blocks.path.data(), blocks.change.data(), blocks.moved.data(), found.scale,
+                found.lag, blocks.count(), blocks.missed.data());
+    const double limit = kTrim * usual_miss(blocks, count, cancel) + 1e-300;
+    const auto [kept, changed] =
+        trim(blocks.missed.data(), limit, blocks.count(), blocks.kept.data());
+    count = static_cast<std::size_t>(kept);
+    left = sum_of(blocks.kept.data(), blocks.missed.data(), blocks.missed.data(), blocks.count());
+    if (changed == 0.0) break;  // what follows is the same again
+    found = fit(blocks);
   }
-  const Fit last = fit(rows, kept);
   const double precision = static_cast<double>(count) * std::numeric_limits<double>::epsilon();
-  if (count < kFewest || last.condition() <= precision) return std::nullopt;
+  if (count < kFewest || found.condition() <= precision) return std::nullopt;
   const double variance = left / static_cast<double>(count - 2);
-  return Agreement{found.scale, found.lag, std::sqrt(variance) / last.own};
+  return Agreement{found.scale, found.lag, std::sqrt(variance) / found.own};
 }
 
 }  // namespace jointid::diagnose

@@ -21,70 +21,89 @@ constexpr std::size_t kLanes = 2 * base::kFour;  // windows side by side
 /// Of the windows of one part that are looked at.
 struct Looked {
   std::size_t windows = 0;
-  double sum = 0.0;            ///< of the means
-  std::vector<double> mean;    ///< of the residual; the last lanes are filled up
-  std::vector<double> cosine;  ///< of half the motor's angle, 0 in what fills the lanes
-  std::vector<double> sine;
+  double sum = 0.0;        ///< of the means
+  Eigen::VectorXd mean;    ///< of the residual; the last lanes are filled up
+  Eigen::VectorXd cosine;  ///< of half the motor's angle, 0 in what fills the lanes
+  Eigen::VectorXd sine;
 };
 
+/// A multiple, and the one before it.
+struct Two {
+  base::Four now;
+  base::Four before;
+};
+
+[[gnu::always_inline]] inline void advance(Two& two, const base::Four& factor) {
+  base::Four next = factor * two.now;
+  base::subtract(next, two.before);
+  two.before = two.now;
+  two.now = next;
+}
+
 /// Adds residual times cosine and sine of `halves` multiples of the windows' angles: two sums a
-/// multiple, each in four parts. In explicit vectors, since compilers leave these lanes scalar.
+/// multiple, each in four parts. Each multiple follows from the two before it,
+/// cos (h + 1) a = 2 cos a cos h a - cos (h - 1) a. In explicit vectors, since compilers leave
+/// these lanes scalar.
 JOINTID_CLONES void turn(const double* residual, const double* cosine, const double* sine,
                          std::size_t halves, double* sums) {
   using base::Four;
-  std::array<Four, 2> value;
-  std::array<Four, 2> first_real;
-  std::array<Four, 2> first_imaginary;
-  std::array<Four, 2> real;
-  std::array<Four, 2> imaginary;
+  std::array<Four, 2> twice;
+  std::array<Two, 2> real;
+  std::array<Two, 2> imaginary;
   for (std::size_t k = 0; k < 2; ++k) {
-    base::load(value[k], residual + k * base::kFour);
-    base::load(first_real[k], cosine + k * base::kFour);
-    base::load(first_imaginary[k], sine + k * base::kFour);
-    real[k] = first_real[k];
-    imaginary[k] = first_imaginary[k];
+    Four one;
+    base::load(one, cosine + k * base::kFour);
+    twice[k] = one + one;
+    base::load(real[k].before, residual + k * base::kFour);
+    real[k].now = real[k].before * one;
+    base::fill(imaginary[k].before, 0.0);
+    base::load(one, sine + k * base::kFour);
+    imaginary[k].now = real[k].before * one;
   }
   for (std::size_t h = 0; h < halves; ++h) {
     double* sum = sums + h * 2 * base::kFour;
-    base::add_to(sum, value[0] * real[0] + value[1] * real[1]);
-    base::add_to(sum + base::kFour, value[0] * imaginary[0] + value[1] * imaginary[1]);
+    base::add_to(sum, real[0].now + real[1].now);
+    base::add_to(sum + base::kFour, imaginary[0].now + imaginary[1].now);
     for (std::size_t k = 0; k < 2; ++k) {
-      const Four turned = real[k] * first_real[k] - imaginary[k] * first_imaginary[k];
-      imaginary[k] = real[k] * first_imaginary[k] + imaginary[k] * first_real[k];
-      real[k] = turned;
+      advance(real[k], twice[k]);
+      advance(imaginary[k], twice[k]);
     }
   }
 }
 
 Looked look_at(const identify::PenaltyParts& parts, std::size_t index, const Eigen::VectorXd& theta,
                double gear_ratio, int halves) {
-  const auto part = parts.part(index);
-  Eigen::VectorXd residual;
-  part.residuals(theta, residual, nullptr);
-  const double scale =
-      part.residual() == identify::Residual::sensor ? theta[part.gain_index()] : 1.0;
+  const auto part = parts.residuals(index, theta);
+  const std::size_t windows = part.windows.size();
+  const auto most = static_cast<Eigen::Index>(windows + kLanes);
   Looked looked;
-  std::vector<double> angles;
-  const std::size_t windows = part.windows().size();
-  looked.mean.reserve(windows + kLanes);
-  angles.reserve(windows);
-  for (std::size_t w = 0; w < windows; ++w) {
-    const auto row = static_cast<Eigen::Index>(w);
-    const auto& position = parts.recording(part.recording_of()[w]).position;
-    const double from = position[part.windows()[w].begin];
-    const double to = position[part.windows()[w].end];
-    if (!(std::fabs(to - from) * gear_ratio * 0.5 * halves < 4.0 * kPi)) continue;
-    const double mean = scale * residual[row] / part.usable_duration()[row];
-    looked.mean.push_back(mean);
-    angles.push_back(0.5 * gear_ratio * 0.5 * (from + to));
-    looked.sum += mean;
+  looked.mean.resize(most);
+  looked.cosine.resize(most);
+  looked.sine.resize(most);
+  Eigen::VectorXd angles(most);
+  const double turns = 4.0 * kPi / (gear_ratio * 0.5 * halves);
+  const double half = 0.25 * gear_ratio;
+  Eigen::Index kept = 0;
+  for (std::size_t w = 0; w < windows;) {
+    const int run = part.recording_of[w];
+    const double* position = parts.recording(run).position.data();
+    for (; w < windows && part.recording_of[w] == run; ++w) {  // each is written, most are kept
+      const auto row = static_cast<Eigen::Index>(w);
+      const double from = position[part.windows[w].begin];
+      const double to = position[part.windows[w].end];
+      const double mean = part.torque[row] / part.duration[row];
+      const bool slow = std::fabs(to - from) < turns;
+      looked.mean[kept] = mean;
+      angles[kept] = half * (from + to);
+      looked.sum += slow ? mean : 0.0;
+      kept += slow ? 1 : 0;
+    }
   }
-  looked.windows = looked.mean.size();
-  const std::size_t padded = (looked.windows + kLanes - 1) / kLanes * kLanes;
-  looked.mean.resize(padded, 0.0);
-  looked.cosine.resize(padded, 0.0);
-  looked.sine.resize(padded, 0.0);
+  looked.windows = static_cast<std::size_t>(kept);
   base::circle(angles.data(), looked.windows, looked.cosine.data(), looked.sine.data());
+  for (auto* each : {&looked.mean, &looked.cosine, &looked.sine}) {
+    each->segment(kept, kLanes).setZero();
+  }
   return looked;
 }
 
@@ -96,13 +115,12 @@ struct Sums {
 
 Sums sums_of(Looked& looked, double mean, int halves) {
   Sums sums;
-  for (std::size_t w = 0; w < looked.windows; ++w) {
-    looked.mean[w] -= mean;
-    sums.square += looked.mean[w] * looked.mean[w];
-  }
+  auto left = looked.mean.head(static_cast<Eigen::Index>(looked.windows));
+  left.array() -= mean;
+  sums.square = left.squaredNorm();
   const auto multiples = static_cast<std::size_t>(halves);
   std::vector<double> lanes(multiples * 2 * base::kFour, 0.0);
-  for (std::size_t w = 0; w < looked.mean.size(); w += kLanes) {
+  for (std::size_t w = 0; w < looked.windows; w += kLanes) {
     turn(looked.mean.data() + w, looked.cosine.data() + w, looked.sine.data() + w, multiples,
          lanes.data());
   }

@@ -1,9 +1,7 @@
 #include "diagnose/signal_facts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "base/clones.hpp"
 #include "base/quantile.hpp"
@@ -20,7 +18,6 @@ constexpr double kNear = 0.01;    // of the range
 constexpr double kFrozen = 0.1;   // [s]
 constexpr std::size_t kBlock = 65536;
 constexpr std::size_t kFew = 32;  // samples looked at together
-constexpr std::size_t kLanes = 8;
 
 void look(const base::Cancel* cancel) {
   if (cancel != nullptr) cancel->check();
@@ -43,17 +40,6 @@ bool is_fine(const Signal& signal, double smallest, std::int64_t changes, std::i
       },
       cancel);
   return median / smallest >= kFine;
-}
-
-/// Steps that are not zero.
-JOINTID_CLONES std::int64_t count_changes(const double* x, std::size_t steps) {
-  std::array<std::int64_t, kLanes> count{};
-  std::size_t k = 0;
-  for (; k + kLanes <= steps; k += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) count[l] += x[k + l + 1] != x[k + l] ? 1 : 0;
-  }
-  for (; k < steps; ++k) count[0] += x[k + 1] != x[k] ? 1 : 0;
-  return std::accumulate(count.begin(), count.end(), std::int64_t{0});
 }
 
 struct Rules {
@@ -83,7 +69,7 @@ JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
     const double slower = next < here ? next : here;
     const double near =
         x[i] - rules.lowest < rules.highest - x[i] ? x[i] - rules.lowest : rules.highest - x[i];
-    large += ((step > 0.0) & (step / rules.smallest >= kFine)) ? 1 : 0;
+    large += step / rules.smallest >= kFine ? 1 : 0;
     moving += slower > rules.fair ? 1 : 0;
     odd += ((step == 0.0) | (near <= rules.close)) ? 1 : 0;
   }
@@ -100,15 +86,15 @@ Extremes extremes(const Signal& signal) {
 SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double peak_speed,
                            double period, const base::Cancel* cancel) {
   SignalFacts facts;
-  facts.range = extremes(signal);
-  look(cancel);
   const Eigen::Index n = signal.size();
   const double* x = signal.data();
   const double* v = velocity.data();
   const auto steps = static_cast<std::size_t>(n - 1);
-  const auto least = base::least_steps(x, steps);
-  facts.smallest = least.positive;
-  facts.changes = least.any > 0.0 ? static_cast<std::int64_t>(steps) : count_changes(x, steps);
+  const auto survey = base::survey(x, steps);
+  look(cancel);
+  facts.range = {survey.range.low, survey.range.high};
+  facts.smallest = survey.smallest;
+  facts.changes = survey.changes;
   const auto [lowest, highest] = facts.range;
   const Rules rules{lowest, highest, kNear * (highest - lowest), facts.smallest,
                     kMoving * peak_speed};

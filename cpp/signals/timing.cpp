@@ -45,18 +45,18 @@ std::vector<Stretch> stretches(Eigen::Index intervals) {
 // Intervals looked at together, and their neighbours: those of the third differences' ends.
 constexpr std::size_t kBlock = 1024;
 
-/// Of the intervals about which an error of the time stamp shows.
+/// Of the intervals about which an error of the time stamp shows, and of their neighbours.
 struct Intervals {
   std::array<double, kBlock + 2> travelled;  ///< beside the speed times a wrong stamp
   std::array<double, kBlock + 2> speed;      ///< its size
   std::array<double, kBlock + 2> odd;        ///< 1 where the interval is no ordinary one
-  std::array<double, kBlock> rough;          ///< third differences, from the second interval on
-  std::array<double, kBlock> usual;          ///< the speed; NaN where one of three is odd
 };
 
-/// From `kReach` samples before the first interval on; `count` third differences.
+/// From `kReach` samples before the first interval on: `count` third differences, from the second
+/// interval on, and the speeds there; NaN where one of three intervals is odd.
 JOINTID_CLONES void look_at(const double* time, const double* position, double period,
-                            double stamped, std::size_t count, Intervals& result) {
+                            double stamped, std::size_t count, Intervals& result, double* rough,
+                            double* usual) {
   const double* t = time + kReach;
   const double* x = position + kReach;
   for (std::size_t i = 0; i < count + 2; ++i) {
@@ -68,15 +68,27 @@ JOINTID_CLONES void look_at(const double* time, const double* position, double p
   }
   for (std::size_t i = 0; i < count; ++i) {
     const double* here = result.travelled.data() + i + 1;
-    result.rough[i] = std::fabs((here[1] - here[0]) - (here[0] - here[-1]));
+    rough[i] = std::fabs((here[1] - here[0]) - (here[0] - here[-1]));
     const double odd = result.odd[i] + result.odd[i + 1] + result.odd[i + 2];
-    result.usual[i] = odd == 0.0 ? result.speed[i + 1] : std::numeric_limits<double>::quiet_NaN();
+    usual[i] = odd == 0.0 ? result.speed[i + 1] : std::numeric_limits<double>::quiet_NaN();
   }
 }
 
-JOINTID_CLONES void divide(const double* above, const double* below, std::size_t count,
-                           double* result) {
-  for (std::size_t i = 0; i < count; ++i) result[i] = above[i] / below[i];
+/// Of the intervals at a high speed.
+struct Fast {
+  std::int64_t count;
+  std::int64_t rough;  ///< whose third difference is beyond a limit
+};
+
+JOINTID_CLONES Fast count_fast(const double* rough, const double* usual, std::size_t count,
+                               double fast, double limit) {
+  std::int64_t all = 0;
+  std::int64_t beyond = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    all += usual[i] > fast ? 1 : 0;
+    beyond += ((usual[i] > fast) & (rough[i] > limit)) ? 1 : 0;
+  }
+  return {all, beyond};
 }
 
 double median(std::span<const double> values) {
@@ -112,45 +124,50 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
                                              static_cast<std::size_t>(part.end - first) - kWide));
   }
   Intervals seen;
-  // Of these only the first `quick`, or `still`, are written: not set to zero before.
-  Eigen::VectorXd fast;
-  Eigen::VectorXd slow;
-  Eigen::VectorXd speeds;
+  // Of these only as many are written as there are: not set to zero before.
+  Eigen::VectorXd rough;
+  Eigen::VectorXd usual;
+  Eigen::VectorXd chosen;
   std::size_t most = 0;
   for (const auto& part : parts) most += static_cast<std::size_t>(part.end - part.begin);
+  /// Values of the intervals that are wanted: each is written, few are kept, without a branch.
+  const auto choose = [&](std::size_t count, auto wanted, auto value) {
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      chosen.data()[found] = value(i);
+      found += wanted(i) ? 1 : 0;
+    }
+    return std::span<const double>(chosen.data(), found);
+  };
   const auto error_of = [&](double stamped) {
-    for (auto* values : {&fast, &slow, &speeds}) values->resize(static_cast<Eigen::Index>(most));
-    std::size_t quick = 0;
-    std::size_t still = 0;
+    for (auto* values : {&rough, &usual, &chosen}) values->resize(static_cast<Eigen::Index>(most));
+    std::size_t count = 0;
     for (const auto& part : parts) {
       // Third differences need one interval more on either side.
       const Eigen::Index last = part.end - kReach;
       for (Eigen::Index k = part.begin + kReach + 1; k < last;) {
         if (cancel != nullptr) cancel->check();
-        const auto count = std::min(kBlock, static_cast<std::size_t>(last - k));
+        const auto now = std::min(kBlock, static_cast<std::size_t>(last - k));
         look_at(time.data() + (k - 1 - kReach), position.data() + (k - 1 - kReach), period, stamped,
-                count, seen);
-        for (std::size_t i = 0; i < count; ++i) {  // without a branch: each is written, few kept
-          const double now = seen.usual[i];
-          fast.data()[quick] = seen.rough[i];
-          speeds.data()[quick] = now;
-          slow.data()[still] = seen.rough[i];
-          quick += now > kFast * peak ? 1 : 0;
-          still += now < kSlow * peak ? 1 : 0;
-        }
-        k += static_cast<Eigen::Index>(count);
+                now, seen, rough.data() + count, usual.data() + count);
+        count += now;
+        k += static_cast<Eigen::Index>(now);
       }
     }
-    if (quick < kFewest) return 0.0;
-    const std::span<const double> changes(fast.data(), quick);
-    const std::span<const double> rates(speeds.data(), quick);
-    Eigen::VectorXd of_time(static_cast<Eigen::Index>(quick));
-    divide(changes.data(), rates.data(), quick, of_time.data());
-    const double error = kNormal * median({of_time.data(), quick}) / std::sqrt(kThird);
-    // Two of four medians need only be held against a limit, which counting does.
-    if (!median_exceeds(rates, smallest / error)) return 0.0;
-    const double floor = still > kFewest ? median({slow.data(), still}) : 0.0;
-    return median_exceeds(changes, 3.0 * floor) ? error : 0.0;
+    const auto change = [&](std::size_t i) { return rough.data()[i]; };
+    const auto rate = [&](std::size_t i) { return usual.data()[i]; };
+    const auto is_slow = [&](std::size_t i) { return rate(i) < kSlow * peak; };
+    const auto is_fast = [&](std::size_t i) { return rate(i) > kFast * peak; };
+    const auto still = choose(count, is_slow, change);
+    const double limit = 3.0 * (still.size() > kFewest ? median(still) : 0.0);
+    // Where the changes are alike, nothing depends on the speed. Counting tells, mostly.
+    const auto fast = count_fast(rough.data(), usual.data(), count, kFast * peak, limit);
+    if (fast.count < static_cast<std::int64_t>(kFewest)) return 0.0;
+    if (fast.count - fast.rough > fast.count / 2) return 0.0;
+    if (!median_exceeds(choose(count, is_fast, change), limit)) return 0.0;
+    const auto late = [&](std::size_t i) { return change(i) / rate(i); };
+    const double error = kNormal * median(choose(count, is_fast, late)) / std::sqrt(kThird);
+    return median_exceeds(choose(count, is_fast, rate), smallest / error) ? error : 0.0;
   };
   const double stamped = error_of(1.0);
   return {stamped, stamped > 0.0 ? error_of(0.0) : 0.0};

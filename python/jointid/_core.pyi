@@ -52,7 +52,6 @@ __all__: list[str] = [
     "PositionNoise",
     "Projected",
     "Recording",
-    "RepeatedNoise",
     "Residual",
     "Scenario",
     "Sensors",
@@ -63,7 +62,7 @@ __all__: list[str] = [
     "SignalFacts",
     "SimulatedJoint",
     "SlidingPenalty",
-    "SmoothWindows",
+    "SmoothStretch",
     "Spike",
     "SpikeRule",
     "SteppedJoint",
@@ -76,14 +75,12 @@ __all__: list[str] = [
     "circle",
     "clustered",
     "covering_half_width",
-    "even_grid",
     "find_control_character",
     "fit_shift",
     "friction_basis",
-    "half_length",
+    "friction_means",
     "inspect",
     "is_parameter",
-    "leading_coefficient",
     "local_velocity",
     "minimise_genetic",
     "minimise_projected",
@@ -93,6 +90,8 @@ __all__: list[str] = [
     "model_names",
     "model_terms",
     "models",
+    "motion_cuts",
+    "noise_products",
     "non_negative_least_squares",
     "number_list",
     "number_table",
@@ -100,12 +99,13 @@ __all__: list[str] = [
     "polish",
     "position_noise",
     "refine_separable",
-    "repeated_noise",
     "roll_out_servos",
     "roughness",
     "shape",
     "shapes",
+    "shift_coefficients",
     "simulate_runs",
+    "smoothed",
     "solve_independent",
     "student_quantile",
     "term",
@@ -113,9 +113,9 @@ __all__: list[str] = [
     "timing_errors",
     "triangle",
     "usable_intervals",
-    "variances_of_rows",
     "window_duration",
     "window_integrals",
+    "window_means",
 ]
 
 class Control(enum.Enum):
@@ -473,6 +473,16 @@ class Penalty(PenaltyFunction):
     ]:
         """
         Penalty, window residuals with the reading itself, and the derivatives of the penalty's residuals, in one pass: what the sandwich of an estimate's covariance is made of.
+        """
+    def link_motion(
+        self,
+        recordings: collections.abc.Sequence[Recording],
+        mask_standstill: bool,
+        periods: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+        slow: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        How a rigid link moves in each window, shape (window_count, 11): how much faster it becomes; cosine and sine of the angle in its middle, times the integrated time; that time; how far the torque rises over the usable intervals, times the recording's period in `periods`; friction of one size, viscous, and fading with the speed over `slow`; the integrals of the torque and of the reading; the time from first to last sample.
         """
     def project_reading(
         self,
@@ -1245,51 +1255,20 @@ class LocalVelocity:
     @property
     def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
-class SmoothWindows:
+class SmoothStretch:
     """
-    Smooth windows over a stretch without a gap.
+    A signal and the smooth windows over it.
     """
     def __init__(
         self,
+        *,
         time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        usable: typing.Annotated[numpy.typing.ArrayLike, numpy.bool],
-        *,
-        derived: bool,
-        half: typing.SupportsInt | typing.SupportsIndex,
-        margin: typing.SupportsInt | typing.SupportsIndex,
-        clear: typing.SupportsInt | typing.SupportsIndex = 0,
-        usable_only: bool = True,
+        signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+        kept: typing.Annotated[numpy.typing.ArrayLike, numpy.bool],
+        stride: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def columns(
-        self,
-        cosine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        sine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        *,
-        varying: bool,
-        friction: bool,
-        own: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]] = [],
-        own_friction: collections.abc.Sequence[
-            typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
-        ] = [],
-        jumping: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None,
-        answer: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        What a torque or a reading may be a sum of; a row a window.
-        """
-    def rates(
-        self, signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Mean rate of a signal in each window.
-        """
-    @property
-    def used(self) -> numpy.typing.NDArray[numpy.int64]:
-        """
-        Middle samples of the windows that are used.
-        """
 
 class FittedShift:
     """
@@ -1300,34 +1279,14 @@ class FittedShift:
     @property
     def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
-    def leading(self) -> float | None:
-        """
-        The first column's coefficient without a shift; None where one was searched.
-        """
-    @property
     def unexplained(self) -> float: ...
     @property
+    def unshifted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Coefficients of the columns without a shift; empty where one was searched.
+        """
+    @property
     def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
-
-class RepeatedNoise:
-    """
-    Noise of a reading in the torque.
-    """
-    @property
-    def earlier(self) -> float:
-        """
-        By how many samples the torque has it earlier.
-        """
-    @property
-    def error(self) -> float:
-        """
-        Standard error, in samples.
-        """
-    @property
-    def share(self) -> float:
-        """
-        Correlation of both noises.
-        """
 
 class SpikeRule(enum.Enum):
     """
@@ -3605,9 +3564,9 @@ def clustered(
     cuts: collections.abc.Sequence[
         collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
     ],
-) -> list[Clustered]:
+) -> tuple[list[Clustered], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]:
     """
-    The sandwich of each clustering: segments are from one cut to the next.
+    The sandwich of each clustering, segments from one cut to the next, and White's variances: each row a cluster.
     """
 
 def covering_half_width(
@@ -3618,21 +3577,13 @@ def covering_half_width(
     Half the width of the symmetric interval that holds a normal variable of this mean and deviation 1.
     """
 
-def even_grid(
-    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
-    """
-    Even times from the first to the last, and how far off the times are [s].
-    """
-
 def find_control_character(content: bytes) -> int:
     """
     The place of the first byte that no text contains in any encoding; -1 without one.
     """
 
 def fit_shift(
-    windows: collections.abc.Sequence[SmoothWindows],
-    signals: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
+    stretches: collections.abc.Sequence[SmoothStretch],
     columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     *,
     conservative: typing.SupportsInt | typing.SupportsIndex,
@@ -3655,14 +3606,18 @@ def friction_basis(
     The friction term's basis at each velocity [rad/s or m/s] while the drive transmits a load [N·m or N]: what its coefficient multiplies.
     """
 
-def half_length(
-    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    period: typing.SupportsFloat | typing.SupportsIndex,
+def friction_means(
+    velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    smooth: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    cosine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    sine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     *,
-    position: bool,
-) -> int:
+    longest: typing.SupportsFloat | typing.SupportsIndex,
+    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
     """
-    Half the length of a window that averages the acceleration's noise.
+    Window means of friction as any smooth function of the speed.
     """
 
 def inspect(
@@ -3684,17 +3639,6 @@ def inspect(
 def is_parameter(name: str) -> bool:
     """
     Whether a parameter can have this name.
-    """
-
-def leading_coefficient(
-    windows: collections.abc.Sequence[SmoothWindows],
-    signals: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
-    columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    *,
-    held: bool,
-) -> float:
-    """
-    Of the first column, in least squares of the signals, not shifted, on the columns.
     """
 
 def local_velocity(
@@ -3785,6 +3729,29 @@ def models() -> list[Model]:
     All friction models.
     """
 
+def motion_cuts(
+    start: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    stop: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    travel: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    length: typing.SupportsFloat | typing.SupportsIndex,
+) -> list[int]:
+    """
+    First windows of the segments of motion, and the end of the last one; `edges` are the first windows of the recordings, and the end of the last one.
+    """
+
+def noise_products(
+    reading: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    torque: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    *,
+    blocks: typing.SupportsInt | typing.SupportsIndex,
+    longest: typing.SupportsInt | typing.SupportsIndex,
+    clipped: typing.SupportsFloat | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    Products of two signals' third differences, block by block.
+    """
+
 def non_negative_least_squares(
     matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     target: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3846,18 +3813,6 @@ def refine_separable(
     The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
     """
 
-def repeated_noise(
-    pairs: collections.abc.Sequence[
-        tuple[
-            typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-            typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        ]
-    ],
-) -> RepeatedNoise | None:
-    """
-    The noise of readings that the torque repeats, of pairs of both; None where it does not.
-    """
-
 def roll_out_servos(
     loops: collections.abc.Sequence[ServoLoop],
     logs: collections.abc.Sequence[
@@ -3889,6 +3844,16 @@ def shapes() -> list[Shape]:
     All shape parameters.
     """
 
+def shift_coefficients(
+    stretches: collections.abc.Sequence[SmoothStretch],
+    columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    held: bool,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Least squares of the signals, not shifted, on the columns.
+    """
+
 def simulate_runs(
     scenario: Scenario,
     trajectory: Trajectory,
@@ -3899,6 +3864,14 @@ def simulate_runs(
 ) -> list[Outcome]:
     """
     One Outcome a setup; InputError when a loop is not stable.
+    """
+
+def smoothed(
+    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Weighted sums around each sample.
     """
 
 def solve_independent(
@@ -3953,15 +3926,6 @@ def usable_intervals(
     One flag per sample interval: 1 where the joint moves and the recording has no gap.
     """
 
-def variances_of_rows(
-    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    White's sandwich: each row a cluster.
-    """
-
 def window_duration(
     recording: Recording,
     parameters: typing.SupportsInt | typing.SupportsIndex,
@@ -3980,6 +3944,15 @@ def window_integrals(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
     """
     Integrals over windows, one row a window, or how far the values rise there.
+    """
+
+def window_means(
+    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Weighted sums of a signal over windows.
     """
 
 __version__: str

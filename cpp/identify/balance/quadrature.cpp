@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/clones.hpp"
+#include "identify/balance/interval_residual.hpp"
 #include "identify/balance/window_runs.hpp"
 
 namespace jointid::identify {
@@ -86,6 +87,20 @@ JOINTID_CLONES void rectangles(const double* signal, const double* time, std::si
   for (std::size_t i = 0; i < count; ++i) values[i] = signal[i] * (time[i + 1] - time[i]);
 }
 
+JOINTID_CLONES void middles(const double* velocity, std::size_t count, double* middle) {
+  for (std::size_t i = 0; i < count; ++i) middle[i] = 0.5 * (velocity[i + 1] + velocity[i]);
+}
+
+/// By how much friction is above its straight line, by Simpson's rule; 0 over a reversal.
+JOINTID_CLONES void bends(const double* velocity, const double* time, const double* at,
+                          const double* between, std::size_t count, double* values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double bent = (2.0 * between[i] - at[i + 1] - at[i]) / 3.0;
+    const double lasting = time[i + 1] - time[i];
+    values[i] = velocity[i + 1] * velocity[i] > 0.0 ? bent * lasting : 0.0;
+  }
+}
+
 /// The change of a signal over each window's usable intervals.
 void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uint8_t>& usable,
                  std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
@@ -111,14 +126,6 @@ void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uin
     *change++ = sum;
     ++window;
   }
-}
-
-/// The series of that name.
-const RecordingView::Signal& own_series(const RecordingView& r, const std::string& name) {
-  for (const auto& own : r.own) {
-    if (own.name == name) return own.series;
-  }
-  throw std::invalid_argument("the term '" + name + "' needs a recording with its series");
 }
 
 /// The trapezoid rule for a function of the position.
@@ -169,6 +176,18 @@ void integrate_sign(const Term& term, const RecordingView& r,
 }
 
 }  // namespace
+
+const RecordingView::Signal& own_series(const RecordingView& r, const std::string& name) {
+  for (const auto& own : r.own) {
+    if (own.name == name) return own.series;
+  }
+  throw std::invalid_argument("the term '" + name + "' needs a recording with its series");
+}
+
+bool has_vanished(double rate, const double* velocity, std::size_t count) {
+  const double slowest = base::least_sizes(velocity, count).any;
+  return slowest * slowest > vanishing_at(rate);
+}
 
 void integrate(const Term& term, double gear_ratio, const RecordingView& r,
                const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
@@ -232,6 +251,15 @@ void integrate_torque(const RecordingView& r, const std::vector<std::uint8_t>& u
   });
 }
 
+void integrate_residual(const std::vector<KnownTerm>& terms, double gear_ratio,
+                        const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                        std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  static_assert(kBlock <= detail::kMostIntervals);
+  sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
+    detail::interval_residuals(terms, gear_ratio, r, k, count, values);
+  });
+}
+
 void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
   sum_changes(r.torque, usable, windows, result);
@@ -240,18 +268,25 @@ void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& u
 void integrate_bending(const Term& term, const Eigen::VectorXd& shapes, const RecordingView& r,
                        const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                        Eigen::Ref<Eigen::VectorXd> result) {
-  sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
+  const bool fades = term.basis == model::SpeedBasis::stribeck && !needs_load(term);
+  const auto part = [&](std::int64_t k, std::size_t count, double* values) {
     const auto intervals = static_cast<Eigen::Index>(count);
-    const Eigen::VectorXd velocity = r.velocity.segment(k, intervals + 1);
-    const auto before = velocity.head(intervals);
-    const auto after = velocity.tail(intervals);
-    const Eigen::VectorXd at = friction_basis(term, velocity, shapes);
-    const Eigen::VectorXd between = friction_basis(term, 0.5 * (after + before), shapes);
-    const auto bent =
-        (2.0 * between.array() - at.tail(intervals).array() - at.head(intervals).array()) / 3.0;
-    const auto lasting = (r.time.segment(k + 1, intervals) - r.time.segment(k, intervals)).array();
-    Eigen::Map<Eigen::ArrayXd>(values, intervals) =
-        (after.array() * before.array() > 0.0).select(bent * lasting, 0.0);
+    const double* velocity = r.velocity.data() + k;
+    if (fades && has_vanished(shapes[0], velocity, count + 1)) {
+      Eigen::Map<Eigen::ArrayXd>(values, intervals).setZero();
+      return;
+    }
+    const Eigen::VectorXd at = friction_basis(term, r.velocity.segment(k, intervals + 1), shapes);
+    Eigen::VectorXd between(intervals);
+    middles(velocity, count, between.data());
+    between = friction_basis(term, between, shapes);
+    bends(velocity, r.time.data() + k, at.data(), between.data(), count, values);
+  };
+  constexpr std::size_t kTogether = 64;  // intervals that may all be too fast for a decay
+  sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
+    for (std::size_t i = 0; i < count; i += kTogether) {
+      part(k + static_cast<std::int64_t>(i), std::min(kTogether, count - i), values + i);
+    }
   });
 }
 

@@ -24,6 +24,13 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& recordi
 void integrate_torque(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
+/// What an own term of that name integrates to from the first sample to each. Throws
+/// std::invalid_argument where the recording has none.
+const RecordingView::Signal& own_series(const RecordingView& recording, const std::string& name);
+
+/// Whether exp(-rate v^2) is nothing at all of some samples, at least one.
+bool has_vanished(double rate, const double* velocity, std::size_t count);
+
 /// How far the torque rises over each window's usable intervals.
 void sum_torque_steps(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,15 @@ class PenaltyParts {
   }
   /// The penalty over the windows of one part.
   [[nodiscard]] Penalty part(std::size_t index) const;
+  /// Some windows, and the torque's residual over each at one parameter vector.
+  struct Residuals {
+    std::span<const Window> windows;
+    std::span<const int> recording_of;
+    Eigen::VectorXd torque;
+    Eigen::VectorXd duration;  ///< usable [s]
+  };
+  /// Of the windows of one part. Its columns are made only where the balance needs them.
+  [[nodiscard]] Residuals residuals(std::size_t index, const Eigen::VectorXd& theta) const;
   /// The first stage over all windows, where the residual is that of instruments: for
   /// `part(i).project_reading`. `free` are the parameters that vary.
   /// Parts that a caller has made already are not made again.

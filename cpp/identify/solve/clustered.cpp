@@ -16,6 +16,25 @@ using Eigen::VectorXd;
 
 // What is left of a direction's freedom outside a segment that determines it all.
 constexpr double kLeast = 0.05;
+// Norm of a segment's shares up to which the series of its correction takes fewer operations than
+// eigenvalues.
+constexpr double kFew = 0.5;
+
+/// scores -> (1 - shares)^(-1/2) scores, by the binomial series; false where it takes long to
+/// converge.
+bool correct_by_series(const MatrixXd& shares, VectorXd& scores) {
+  if (!(shares.norm() < kFew)) return false;
+  const double enough = 1e-17 * scores.norm();
+  VectorXd term = scores;
+  VectorXd next(term.size());
+  for (double k = 1.0; term.norm() > enough; k += 1.0) {
+    next.setZero();
+    for (Index j = 0; j < next.size(); ++j) next += shares.col(j) * term[j];
+    term = next * ((k - 0.5) / k);
+    scores += term;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -51,10 +70,12 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
     const auto mine = rows.middleRows(first, length);
     shares = base::symmetric_products(mine, mine);
     scores = base::products(mine, residual.segment(first, length));
-    solver.compute(shares);
-    corrected.noalias() = solver.eigenvectors().transpose() * scores;
-    corrected.array() /= (1.0 - solver.eigenvalues().array()).max(kLeast).sqrt();
-    scores.noalias() = solver.eigenvectors() * corrected;
+    if (!correct_by_series(shares, scores)) {
+      solver.compute(shares);
+      corrected.noalias() = solver.eigenvectors().transpose() * scores;
+      corrected.array() /= (1.0 - solver.eigenvalues().array()).max(kLeast).sqrt();
+      scores.noalias() = solver.eigenvectors() * corrected;
+    }
     effect.noalias() = whitening.transpose() * scores;
     result.covariance.noalias() += effect * effect.transpose();
     result.size += scores.squaredNorm();

@@ -106,7 +106,7 @@ def infer(
     motion = Motion.of(problem, penalty) if apart else Motion.of_table(table)
     segments = motion_segments(motion)
     # One decomposition serves the covariance and all that may be lacking.
-    lacking = lacking_torques(problem, penalty, best, columns) if kept else {}
+    lacking = lacking_torques(problem, penalty, best) if kept else {}
     triangle = Triangle(np.column_stack([free_jacobian, *lacking.values()]), threads)
     own = triangle.matrix[: len(kept), : len(kept)]
     spread = parameter_covariance(

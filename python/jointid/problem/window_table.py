@@ -76,11 +76,13 @@ def r_squared(table: WindowTable) -> float:
 
     Means are compared, because integrals of a constant signal vary with the windows' unequal durations.
     """
-    mean = table.measured / table.duration
-    level = float(np.average(mean, weights=table.duration))
-    total = float(np.sum(table.duration * (mean - level) ** 2))
-    left = float(np.sum(table.residual**2 / table.duration))
-    return 1.0 - left / total if total > 1e-18 * level**2 * float(table.duration.sum()) else 0.0
+    time = float(table.duration.sum())
+    level = float(table.measured.sum()) / time
+    away = table.measured / table.duration - level
+    residual = table.residual
+    total = float((table.duration * away * away).sum())
+    left = float((residual * residual / table.duration).sum())
+    return 1.0 - left / total if total > 1e-18 * level**2 * time else 0.0
 
 
 def relative_residual(table: WindowTable) -> float:

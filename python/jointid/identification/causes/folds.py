@@ -28,8 +28,8 @@ def summed(values: Array, run: NDArray[np.int64], factor: int) -> tuple[Array, N
 
 def first_windows(run: NDArray[np.int64], factor: int) -> NDArray[np.int64]:
     """Return the first of every `factor` neighbouring windows of one recording."""
-    if factor == 1:
-        return np.arange(len(run))
+    if factor == 1 or run[0] == run[-1]:
+        return np.arange(0, len(run), factor)
     edges = np.searchsorted(run, [*distinct(run), run[-1] + 1])
     return np.concatenate([np.arange(low, high, factor) for low, high in itertools.pairwise(edges)])
 

@@ -62,7 +62,9 @@ def slow_misfit(residual: Array, duration: Array, velocity: Array) -> float:
     """Mean squared misfit of the slowest windows over that of the others."""
     if len(residual) < 5 * _FEWEST:
         return 1.0
-    slow = np.abs(velocity) < quantile(np.abs(velocity), _SLOW)
-    power = residual**2 / duration
-    others = float(power[~slow].mean())
-    return float(power[slow].mean()) / others if slow.any() and others > 0.0 else 1.0
+    speed = np.abs(velocity)
+    slow = speed < quantile(speed, _SLOW)
+    count = int(np.count_nonzero(slow))
+    power = residual * residual / duration
+    others = float(power[~slow].sum()) / (len(power) - count)
+    return float(power[slow].sum()) / count / others if count and others > 0.0 else 1.0

@@ -74,7 +74,7 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     )
     if directions == 0 or variance <= 0.0:
         return known
-    clusterings = _core.clustered(
+    clusterings, of_rows = _core.clustered(
         jacobian, residual, whitening, [cuts.tolist() for cuts in segments.cuts]
     )
     count = min(each.segments for each in clusterings)
@@ -83,7 +83,7 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     pooled = float(np.mean([each.size for each in clusterings])) / (directions * variance)
     pooled_freedom = float(np.mean([each.pooled_freedom for each in clusterings]))
     if not _contradicted(residual, pooled, pooled_freedom):
-        alone = np.asarray(_core.variances_of_rows(jacobian, residual, whitening)) * rows / freedom
+        alone = np.asarray(of_rows) * rows / freedom
         return Stretch(
             ratio=np.maximum(alone / classical, 1.0),
             freedom=np.full(unit.size, float(freedom)),

@@ -8,6 +8,7 @@ from jointid.base.values import dataclass
 from jointid.identification.inference.clustered import stretch_of
 from jointid.identification.inference.segments import Segments, even_segments
 from jointid.problem.inner_products import inner
+from jointid.problem.least_squares import solve
 
 Array = NDArray[np.float64]
 
@@ -65,14 +66,7 @@ class Triangle:
 
     def solve(self, columns: list[int], target: int, rcond: float) -> tuple[Array, float]:
         """Return the least-squares coefficients of some columns for another one, and the norm of the residual."""
-        solved = _core.solve_independent(self.matrix, columns, target)
-        if solved is not None:
-            return np.asarray(solved[0]), solved[1]
-        regressors, wanted = self.matrix[:, columns], self.matrix[:, target]
-        norms = np.linalg.norm(regressors, axis=0)
-        scale = np.where(norms > 0.0, norms, 1.0)
-        found = np.linalg.lstsq(regressors / scale, wanted, rcond=rcond)[0] / scale
-        return found, float(np.linalg.norm(wanted - regressors @ found))
+        return solve(self.matrix, columns, target, rcond)
 
 
 def parameter_covariance(

@@ -75,15 +75,17 @@ def statistics_of(
 ) -> ResidualStatistics:
     """Return statistics of the window residuals."""
     residual = table.residual
+    mean = residual / table.duration
+    power = inner(residual, residual)
     intervals = penalty.total_samples - len(problem.recordings)
     return ResidualStatistics(
         windows=penalty.window_count,
         window_duration=penalty.window_duration,
         noise_share=penalty.noise_share,
-        rms=float(np.sqrt(np.mean((residual / table.duration) ** 2))),
+        rms=math.sqrt(inner(mean, mean) / len(mean)),
         relative=relative_residual(table),
         r_squared=r_squared(table),
-        autocorrelation=inner(residual[1:], residual[:-1]) / max(inner(residual, residual), 1e-300),
+        autocorrelation=inner(residual[1:], residual[:-1]) / max(power, 1e-300),
         samples=penalty.total_samples,
         left_out=penalty.unusable_intervals / intervals,
         standing=penalty.standing_samples / penalty.total_samples,
@@ -125,7 +127,11 @@ def parameters_of(
         Systematic errors of every parameter, by the name of their cause.
     """
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
-    factors = {i: quantile(0.975, f) for i, f in zip(freedom.indices, spread.freedom, strict=True)}
+    # Most have the same freedom: all of them, where the residuals are white.
+    known = {f: quantile(0.975, f) for f in set(spread.freedom.tolist())}
+    factors = dict(
+        zip(freedom.indices, map(known.__getitem__, spread.freedom.tolist()), strict=True)
+    )
     prismatic = problem.recordings[0].kind == "prismatic"
     own = problem.choice.model.resolved.terms
     result = {}

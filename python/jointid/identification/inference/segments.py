@@ -7,8 +7,6 @@ reversals is nearly so. The rule is fixed in advance, and knows nothing of the r
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -95,12 +93,8 @@ class Motion:
 def motion_segments(motion: Motion) -> Segments:
     """Return the segments of a motion: between reversals, merged or divided to a usual length."""
     length = motion.segment_length
-    cuts = [0]
-    for number in distinct(motion.recording):
-        first, last = np.searchsorted(motion.recording, (number, number + 1))
-        mine = slice(first, last)
-        ends = _cut(motion.start[mine], motion.stop[mine], motion.travel[mine], length)
-        cuts += [int(first) + each for each in ends]
+    edges = first_windows_of(motion.recording)
+    cuts = _core.motion_cuts(motion.start, motion.stop, motion.travel, edges, length)
     whole = np.array(cuts)
     return Segments(length=length, cuts=(whole, _between(whole)))
 
@@ -117,28 +111,12 @@ def usual_length(motion: float) -> float:
     return min(max(motion / _PARTS, _SHORTEST), max(_LONGEST, motion / _MOST))
 
 
-def _cut(start: Array, stop: Array, travel: Array, length: float) -> Iterator[int]:
-    """Ends of one recording's segments, counted in its windows."""
-    reversals = [0]
-    for i in _turns(travel):
-        if start[i] - start[reversals[-1]] >= 0.5 * length:
-            reversals.append(i)
-    if len(reversals) > 1 and stop[-1] - start[reversals[-1]] < 0.5 * length:
-        reversals.pop()
-    for first, last in zip(reversals, [*reversals[1:], len(start)], strict=True):
-        # By moved time: standing still was left out, and is no motion.
-        moved = np.cumsum(stop[first:last] - start[first:last])
-        pieces = max(1, int(moved[-1] / length + 0.5))
-        inner = first + 1 + np.searchsorted(moved, moved[-1] * np.arange(1, pieces) / pieces)
-        yield from (each for each in dict.fromkeys(inner.tolist()) if each < last)
-        yield last
-
-
-def _turns(travel: Array) -> Iterator[int]:
-    """Windows in which the joint has turned round."""
-    moving = np.flatnonzero(travel)
-    turned = np.flatnonzero(np.diff(np.sign(travel[moving])))
-    return (int(moving[i + 1]) for i in turned)
+def first_windows_of(recording: NDArray[np.int64]) -> list[int]:
+    """Return the first window of each recording, and behind them the number of windows."""
+    count = len(recording)
+    if recording[0] == recording[-1]:
+        return [0, count]
+    return [0, *(np.flatnonzero(np.diff(recording)) + 1).tolist(), count]
 
 
 def _between(cuts: Cuts) -> Cuts:

@@ -30,15 +30,8 @@ def admissible_shifts(
     return (None if doubled is not None and penalty.noise_share > _SHARE else halved), doubled
 
 
-def lacking_torques(
-    problem: Problem, penalty: _core.Penalty, best: Array, columns: Array
-) -> dict[str, Array]:
+def lacking_torques(problem: Problem, penalty: _core.Penalty, best: Array) -> dict[str, Array]:
     """Return what the residuals may lack in each window, by the name of the cause.
-
-    Parameters
-    ----------
-    columns : ndarray, shape (windows, coefficients)
-        The penalty's columns at `best`.
 
     Returns
     -------
@@ -46,7 +39,7 @@ def lacking_torques(
         Parts that do not apply are missing.
     """
     lacking = {
-        "sampling": _of_sampling(problem, penalty, best, columns),
+        "sampling": _of_sampling(problem, penalty, best),
         "curvature": _of_curvature(problem, penalty, best),
     }
     return {name: torque for name, torque in lacking.items() if torque is not None}
@@ -100,9 +93,7 @@ def _everywhere(sizes: Array, free: list[int], count: int) -> Array:
     return result
 
 
-def _of_sampling(
-    problem: Problem, penalty: _core.Penalty, best: Array, columns: Array
-) -> Array | None:
+def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array) -> Array | None:
     """Return what is lacking by the unknown instant of the sensor's sample: before or after a command's step.
 
     A held torque steps at the samples. Its step accelerates the drive and the link together, and the
@@ -112,28 +103,27 @@ def _of_sampling(
     names = list(penalty.names)
     if not {"sensor_gain", "inertia"} <= set(names):
         return None
-    bounds = np.asarray(penalty.windows)
-    run = np.asarray(penalty.recording_of)
-    duration = np.asarray(penalty.usable_duration)
-    steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
-    accelerated, angle, stepped = np.zeros((3, run.size))
-    for number, recording in enumerate(problem.recordings):
-        if not held(problem, recording):
-            continue
-        mine = slice(*np.searchsorted(run, (number, number + 1)))
-        first, last = bounds[mine, 0], bounds[mine, 1]
-        accelerated[mine] = recording.velocity[last] - recording.velocity[first]
-        angle[mine] = 0.5 * (recording.position[first] + recording.position[last])
-        stepped[mine] = recording.sample_period * steps[mine]
-    if not np.any(stepped) or run.size < 50:
+    holds = [held(problem, recording) for recording in problem.recordings]
+    if not any(holds) or penalty.window_count < 50:
+        return None
+    periods = [
+        recording.sample_period if holds[number] else 0.0
+        for number, recording in enumerate(problem.recordings)
+    ]
+    slow = 1.0  # of a column that is not used here
+    motion = penalty.link_motion(problem.in_core, problem.mask_standstill, periods, slow)
+    link, stepped = motion[:, [0, 1, 2, 3, 9]], motion[:, 4]
+    for number in range(len(holds)):
+        if not holds[number]:  # it tells nothing of the link's share in a step
+            of = np.asarray(penalty.recording_of) == number
+            link[of, 0] = link[of, 2] = 0.0
+            link[of, 1] = link[of, 3]
+    if not np.any(stepped):
         return None
     gain = float(best[names.index("sensor_gain")])
-    reading = columns[:, names.index("sensor_gain")]
-    link = np.column_stack(
-        [accelerated, duration * np.cos(angle), duration * np.sin(angle), duration, reading]
-    )
     # The link's inertia over the gain.
-    share = float(Triangle(link, problem.threads).solve([0, 1, 2, 3], 4, rcond=1e-10)[0][0])
+    triangle = Triangle(np.asfortranarray(link), problem.threads)
+    share = float(triangle.solve([0, 1, 2, 3], 4, rcond=1e-10)[0][0])
     both = float(best[names.index("inertia")]) + share * gain
     if both <= 0.0 or share * gain <= 0.0:
         return None

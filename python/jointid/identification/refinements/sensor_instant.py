@@ -8,6 +8,7 @@ signals, harmonics and friction at low speed.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
+from jointid.problem.least_squares import solve
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
@@ -97,27 +99,24 @@ def _measured(
     problem: Problem, penalty: _core.Penalty, held: list[bool]
 ) -> tuple[SensorInstant, float] | None:
     """The instant, and what half a step of 1 N·m changes the reading by."""
-    motion, torque, reading = _integrals(problem, penalty, held)
-    rows = np.asarray(_core.triangle(np.column_stack([motion, torque, reading])))
-    count = motion.shape[1]
-    size = np.linalg.norm(rows, axis=0)
+    integrals = _integrals(problem, penalty, held)
+    rows = np.asarray(_core.triangle(integrals))
+    torque, reading = integrals.shape[1] - 2, integrals.shape[1] - 1
+    size = np.linalg.norm(rows[:, : _STEPS + 1], axis=0)
     if size[0] == 0.0 or size[_STEPS] == 0.0:
         return None
-    scaled = rows / np.where(size > 0.0, size, 1.0)
     link = [*range(_STEPS + 1)]
-    drive = [index for index in range(count) if index != _STEPS]
-    of_torque = np.linalg.lstsq(scaled[:, drive], rows[:, count], rcond=1e-10)[0]
-    both = float(of_torque[0] / size[0])
-    of_reading = np.linalg.lstsq(scaled[:, link], rows[:, count + 1], rcond=1e-10)[0]
-    half = 0.5 * float(of_reading[0] / size[0]) / both if both > 0.0 else 0.0
+    drive = [index for index in range(torque) if index != _STEPS]
+    both = float(solve(rows, drive, torque)[0][0])
+    of_reading, missed = solve(rows, link, reading)
+    half = 0.5 * float(of_reading[0]) / both if both > 0.0 else 0.0
     if half == 0.0:
         return None
-    missed = rows[:, count + 1] - scaled[:, link] @ of_reading
-    variance = float(missed @ missed) / max(1, len(torque) - len(link))
-    spread = np.linalg.pinv(scaled[:, link].T @ scaled[:, link])
+    _, alone = solve(rows, link[:_STEPS], _STEPS)  # what of the steps nothing else is like
     # A reading that lacks half a step over its window rises by less.
-    share = -float(of_reading[_STEPS] / size[_STEPS]) / half
-    stderr = float(np.sqrt(variance * spread[_STEPS, _STEPS])) / size[_STEPS] / abs(half)
+    share = -float(of_reading[_STEPS]) / half
+    noise = missed / math.sqrt(max(1, len(integrals) - len(link)))
+    stderr = noise / alone / abs(half) if alone > 0.0 else math.inf
     if not _settled(share, stderr) and "velocity" not in problem.shift:
         from jointid.identification.refinements.instant_by_samples import by_samples
 
@@ -147,35 +146,21 @@ def _settled(share: float, stderr: float) -> bool:
 _STEPS = 4  # column of the torque's steps
 
 
-def _integrals(
-    problem: Problem, penalty: _core.Penalty, held: list[bool]
-) -> tuple[Array, Array, Array]:
-    """Window integrals: of the link's motion, the torque's steps and friction; of the torque; of the reading.
+def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Array:
+    """Window integrals, a column each: of the link's motion, the torque's steps and friction; the torque; the reading.
 
     Of whole windows, in which angle and speed are those of their middle: all but the reading and the steps is
     smooth enough.
     """
-    bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
-    steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
-    reading = np.asarray(penalty.reading)
-    duration = np.asarray(penalty.usable_duration)
-    faster, angle, speed, step, lasting = np.zeros((5, len(run)))
-    for number, recording in enumerate(problem.recordings):
-        mine = slice(*np.searchsorted(run, (number, number + 1)))
-        first, last = bounds[mine, 0], bounds[mine, 1]
-        faster[mine] = recording.velocity[last] - recording.velocity[first]
-        angle[mine] = 0.5 * (recording.position[last] + recording.position[first])
-        speed[mine] = recording.position[last] - recording.position[first]
-        lasting[mine] = recording.time[last] - recording.time[first]
-        if held[number]:
-            step[mine] = recording.sample_period * steps[mine]
-    speed /= lasting
-    dry = np.sign(speed) * duration
-    slow = dry * np.exp(-np.abs(speed) / (0.1 * problem.peak_speed))
-    gravity = [duration * np.cos(angle), duration * np.sin(angle)]
-    motion = np.column_stack([faster, *gravity, duration, step, dry, duration * speed, slow])
+    periods = [
+        recording.sample_period if held[number] else 0.0
+        for number, recording in enumerate(problem.recordings)
+    ]
+    slow = 0.1 * problem.peak_speed
+    moved = penalty.link_motion(problem.in_core, problem.mask_standstill, periods, slow)
+    rows, duration, lasting = moved[:, :-1], moved[:, 3], moved[:, -1]
     whole = np.abs(lasting - duration) < 1e-9 * lasting + 1e-12
-    return motion[whole], np.asarray(penalty.target)[whole], reading[whole]
+    return rows if whole.all() else np.asfortranarray(rows[whole])
 
 
 def _rests_on_a_limit(recording: Recording) -> bool:
@@ -183,10 +168,12 @@ def _rests_on_a_limit(recording: Recording) -> bool:
     reading, speed = np.asarray(recording.sensor), np.abs(recording.velocity)
     moving = speed > _MOVING * speed.max()  # at rest a clean reading stays, too
     most = _RESTING * np.count_nonzero(moving)
-    return any(
-        np.count_nonzero(moving[reading == limit]) > most
-        for limit in (reading.min(), reading.max())
-    )
+    for limit in (reading.min(), reading.max()):
+        there = reading == limit
+        # First all of them, which is a single count.
+        if np.count_nonzero(there) > most and np.count_nonzero(there & moving) > most:
+            return True
+    return False
 
 
 def _with_step(problem: Problem, number: int, step: float) -> Recording:
