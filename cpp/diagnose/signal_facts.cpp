@@ -109,7 +109,8 @@ SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double 
   const auto least = base::least_steps(x, steps);
   facts.smallest = least.positive;
   facts.changes = least.any > 0.0 ? static_cast<std::int64_t>(steps) : count_changes(x, steps);
-  const auto [lowest, highest] = facts.range;
+  const double lowest = facts.range.lowest;  // clang 14 captures no structured bindings
+  const double highest = facts.range.highest;
   const Rules rules{lowest, highest, kNear * (highest - lowest), facts.smallest,
                     kMoving * peak_speed};
   const double slow = kStill * peak_speed;
