@@ -95,7 +95,8 @@ SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double 
   facts.range = {survey.range.low, survey.range.high};
   facts.smallest = survey.smallest;
   facts.changes = survey.changes;
-  const auto [lowest, highest] = facts.range;
+  const double lowest = facts.range.lowest;  // clang 14 captures no structured bindings
+  const double highest = facts.range.highest;
   const Rules rules{lowest, highest, kNear * (highest - lowest), facts.smallest,
                     kMoving * peak_speed};
   const double slow = kStill * peak_speed;
