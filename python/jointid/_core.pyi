@@ -52,6 +52,7 @@ __all__: list[str] = [
     "PositionNoise",
     "Projected",
     "Recording",
+    "RepeatedNoise",
     "Residual",
     "Scenario",
     "Sensors",
@@ -62,7 +63,7 @@ __all__: list[str] = [
     "SignalFacts",
     "SimulatedJoint",
     "SlidingPenalty",
-    "SmoothStretch",
+    "SmoothWindows",
     "Spike",
     "SpikeRule",
     "SteppedJoint",
@@ -75,12 +76,14 @@ __all__: list[str] = [
     "circle",
     "clustered",
     "covering_half_width",
+    "even_grid",
     "find_control_character",
     "fit_shift",
     "friction_basis",
-    "friction_means",
+    "half_length",
     "inspect",
     "is_parameter",
+    "leading_coefficient",
     "local_velocity",
     "minimise_genetic",
     "minimise_projected",
@@ -91,7 +94,6 @@ __all__: list[str] = [
     "model_terms",
     "models",
     "motion_cuts",
-    "noise_products",
     "non_negative_least_squares",
     "number_list",
     "number_table",
@@ -99,13 +101,12 @@ __all__: list[str] = [
     "polish",
     "position_noise",
     "refine_separable",
+    "repeated_noise",
     "roll_out_servos",
     "roughness",
     "shape",
     "shapes",
-    "shift_coefficients",
     "simulate_runs",
-    "smoothed",
     "solve_independent",
     "student_quantile",
     "term",
@@ -115,7 +116,7 @@ __all__: list[str] = [
     "usable_intervals",
     "window_duration",
     "window_integrals",
-    "window_means",
+    "window_shifts",
 ]
 
 class Control(enum.Enum):
@@ -449,6 +450,17 @@ class Penalty(PenaltyFunction):
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
+    def balance_at(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> tuple[
+        float,
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    ]:
+        """
+        The same, and what `columns` returns at its shapes.
+        """
     def bending(
         self,
         recordings: collections.abc.Sequence[Recording],
@@ -1255,20 +1267,51 @@ class LocalVelocity:
     @property
     def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
-class SmoothStretch:
+class SmoothWindows:
     """
-    A signal and the smooth windows over it.
+    Smooth windows over a stretch without a gap.
     """
     def __init__(
         self,
-        *,
         time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-        middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
-        kept: typing.Annotated[numpy.typing.ArrayLike, numpy.bool],
-        stride: typing.SupportsInt | typing.SupportsIndex,
+        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        usable: typing.Annotated[numpy.typing.ArrayLike, numpy.bool],
+        *,
+        derived: bool,
+        half: typing.SupportsInt | typing.SupportsIndex,
+        margin: typing.SupportsInt | typing.SupportsIndex,
+        clear: typing.SupportsInt | typing.SupportsIndex = 0,
+        usable_only: bool = True,
     ) -> None: ...
+    def columns(
+        self,
+        cosine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        sine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        *,
+        varying: bool,
+        friction: bool,
+        own: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]] = [],
+        own_friction: collections.abc.Sequence[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
+        ] = [],
+        jumping: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None,
+        answer: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        What a torque or a reading may be a sum of; a row a window.
+        """
+    def rates(
+        self, signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Mean rate of a signal in each window.
+        """
+    @property
+    def used(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        Middle samples of the windows that are used.
+        """
 
 class FittedShift:
     """
@@ -1279,14 +1322,34 @@ class FittedShift:
     @property
     def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
+    def leading(self) -> float | None:
+        """
+        The first column's coefficient without a shift; None where one was searched.
+        """
+    @property
     def unexplained(self) -> float: ...
     @property
-    def unshifted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
+
+class RepeatedNoise:
+    """
+    Noise of a reading in the torque.
+    """
+    @property
+    def earlier(self) -> float:
         """
-        Coefficients of the columns without a shift; empty where one was searched.
+        By how many samples the torque has it earlier.
         """
     @property
-    def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
+    def error(self) -> float:
+        """
+        Standard error, in samples.
+        """
+    @property
+    def share(self) -> float:
+        """
+        Correlation of both noises.
+        """
 
 class SpikeRule(enum.Enum):
     """
@@ -3577,13 +3640,21 @@ def covering_half_width(
     Half the width of the symmetric interval that holds a normal variable of this mean and deviation 1.
     """
 
+def even_grid(
+    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
+    """
+    Even times from the first to the last, and how far off the times are [s].
+    """
+
 def find_control_character(content: bytes) -> int:
     """
     The place of the first byte that no text contains in any encoding; -1 without one.
     """
 
 def fit_shift(
-    stretches: collections.abc.Sequence[SmoothStretch],
+    windows: collections.abc.Sequence[SmoothWindows],
+    signals: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
     columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     *,
     conservative: typing.SupportsInt | typing.SupportsIndex,
@@ -3606,18 +3677,14 @@ def friction_basis(
     The friction term's basis at each velocity [rad/s or m/s] while the drive transmits a load [N·m or N]: what its coefficient multiplies.
     """
 
-def friction_means(
-    velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    smooth: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    cosine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    sine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+def half_length(
+    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    period: typing.SupportsFloat | typing.SupportsIndex,
     *,
-    longest: typing.SupportsFloat | typing.SupportsIndex,
-    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    position: bool,
+) -> int:
     """
-    Window means of friction as any smooth function of the speed.
+    Half the length of a window that averages the acceleration's noise.
     """
 
 def inspect(
@@ -3639,6 +3706,17 @@ def inspect(
 def is_parameter(name: str) -> bool:
     """
     Whether a parameter can have this name.
+    """
+
+def leading_coefficient(
+    windows: collections.abc.Sequence[SmoothWindows],
+    signals: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
+    columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    held: bool,
+) -> float:
+    """
+    Of the first column, in least squares of the signals, not shifted, on the columns.
     """
 
 def local_velocity(
@@ -3740,18 +3818,6 @@ def motion_cuts(
     First windows of the segments of motion, and the end of the last one; `edges` are the first windows of the recordings, and the end of the last one.
     """
 
-def noise_products(
-    reading: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    torque: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    *,
-    blocks: typing.SupportsInt | typing.SupportsIndex,
-    longest: typing.SupportsInt | typing.SupportsIndex,
-    clipped: typing.SupportsFloat | typing.SupportsIndex,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-    """
-    Products of two signals' third differences, block by block.
-    """
-
 def non_negative_least_squares(
     matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     target: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3813,6 +3879,18 @@ def refine_separable(
     The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
     """
 
+def repeated_noise(
+    pairs: collections.abc.Sequence[
+        tuple[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        ]
+    ],
+) -> RepeatedNoise | None:
+    """
+    The noise of readings that the torque repeats, of pairs of both; None where it does not.
+    """
+
 def roll_out_servos(
     loops: collections.abc.Sequence[ServoLoop],
     logs: collections.abc.Sequence[
@@ -3844,16 +3922,6 @@ def shapes() -> list[Shape]:
     All shape parameters.
     """
 
-def shift_coefficients(
-    stretches: collections.abc.Sequence[SmoothStretch],
-    columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    *,
-    held: bool,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    Least squares of the signals, not shifted, on the columns.
-    """
-
 def simulate_runs(
     scenario: Scenario,
     trajectory: Trajectory,
@@ -3864,14 +3932,6 @@ def simulate_runs(
 ) -> list[Outcome]:
     """
     One Outcome a setup; InputError when a loop is not stable.
-    """
-
-def smoothed(
-    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    Weighted sums around each sample.
     """
 
 def solve_independent(
@@ -3946,13 +4006,24 @@ def window_integrals(
     Integrals over windows, one row a window, or how far the values rise there.
     """
 
-def window_means(
-    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-    middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+def window_shifts(
+    penalty: Penalty,
+    *,
+    recordings: collections.abc.Sequence[Recording],
+    terms: collections.abc.Sequence[str],
+    mask_standstill: bool,
+    gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+    per_recording: collections.abc.Sequence[str],
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    best: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
+]:
     """
-    Weighted sums of a signal over windows.
+    The minima with each window halved and with neighbours joined in pairs; None where there are no such windows.
     """
 
 __version__: str
