@@ -46,33 +46,6 @@ VectorXd slope_weight(std::int64_t half, double period) {
   return weight / (moment * period);
 }
 
-/// Where the direction changes: the first sample from `from` on that moves otherwise than the one
-/// before it; `count` without one. A sample at rest has a direction of its own.
-class Turns {
- public:
-  explicit Turns(const Signal& velocity) : velocity_(velocity) {}
-
-  [[nodiscard]] Index next(Index from) const {
-    const double* v = velocity_.data();
-    while (from < velocity_.size()) {
-      const Index end = std::min(from + kBlock, velocity_.size());
-      if (!steady(v + from - 1, static_cast<std::size_t>(end - from))) {
-        for (Index i = from; i < end; ++i) {
-          if ((v[i] > 0.0) != (v[i - 1] > 0.0) || (v[i] < 0.0) != (v[i - 1] < 0.0)) return i;
-        }
-      }
-      from = end;
-    }
-    return velocity_.size();
-  }
-
- private:
-  static constexpr Index kBlock = 64;
-  static bool steady(const double* v, std::size_t steps);
-
-  const Signal& velocity_;
-};
-
 /// Whether all steps surely stay on one side of rest.
 JOINTID_CLONES bool all_positive(const double* v, std::size_t steps) {
   base::Four least;
@@ -90,8 +63,21 @@ JOINTID_CLONES bool all_positive(const double* v, std::size_t steps) {
   return positive;
 }
 
-bool Turns::steady(const double* v, std::size_t steps) {
-  return all_positive(v, steps);
+/// The first sample from `from` on that moves in another direction than the one before it; the
+/// number of samples without one. A sample at rest has a direction of its own.
+Index next_turn(const Signal& velocity, Index from) {
+  constexpr Index kBlock = 64;
+  const double* v = velocity.data();
+  while (from < velocity.size()) {
+    const Index end = std::min(from + kBlock, velocity.size());
+    if (!all_positive(v + from - 1, static_cast<std::size_t>(end - from))) {
+      for (Index i = from; i < end; ++i) {
+        if ((v[i] > 0.0) != (v[i - 1] > 0.0) || (v[i] < 0.0) != (v[i - 1] < 0.0)) return i;
+      }
+    }
+    from = end;
+  }
+  return velocity.size();
 }
 
 /// The first sample from `from` on that is not usable; `count` without one.
@@ -193,7 +179,6 @@ SmoothWindows smooth_windows(const EvenStretch& stretch, const WindowRules& rule
   result.slope = slope_weight(rules.half, stretch.period());
   const Index windows = count > 2 * reach ? (count - 2 * reach - 1) / rules.half + 1 : 0;
   result.used.reserve(static_cast<std::size_t>(windows));
-  const Turns turns(stretch.velocity);
   Index unusable = 0;
   Index turn = 0;
   for (Index i = 0; i < windows; ++i) {
@@ -205,7 +190,7 @@ SmoothWindows smooth_windows(const EvenStretch& stretch, const WindowRules& rule
     }
     if (rules.clear > 0) {
       const Index from = middle - rules.clear + 1;
-      if (turn < from) turn = turns.next(from);
+      if (turn < from) turn = next_turn(stretch.velocity, from);
       if (turn <= middle + rules.clear) continue;
     }
     result.used.push_back(middle);
