@@ -9,7 +9,7 @@ which has to be quick where it is called often, and to show its arguments, is co
 import dataclasses
 import operator
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any
@@ -109,8 +109,10 @@ class _Arguments:
 
     def values(
         self, unnamed: Sequence[object], named: Mapping[str, object]
-    ) -> list[tuple[str, object]] | None:
-        """Each field's value, in their order; None if an argument is missing, or one too many."""
+    ) -> Iterable[tuple[str, object]] | None:
+        """Each field's value; None if an argument is missing, or one too many."""
+        if not unnamed and named.keys() == self._names:
+            return named.items()
         given = dict(zip(self._unnamed, unnamed, strict=False))
         if len(given) < len(unnamed) or given.keys() & named.keys() or named.keys() - self._names:
             return None
