@@ -27,6 +27,13 @@ JOINTID_CLONES void take_out(const double* q, std::size_t count, std::size_t row
       column[i] -= first + last;
     }
   }
+  for (; j + 2 <= count; j += 2) {
+    const double* const direction = q + j * rows;
+    const double* const share = products + j;
+    for (std::size_t i = 0; i < rows; ++i) {
+      column[i] -= share[0] * direction[i] + share[1] * direction[i + rows];
+    }
+  }
   for (; j < count; ++j) {
     for (std::size_t i = 0; i < rows; ++i) column[i] -= products[j] * q[i + j * rows];
   }

@@ -10,6 +10,7 @@
 
 #include "base/circle.hpp"
 #include "base/clones.hpp"
+#include "base/four.hpp"
 #include "identify/penalty/penalty.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
@@ -25,14 +26,24 @@ constexpr std::size_t kKept = 4;     // blocks up to which their rows are kept b
 // Each recording's link has columns of its own while windows outnumber all columns by this.
 constexpr std::size_t kPerColumn = 50;
 
+/// In explicit vectors: compilers keep such sums in memory.
 JOINTID_CLONES void weighted_sums(const double* weight, const double* decays, std::size_t count,
                                   double* sums) {
-  constexpr std::size_t kRates = kShares.size();
-  std::array<double, kRates> sum{};
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < kRates; ++k) sum[k] += weight[i] * decays[i * kRates + k];
+  static_assert(kShares.size() == 2 * base::kFour);
+  base::Four low;
+  base::Four high;
+  base::fill(low, 0.0);
+  base::fill(high, 0.0);
+  for (std::size_t i = 0; i < count; ++i, decays += 2 * base::kFour) {
+    base::Four first;
+    base::Four second;
+    base::load(first, decays);
+    base::load(second, decays + base::kFour);
+    low = low + first * weight[i];
+    high = high + second * weight[i];
   }
-  for (std::size_t k = 0; k < kRates; ++k) sums[k] = sum[k];
+  base::store(sums, low);
+  base::store(sums + base::kFour, high);
 }
 
 }  // namespace
