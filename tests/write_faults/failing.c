@@ -75,7 +75,6 @@ ssize_t write(int file, const void* data, size_t size) {
   return syscall(SYS_write, file, data, size);
 }
 
-
 #define SYNC(name)                                         \
   int name(int file) {                                     \
     if (!mine(file)) return (int)syscall(SYS_##name, file); \
