@@ -113,7 +113,7 @@ def test_a_file_system_without_second_names_is_written_as_well(
 def test_a_folder_is_on_the_disk_with_those_above_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    synced = []
+    synced: list[Path] = []
     monkeypatch.setattr("jointid.base.files.sync_folder", synced.append)
     make_folder(tmp_path / "a" / "b")
     assert sorted(synced) == [tmp_path, tmp_path / "a"]

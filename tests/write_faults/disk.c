@@ -16,6 +16,7 @@
 
 enum { kMost = 4096, kNames = 256, kPowerless = 99 };
 static char folder[PATH_MAX];
+static pid_t process;  // a child closes what it inherits, and may share this memory until it runs another program
 static off_t on_disk[kMost];  // bytes of each open file
 
 // A name that its folder does not have on the disk yet; `from` is empty of a new one, `old` where nothing was replaced.
@@ -38,7 +39,10 @@ _Noreturn void disk_give_up(const char* why) {
   abort();
 }
 
-void disk_begin(const char* where) { snprintf(folder, sizeof folder, "%s", where); }
+void disk_begin(const char* where) {
+  snprintf(folder, sizeof folder, "%s", where);
+  process = getpid();
+}
 
 static int inside(const char* path) {
   const size_t length = strlen(folder);
@@ -56,7 +60,7 @@ static int path_of(int file, char* path) {
 }
 
 int disk_path(int place, const char* path, char* whole) {
-  if (!folder[0] || !path || !path[0]) return 0;
+  if (!folder[0] || !path || !path[0] || getpid() != process) return 0;
   char given[PATH_MAX], parent[PATH_MAX];
   if (path[0] == '/') {
     snprintf(given, sizeof given, "%s", path);
@@ -76,7 +80,7 @@ int disk_path(int place, const char* path, char* whole) {
 }
 
 int disk_file(int file, char* whole) {
-  return folder[0] && file >= 3 && file < kMost && path_of(file, whole) && inside(whole);
+  return folder[0] && file >= 3 && file < kMost && getpid() == process && path_of(file, whole) && inside(whole);
 }
 
 int disk_replaces(int file) {
