@@ -114,6 +114,7 @@ def command(words: Sequence[str]) -> Scenario:
     complete: set[Path] = set()
 
     def prepare(folder: Path) -> None:
+        _given()
         for name in {word[1:] for word in words if word[0] == "+"}:
             shutil.copy(_given() / name, folder)
 
@@ -155,7 +156,7 @@ def command(words: Sequence[str]) -> Scenario:
         missing = sorted(map(str, complete - found))
         return f"lost: {missing}" if known and missing else ""
 
-    return Scenario(lambda folder: (_given(), prepare(folder)), act, judged)
+    return Scenario(prepare, act, judged)
 
 
 SCENARIOS = {f"command {name}": command(words) for name, words in COMMANDS.items()}

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import designs
 import numpy as np
@@ -85,7 +86,7 @@ def _robot_run() -> jid.RobotRecording:
 
 
 @functools.cache
-def _read(name: str) -> object:
+def _read(name: str) -> Any:
     """What a valid example of a file holds."""
     example = EXAMPLES[name]()
     with TemporaryDirectory() as folder:
@@ -93,11 +94,10 @@ def _read(name: str) -> object:
         path.write_text(example.text(), encoding="utf-8")
         for other, content in example.beside.items():
             (path.parent / other).write_bytes(content)
-        loaded: object = _READERS[name](path)
-    return loaded
+        return _READERS[name](path)
 
 
-_READERS: dict[str, Callable[[Path], object]] = {
+_READERS: dict[str, Callable[[Path], Any]] = {
     "estimate": jid.Estimate.load,
     "servo": jid.ServoEstimate.load,
     "robot": jid.RobotEstimate.load,
@@ -107,19 +107,20 @@ _READERS: dict[str, Callable[[Path], object]] = {
 
 
 def _saver(name: str) -> Callable[[Path], object]:
-    save: Callable[[Path], object] = _read(name).save  # type: ignore[attr-defined]
+    save: Callable[[Path], object] = _read(name).save
     return save
 
 
 def _joints() -> Callable[[Path], object]:
-    pair = {name: jid.thesis_joint() for name in ("a", "b")}
     run = long_run()
+    assert run.velocity is not None
+    assert run.torque is not None
     several = jid.RobotRecording(
         time=run.time,
         position=np.column_stack([run.position, run.position]),
         velocity=np.column_stack([run.velocity, run.velocity]),
         torque=np.column_stack([run.torque, run.torque]),
-        names=tuple(pair),
+        names=("a", "b"),
     )
     found = jid.identify_joints(several, model="coulomb_viscous", search="separable")
     return found.save
