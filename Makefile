@@ -150,10 +150,11 @@ notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what th
 docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site; LINKS=1 asks other hosts, too
 	@PYTHONPATH=tools $(BIN)/python -m documentation $(if $(LINKS),--links)
 
-# CASES=5000 SEED=0 make fuzz: another number, and where to begin.
+# CASES=5000 SEED=0 MINUTES=60 PROCESSES=1 make fuzz: another number, where to begin, and for how long. build/fuzz.jsonl
+# has what was done: the next run goes on there.
 fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
-	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) JOINTID_READ_BACK=all \
-	  tools/fuzz.sh --numprocesses auto --dist load tests/fuzz tests/base/test_read_back.py
+	@tools/fuzz.sh build/fuzz.jsonl --cases $(or $(CASES),1000000) --first $(or $(SEED),0) \
+	  --minutes $(or $(MINUTES),1000000) --processes $(or $(PROCESSES),$$(getconf _NPROCESSORS_ONLN))
 
 mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
 	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Fuzzes all readers with the core under ASan and UBSan: what either finds ends the run. Arguments: those of pytest.
+# Fuzzes all readers with the core under ASan and UBSan: what either finds is a failure. Arguments: those of
+# `python -m fuzz` (tests/fuzz/__main__.py). First come hostile values at every place of what is read back.
 # The extension is built beside the core's checks, in build/checks-address, and laid over the package's Python files.
 # Debian's Python is not instrumented itself, so the sanitizers' libraries are loaded before it. gcc only.
 set -euo pipefail
@@ -25,6 +26,11 @@ cp -r python/jointid/. "$site/jointid"
 cp examples/data/* "$site/jointid/data"
 rm -f "$site"/jointid/_core*.so
 cp "$build"/_core*.so "$site/jointid"
+# An editable install comes before all paths.
+cat >"$site/sitecustomize.py" <<'FIRST'
+import sys
+sys.meta_path[:] = [each for each in sys.meta_path if not type(each).__module__.startswith("_editable_")]
+FIRST
 
 preloaded=""
 for library in libasan.so libubsan.so libstdc++.so; do
@@ -42,4 +48,7 @@ assert b"__asan_init" in content and b"__ubsan_handle" in content, "the extensio
 assert hasattr(ctypes.CDLL(None), "__asan_init"), "ASan is not loaded"
 print("The core is", core.__file__)
 PROOF
-LD_PRELOAD="$preloaded" python -m pytest "$@"
+if [ "${READ_BACK:-1}" = 1 ]; then
+  LD_PRELOAD="$preloaded" JOINTID_READ_BACK=all python -m pytest --numprocesses auto --dist load tests/base/test_read_back.py
+fi
+PYTHONPATH="$site:$PWD/tests" LD_PRELOAD="$preloaded" exec python -m fuzz "$@"

@@ -1,12 +1,13 @@
 """Writing a file whole: a target that cannot be written is named, never the temporary file."""
 
+import errno
 import os
 from pathlib import Path
 
 import pytest
 
 from jointid import InputError
-from jointid.base.files import write_whole
+from jointid.base.files import make_folder, write_new, write_whole
 
 
 def test_a_folder_that_does_not_exist_is_bad_input(tmp_path: Path) -> None:
@@ -75,3 +76,49 @@ def test_nothing_is_left_of_a_write_that_failed(
         write_whole(path, b"new")
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_new_file_has_the_users_mode_and_replaces_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    mask = os.umask(0o027)
+    try:
+        write_new(path, b"1")
+    finally:
+        os.umask(mask)
+    assert path.stat().st_mode & 0o7777 == 0o640
+    with pytest.raises(FileExistsError) as refused:
+        write_new(path, b"2")
+    assert refused.value.filename == str(path)
+    assert path.read_bytes() == b"1"
+    assert list(tmp_path.iterdir()) == [path]
+    with pytest.raises(InputError, match="does not exist"):
+        write_new(tmp_path / "none" / "joint.toml", b"1")
+
+
+def test_a_file_system_without_second_names_is_written_as_well(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def none(_from: Path, _to: Path) -> None:
+        raise PermissionError(errno.EPERM, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", none)
+    path = tmp_path / "joint.toml"
+    write_new(path, b"1")
+    with pytest.raises(FileExistsError):
+        write_new(path, b"2")
+    assert path.read_bytes() == b"1"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_is_on_the_disk_with_those_above_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    synced: list[Path] = []
+    monkeypatch.setattr("jointid.base.files.sync_folder", synced.append)
+    make_folder(tmp_path / "a" / "b")
+    assert sorted(synced) == [tmp_path, tmp_path / "a"]
+    make_folder(tmp_path / "a" / "b")
+    assert len(synced) == 2
+    (tmp_path / "file").touch()
+    with pytest.raises(FileExistsError):
+        make_folder(tmp_path / "file")

@@ -28,6 +28,27 @@ def test_what_could_not_be_written_is_raised(
         recorder.close()
 
 
+def test_a_failure_to_close_is_raised_and_the_other_file_is_closed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some network file systems say only then that the user's quota is used up."""
+    closed = []
+    close = AppendedFile.close
+
+    def quota(self: AppendedFile) -> None:
+        close(self)
+        closed.append(self.path.suffix)
+        if self.path.suffix == ".log":
+            raise OSError("quota")
+
+    recorder = recorded(tmp_path / "run.csv")
+    monkeypatch.setattr(AppendedFile, "close", quota)
+    with pytest.raises(OSError, match="quota"):
+        recorder.close()
+    assert sorted(closed) == [".csv", ".log"]
+    assert len(jid.load(tmp_path / "run.csv").time) == 10
+
+
 def test_a_session_s_velocity_is_derived(tmp_path: Path) -> None:
     recorded(tmp_path / "run.csv").close()
     first = (tmp_path / "run.csv").read_text().splitlines()[0]

@@ -1,257 +1,184 @@
 """Run under the failing library: a scenario of writing, once for each call and each fault, in a process of its own.
 
-Prints a line for each fault after which a file is torn, something acknowledged is lost, or no sentence was said. The
-last fault of a scenario is a loss of power behind its end.
+Says for which faults a file is torn, something acknowledged is lost, or no sentence was said. The last fault of a
+scenario is a loss of power behind its end.
 """
 
 import ctypes
-import errno
 import os
-import struct
 import sys
-import time
-from collections.abc import Callable, Sequence
-from functools import partial
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Timer
-
-import designs
-import numpy as np
-from closed_loop import TRUTH
+from types import FrameType
 
 import jointid as jid
-from jointid.hardware.session.recorder import COLUMNS, Recorder
-from jointid.report.saving import save_report
-from jointid.study.row import Row
-from jointid.study.study_file import StudyFile
-from write_faults import commands
+from jointid.base import files
+from jointid.hardware.session import appended_file
+from write_faults import commands, sessions
+from write_faults.faults import NONE, POWER, Fault, faults_at
+from write_faults.savers import SAVERS
+from write_faults.scenario import Scenario
 
-Acknowledge = Callable[[], object]
-_POWER = 99  # exit code of a process whose power failed
-_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, 0)
 _AFTER = -1  # the power fails behind the end
-_MISSING = 1.0  # [s]: not more of a session is lost with the power
-_TIME = np.arange(20) * 1e-3
-_OLD = jid.Recording(time=_TIME, position=np.sin(_TIME), torque=np.cos(_TIME))
-_NEW = jid.Recording(time=_TIME, position=np.sin(2.0 * _TIME), torque=np.cos(_TIME))
-_HEADER = {
-    "format": "jointid-study",
-    "schema": 1,
-    "version": "0.1.0",
-    "swept": ["windows"],
-    "cells": [{"windows": 50}],
-    "seed": 0,
-    "settings": {},
-    "fingerprint": "abc",
-    "trials": 100,
-    "truth": {},
-    "truths": [],
-}
-_ROWS = [
-    Row(cell=0, trial=k, seed=k, status="converged", penalty=1.5, values={"coulomb": 2.0 + k})
-    for k in range(100)
-]
+_FEW = 10
+_PACKAGE = Path(jid.__file__).parent
+SCENARIOS = SAVERS | commands.SCENARIOS
+_WRITING = {
+    each.__code__
+    for each in (files.write_whole, files.write_new, files.make_folder, files.open_locked)
+} | {files.new_beside.__code__, appended_file.AppendedFile.__init__.__code__}
 
 
-def _whole(
-    name: str, first: Callable[[Path], object], second: Callable[[Path], object]
-) -> tuple[
-    Callable[[Path], object], Callable[[Path, Acknowledge], None], Callable[[Path, int], str]
-]:
-    """A file that is replaced: it is the old one or the new one, and the new one when that was said."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / name
-        contents = []
-        for write in (first, second):
-            write(path)
-            contents.append(path.read_bytes())
+class Outcome:
+    """Of a scenario that ran once.
 
-    def save(folder: Path, acknowledge: Acknowledge) -> None:
-        second(folder / name)
-        acknowledge()
+    Attributes
+    ----------
+    calls : int
+        How many it made.
+    injected : bool
+        Whether the fault came.
+    wrong : str
+        What is wrong with what it left; "" if nothing is.
+    writers : set of str
+        Without a fault: the modules that asked for files, as `base.files`.
+    """
 
-    def judged(folder: Path, known: int) -> str:
-        found = (folder / name).read_bytes()
-        if found not in contents:
-            return "torn"
-        return "lost" if known and found != contents[1] else ""
-
-    return lambda folder: (folder / name).write_bytes(contents[0]), save, judged
+    def __init__(self) -> None:
+        self.calls, self.injected, self.wrong = 0, False, ""
+        self.writers: set[str] = set()
 
 
-def _nothing(_: Path) -> None:
-    """No file is there before."""
-
-
-def _swept(folder: Path, acknowledge: Acknowledge) -> None:
-    with StudyFile(folder / "study.jsonl", _HEADER, resume=False) as file:
-        for row in _ROWS:
-            file.append([row])
-            acknowledge()
-
-
-def _judged_study(folder: Path, known: int) -> str:
-    path = folder / "study.jsonl"
-    if not path.exists() or not path.stat().st_size:
-        return "lost" if known else ""
+def _act(scenario: Scenario, folder: Path, writing: int) -> str:
+    """What became of it: "0" done, "1" a sentence, "2" none."""
     try:
-        with StudyFile(path, _HEADER, resume=True) as file:
-            return "lost" if len(file.rows) < known else ""
-    except jid.InputError as error:
-        return "" if "no whole line" in str(error) and not known else f"torn: {error}"
+        scenario.act(folder, lambda: os.write(writing, b"+"))
+    except (OSError, jid.InputError, commands.CommandError) as error:
+        return "1" if "\n" not in str(error) and str(error) else "2"
+    except BaseException as error:
+        os.write(2, f"{error!r}\n".encode())
+        return "2"
+    return "0"
 
 
-def _ran(folder: Path, acknowledge: Acknowledge) -> None:
-    """Rows are acknowledged by the end of `close`."""
-    recorder = Recorder(folder / "run.csv", {"session": True})
-    for number in range(20):
-        recorder.sample([number * 1e-3, *[0.25 * number] * (len(COLUMNS) - 1)])
-        recorder.frame(number * 1e-3, 0x181, bytes(8), sent=False)
-    recorder.close({"stop": None})
-    for _ in range(20):
-        acknowledge()
+def _noting(found: set[str]) -> None:
+    """Note from now on which modules call what writes."""
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        caller = frame.f_back
+        if event == "call" and frame.f_code in _WRITING and caller is not None:
+            place = Path(caller.f_code.co_filename)
+            if place.is_relative_to(_PACKAGE):
+                found.add(".".join(place.relative_to(_PACKAGE).with_suffix("").parts))
+
+    threading.setprofile(note)
+    sys.setprofile(note)
 
 
-def _judged_run(folder: Path, known: int) -> str:
-    path = folder / "run.csv"
-    if not path.exists() or not path.stat().st_size:
-        return "lost" if known else ""
-    try:
-        return "lost" if len(jid.load(path).time) < known else ""
-    except jid.InputError as error:
-        said = str(error)
-        return "" if not known and "\n" not in said and path.name in said else f"torn: {said}"
+def _child(
+    scenario: Scenario, folder: Path, writing: int, call: int, fault: Fault, library: ctypes.CDLL
+) -> None:
+    library.arm(os.fsencode(folder), ctypes.c_long(max(call, 0)), fault.number, fault.lasting)
+    writers: set[str] = set()
+    if fault is NONE:
+        _noting(writers)
+    said = _act(scenario, folder, writing)
+    sys.setprofile(None)
+    calls, failed = library.counted(), library.failed()
+    if call == _AFTER:
+        library.lose()
+    os.write(writing, f" {said} {calls} {failed} {','.join(sorted(writers))}".encode())
+    os._exit(0)
 
 
-def _recorded(folder: Path, acknowledge: Callable[[bytes], object]) -> None:
-    """A session that goes on while the power fails: each row's moment is acknowledged, 1,000 a second."""
-    recorder = Recorder(folder / "run.csv", {"session": True})
-    begin = time.monotonic()
-    for number in range(5000):
-        left = begin + 1e-3 * number - time.monotonic()
-        if left > 0.0:
-            time.sleep(left)
-        recorder.sample([number * 1e-3, *[0.25 * number] * (len(COLUMNS) - 1)])
-        acknowledge(struct.pack("d", time.monotonic()))
-
-
-def _judged_recorded(folder: Path, known: Sequence[float]) -> str:
-    """By the clock: where others use the machine, many rows come at once."""
-    rows = max(0, (folder / "run.csv").read_text().count("\n") - 2)
-    if rows < len(known) and known[-1] - known[rows] > _MISSING:
-        return f"lost: {known[-1] - known[rows]:.2f} s, {rows} of {len(known)} rows are left"
-    return "" if rows < 8 or len(jid.load(folder / "run.csv").time) == rows else "torn"
-
-
-_JOINT = jid.thesis_joint()
-_FIRST, _SECOND = (
-    jid.Estimate.load(
-        Path(__file__).resolve().parents[1] / "estimate" / f"estimate_schema_{k}.json"
-    )
-    for k in (1, 2)
-)
-_DESIGN = designs.designed()
-SCENARIOS = {
-    "recording": _whole("run.npz", _OLD.save, _NEW.save),
-    "joint": _whole("joint.toml", _JOINT.save, _JOINT.with_parameters(TRUTH).save),
-    "design": _whole("design.toml", _DESIGN.save, designs.designed(seed=7).save),
-    "estimate": _whole("estimate.json", _FIRST.save, _SECOND.save),
-    "report": _whole("report.html", partial(save_report, _FIRST), partial(save_report, _SECOND)),
-    "run": (_nothing, _ran, _judged_run),
-    "sweep": (_nothing, _swept, _judged_study),
-} | {f"command {name}": scenario for name, scenario in commands.SCENARIOS.items()}
-
-
-def _faulted(name: str, call: int, number: int, library: ctypes.CDLL) -> tuple[int, str]:
-    """How often the scenario calls (of a call above all: without a fault), and what is wrong."""
-    prepare, act, judge = SCENARIOS[name]
+def faulted(name: str, call: int, fault: Fault, library: ctypes.CDLL) -> Outcome:
+    """Run a scenario with a fault at its n-th call."""
+    scenario = SCENARIOS[name]
+    outcome = Outcome()
     with TemporaryDirectory() as place:
         folder = Path(place).resolve() / "files"
         folder.mkdir()
-        prepare(folder)
+        scenario.prepare(folder)
         reading, writing = os.pipe()
         child = os.fork()
         if child == 0:
-            library.arm(os.fsencode(folder), ctypes.c_long(max(call, 0)), number)
-            said = "0"
-            try:
-                act(folder, lambda: os.write(writing, b"+"))
-            except (OSError, jid.InputError, commands.CommandError) as error:
-                said = "1" if "\n" not in str(error) and str(error) else "2"
-            except BaseException as error:
-                os.write(2, f"{error!r}\n".encode())
-                said = "2"
-            calls = library.counted()
-            if call == _AFTER:
-                library.lose()
-            os.write(writing, f" {said} {calls}".encode())
-            os._exit(0)
+            _child(scenario, folder, writing, call, fault, library)
         os.close(writing)
         with os.fdopen(reading) as stream:
             acknowledged, *rest = stream.read().split(" ")
         _, status = os.waitpid(child, 0)
-        powerless = os.waitstatus_to_exitcode(status) == _POWER
-        known = 0 if powerless and name == "sweep" and call != _AFTER else len(acknowledged)
-        wrong = judge(folder, known)
-        if not powerless and (not rest or rest[0] == "2"):
-            wrong = wrong or "no sentence"
-        if call == 0 and rest[:1] != ["0"]:
-            wrong = wrong or "fails without a fault"
-        left = [each.name for each in folder.iterdir() if each.name.startswith(".")]
-        if left and not powerless:
+        code = os.waitstatus_to_exitcode(status)
+        powerless = code == sessions.POWERLESS
+        known = len(acknowledged)
+        if powerless and not scenario.synced and call != _AFTER:
+            known = min(known, scenario.before)
+        wrong = scenario.judge(folder, known)
+        if powerless:
+            outcome.injected = True
+        elif code or len(rest) < 3 or rest[0] == "2":
+            wrong = wrong or f"no sentence, exit code {code}"
+        else:
+            outcome.calls, outcome.injected = int(rest[1]), rest[2] != "0"
+            outcome.writers = set(rest[3].split(",")) - {""}
+            if rest[0] != "0" and (fault.harmless or fault is NONE):
+                wrong = wrong or "fails although nothing has happened"
+        left = [str(each) for each in folder.rglob(".*")]
+        if left and not powerless and not (fault.lasting and outcome.injected):
             wrong = wrong or f"left behind: {left}"
-        return int(rest[1]) if len(rest) > 1 else 0, wrong
+        outcome.wrong = wrong
+    return outcome
 
 
-def _interrupted(times: list[float], library: ctypes.CDLL) -> list[str]:
-    """What is wrong after the power failed at some moments of a session."""
-    said = []
-    for moment in times:
-        with TemporaryDirectory() as place:
-            folder = Path(place).resolve() / "files"
-            folder.mkdir()
-            reading, writing = os.pipe()
-            child = os.fork()
-            if child == 0:
-                library.arm(os.fsencode(folder), ctypes.c_long(0), 0)
-                Timer(moment, library.lose).start()
-                _recorded(folder, partial(os.write, writing))
-                os._exit(0)
-            os.close(writing)
-            with os.fdopen(reading, "rb") as stream:
-                known = [each[0] for each in struct.iter_unpack("d", stream.read())]
-            _, status = os.waitpid(child, 0)
-            wrong = _judged_recorded(folder, known)
-            if os.waitstatus_to_exitcode(status) != _POWER:
-                wrong = wrong or "the power did not fail"
-            if wrong:
-                said.append(f"power after {moment:g} s: {wrong}\n")
-    return said
+def _chosen(total: int, most: int) -> list[int]:
+    """All calls, or about `most` of them: the first, the last, and some between; of many, more at both ends."""
+    if not 0 < most < total:
+        return list(range(1, total + 1))
+    spread = {1 + (total - 1) * k // max(most - 1, 1) for k in range(most)}
+    if most > _FEW:
+        ends = most // 3
+        between = {ends + (total - 2 * ends) * k // ends for k in range(1, ends + 1)}
+        spread = {*range(1, ends + 1), *between, *range(total - ends + 1, total + 1)}
+    return sorted(spread)
 
 
-def main(name: str, path: str, most: str = "0") -> None:
-    """Calls of a scenario, all or about `most` of them, with each fault."""
-    library = ctypes.CDLL(path)
+def tried(name: str, most: int, library: ctypes.CDLL, *, all_of_them: bool) -> Iterator[str]:
+    """Yield what is wrong; then the modules that write; then how many faults came."""
     if name == "session":
-        times = [0.7, 1.3, 2.1, 3.4] if int(most) else list(np.arange(0.3, 4.4, 0.1))
-        sys.stdout.writelines(_interrupted(times, library))
-        sys.stdout.write(f"{len(times)} faults\n")
+        count, said = sessions.interrupted(library, all_of_them=all_of_them)
+        yield from said
+        yield "hardware.session.recorder"
+        yield f"{count} faults"
         return
     # Twice: a first run of a command may make what later ones find.
-    (_, _), (total, failed) = (_faulted(name, 0, 0, library) for _ in range(2))
-    if failed:
-        sys.stdout.write(f"{failed}\n")
-    chosen = range(1, total + 1)
-    if 0 < int(most) < total:
-        chosen = sorted({1 + (total - 1) * k // (int(most) - 1) for k in range(int(most))})  # type: ignore[assignment]
-    faults = [(call, number) for call in chosen for number in _FAULTS]
-    for call, number in [*faults, (_AFTER, 0)]:
-        _, wrong = _faulted(name, call, number, library)
-        if wrong:
-            said = errno.errorcode.get(number, "power")
-            sys.stdout.write(f"call {call} of {total}, {said}: {wrong}\n")
-    sys.stdout.write(f"{len(faults) + 1} faults\n")
+    first, whole = (faulted(name, 0, NONE, library) for _ in range(2))
+    if whole.wrong:
+        yield whole.wrong
+    pairs = [
+        (call, fault)
+        for call in _chosen(whole.calls, most)
+        for fault in faults_at(call, all_of_them=all_of_them)
+    ]
+    injected = 0
+    for call, fault in [*pairs, (_AFTER, POWER)]:
+        outcome = faulted(name, call, fault, library)
+        injected += outcome.injected
+        if outcome.wrong:
+            yield f"call {call} of {whole.calls}, {fault.name}: {outcome.wrong}"
+    yield " ".join(sorted(first.writers | whole.writers))
+    yield f"{injected} faults"
+
+
+def main(path: str) -> None:
+    """Read lines of name, number of calls (0: all) and "all" or "some" faults; an empty line ends each answer."""
+    library = ctypes.CDLL(path)
+    for line in sys.stdin:
+        name, most, which = line.rstrip("\n").split("\t")
+        for said in tried(name, int(most), library, all_of_them=which == "all"):
+            sys.stdout.write(said.replace("\n", " ") + "\n")
+        sys.stdout.write("\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

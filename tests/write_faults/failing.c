@@ -1,225 +1,241 @@
-// Before the C library: the n-th call that changes a file in one folder fails, or the power does. With the power goes
-// what was not synced: bytes of a file, open or closed, and the names that its folder got since the folder was synced.
+// Before the C library: the n-th call that changes files in one folder fails, or the power does (disk.c). Functions that
+// would change them and that nothing here counts end the program: no call is missed.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <stdarg.h>
-#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
-enum { kMost = 4096, kNames = 256 };
-static char folder[PATH_MAX];
-static long calls, fails_at;
-static int error_number;  // 0: the power fails
-static off_t on_disk[kMost];
+#include "disk.h"
 
-// A name that its folder does not have on the disk yet; `from` is empty of a new file, `old` where nothing was replaced.
-struct name {
-  char to[PATH_MAX], from[PATH_MAX], old[PATH_MAX];
-};
-static struct name names[kNames];
-static int named;
-// Files that were closed with bytes that are not on the disk.
-struct closed {
-  char path[PATH_MAX];
-  off_t size;
-};
-static struct closed closed[kNames];
-static int forgotten;
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+enum { kPower = 0, kPart = -1 };  // instead of an error's number: the power fails; a part is written, without an error
+enum { kGrows = 1, kIsRepeated = 2, kWrites = 4 };  // what a call does: asks for space; may be interrupted; takes a part
+static atomic_long calls, injected;
+static long fails_at;
+static int kind, lasts;
 
-// Counts the calls in `where`; the one with the number `at` (from 1; 0: none) fails.
-void arm(const char* where, long at, int number) {
-  snprintf(folder, sizeof folder, "%s", where);
-  calls = 0;
+// Counts the calls in `where`; the one with the number `at` (from 1; 0: none) fails so. `lasting`: those after it do, too.
+void arm(const char* where, long at, int number, int lasting) {
+  disk_begin(where);
+  calls = injected = 0;
   fails_at = at;
-  error_number = number;
+  kind = number;
+  lasts = lasting;
 }
 
 long counted(void) { return calls; }
+long failed(void) { return injected; }
+void lose(void) { disk_lose(); }
 
-static int inside(const char* path) {
-  return folder[0] && path && strncmp(path, folder, strlen(folder)) == 0;
+// What this call gets: 0, an error's number, or kPart.
+static int fault(int does) {
+  const long call = ++calls;
+  if (!fails_at || call < fails_at) return 0;
+  if (call == fails_at && kind == kPower) disk_lose();
+  if (call > fails_at && !(lasts && (kind == EIO || does & kGrows))) return 0;  // a full disk still removes and renames
+  if (kind == EINTR && !(does & kIsRepeated)) return 0;
+  if (kind == kPart && !(does & kWrites)) return 0;
+  ++injected;
+  return kind;
 }
 
-static int path_of(int file, char* path) {
-  char link[64];
-  snprintf(link, sizeof link, "/proc/self/fd/%d", file);
-  const ssize_t length = readlink(link, path, PATH_MAX - 1);
-  if (length < 0) return 0;
-  path[length] = 0;
-  return 1;
+static int fails(int does) {
+  const int number = fault(does);
+  if (number > 0) errno = number;
+  return number > 0;
 }
 
 static int mine(int file) {
   char path[PATH_MAX];
-  return folder[0] && file >= 3 && file < kMost && path_of(file, path) && inside(path);
+  return disk_file(file, path);
 }
 
-static void give_up(const char* why) {
-  fprintf(stderr, "failing.c: %s\n", why);
-  abort();
-}
-
-static struct name* new_name(const char* to) {
-  if (named == kNames) give_up("too many names");
-  struct name* made = &names[named++];
-  snprintf(made->to, PATH_MAX, "%s", to);
-  made->from[0] = made->old[0] = 0;
-  return made;
-}
-
-// What stands in `place` since its last sync stays.
-static void keep_names(const char* place) {
-  const size_t length = strlen(place);
-  int left = 0;
-  for (int i = 0; i < named; ++i) {
-    const char* end = strrchr(names[i].to, '/');
-    if ((size_t)(end - names[i].to) == length && !strncmp(names[i].to, place, length)) {
-      if (names[i].old[0]) unlink(names[i].old);
-    } else {
-      names[left++] = names[i];
-    }
-  }
-  named = left;
-}
-
-// The power fails now.
-void lose(void) {
-  pthread_mutex_lock(&lock);
-  for (int file = 3; file < kMost; ++file) {
-    struct stat now;
-    if (!mine(file) || fstat(file, &now) || !S_ISREG(now.st_mode)) continue;
-    if (now.st_size > on_disk[file] && ftruncate(file, on_disk[file])) give_up("cannot lose bytes");
-  }
-  for (int i = 0; i < forgotten; ++i) {
-    if (truncate(closed[i].path, closed[i].size) && errno != ENOENT) give_up("cannot lose bytes");
-  }
-  int (*moved)(const char*, const char*);
-  *(void**)&moved = dlsym(RTLD_NEXT, "rename");
-  for (int i = named; i-- > 0;) {
-    const struct name* each = &names[i];
-    if (each->from[0]) {
-      moved(each->to, each->from);
-      if (each->old[0]) moved(each->old, each->to);
-    } else {
-      unlink(each->to);
-    }
-  }
-  _exit(99);
-}
-
-static int fails(void) {
-  if (!fails_at || ++calls != fails_at) return 0;
-  if (!error_number) lose();
-  errno = error_number;
-  return 1;
-}
-
-static int fails_counting(void) {
-  if (fails_at) return fails();
-  ++calls;
-  return 0;
-}
-
-#define REAL(name) static __typeof__(name)* real; if (!real) *(void**)&real = dlsym(RTLD_NEXT, #name)
+static int to_write(int file) { return mine(file) && (fcntl(file, F_GETFL) & O_ACCMODE) != O_RDONLY; }
 
 ssize_t write(int file, const void* data, size_t size) {
-  REAL(write);
-  if (mine(file) && fails_counting()) {
-    if (size > 1 && real(file, data, size / 2) < 0) return -1;  // a full disk takes a part
-    errno = error_number;
-    return -1;
+  if (mine(file)) {
+    if (disk_replaces(file)) disk_give_up("bytes that are on the disk are replaced: that is not followed");
+    const int number = fault(kGrows | kIsRepeated | (size > 1 ? kWrites : 0));
+    if (number == kPart) return syscall(SYS_write, file, data, size / 2);
+    if (number) {
+      if (size > 1 && number != EINTR && syscall(SYS_write, file, data, size / 2) < 0) return -1;  // a full disk takes a part
+      errno = number;
+      return -1;
+    }
   }
-  return real(file, data, size);
+  return syscall(SYS_write, file, data, size);
 }
 
-int fsync(int file) {
-  REAL(fsync);
-  if (!mine(file)) return real(file);
-  if (fails_counting()) return -1;
-  struct stat now;
-  if (fstat(file, &now)) return 0;
-  char path[PATH_MAX];
-  pthread_mutex_lock(&lock);
-  if (!S_ISDIR(now.st_mode)) {
-    on_disk[file] = now.st_size;
-  } else if (path_of(file, path)) {
-    keep_names(path);
+#define SYNC(name)                                         \
+  int name(int file) {                                     \
+    if (!mine(file)) return (int)syscall(SYS_##name, file); \
+    if (fails(kIsRepeated)) return -1;                     \
+    disk_synced(file);                                     \
+    return 0;                                              \
   }
-  pthread_mutex_unlock(&lock);
-  return 0;
-}
+SYNC(fsync)
+SYNC(fdatasync)
 
+// Network file systems say here what they could not write.
 int close(int file) {
-  REAL(close);
-  struct stat now;
-  if (mine(file) && !fstat(file, &now) && S_ISREG(now.st_mode) && now.st_size > on_disk[file]) {
-    pthread_mutex_lock(&lock);
-    if (forgotten == kNames) give_up("too many closed files");
-    closed[forgotten].size = on_disk[file];
-    path_of(file, closed[forgotten++].path);
-    pthread_mutex_unlock(&lock);
-  }
-  return real(file);
+  const int failing = to_write(file) && fails(0);
+  const int number = errno;
+  disk_closing(file);
+  const int done = (int)syscall(SYS_close, file);
+  if (failing) errno = number;
+  return failing ? -1 : done;
 }
 
-int ftruncate64(int file, off64_t size) {
-  REAL(ftruncate64);
-  if (mine(file) && fails_counting()) return -1;
-  if (mine(file) && on_disk[file] > size) on_disk[file] = size;
-  return real(file, size);
+#define CUT(name)                                          \
+  int name(int file, off_t size) {                         \
+    if (mine(file)) {                                      \
+      if (fails(kIsRepeated)) return -1;                   \
+      disk_cut(file, size);                                \
+    }                                                      \
+    return (int)syscall(SYS_ftruncate, file, size);        \
+  }
+CUT(ftruncate)
+CUT(ftruncate64)
+
+static int move_at(int place, const char* from, int other, const char* to, unsigned flags) {
+  char old[PATH_MAX], new[PATH_MAX];
+  if (!disk_path(other, to, new) || flags) return (int)syscall(SYS_renameat2, place, from, other, to, flags);
+  if (!disk_path(place, from, old)) disk_give_up("moved into the folder");
+  return fails(0) ? -1 : disk_move(old, new);
+}
+int rename(const char* from, const char* to) { return move_at(AT_FDCWD, from, AT_FDCWD, to, 0); }
+int renameat(int place, const char* from, int other, const char* to) { return move_at(place, from, other, to, 0); }
+int renameat2(int place, const char* from, int other, const char* to, unsigned flags) {
+  return move_at(place, from, other, to, flags);
 }
 
-int rename(const char* from, const char* to) {
-  REAL(rename);
-  if (!inside(to)) return real(from, to);
-  if (fails_counting()) return -1;
-  pthread_mutex_lock(&lock);
-  struct name* made = new_name(to);
-  snprintf(made->from, PATH_MAX, "%s", from);
-  // Beside the folder: who lists it does not see this.
-  snprintf(made->old, PATH_MAX, "%.3000s.old%d", folder, named);
-  unlink(made->old);
-  if (link(to, made->old)) made->old[0] = 0;
-  for (int i = 0; i < forgotten; ++i) {
-    if (!strcmp(closed[i].path, from)) snprintf(closed[i].path, PATH_MAX, "%s", to);
-  }
-  const int done = real(from, to);
-  if (done) --named;
-  pthread_mutex_unlock(&lock);
+int linkat(int place, const char* from, int other, const char* to, int flags) {
+  char new[PATH_MAX];
+  const int in = disk_path(other, to, new);
+  if (in && fails(kGrows)) return -1;
+  const int done = (int)syscall(SYS_linkat, place, from, other, to, flags);
+  if (in && !done) disk_made(new);
   return done;
 }
+int link(const char* from, const char* to) { return linkat(AT_FDCWD, from, AT_FDCWD, to, 0); }
 
-static int opened(int file, const char* path, int is_new) {
-  struct stat now;
-  if (file < 0 || file >= kMost || fstat(file, &now)) return file;
-  on_disk[file] = now.st_size;
-  if (is_new && inside(path)) {
-    pthread_mutex_lock(&lock);
-    new_name(path);
-    pthread_mutex_unlock(&lock);
+int mkdirat(int place, const char* path, mode_t mode) {
+  char whole[PATH_MAX];
+  const int in = disk_path(place, path, whole);
+  if (in && fails(kGrows)) return -1;
+  const int done = (int)syscall(SYS_mkdirat, place, path, mode);
+  if (in && !done) disk_made(whole);
+  return done;
+}
+int mkdir(const char* path, mode_t mode) { return mkdirat(AT_FDCWD, path, mode); }
+
+int fchmodat(int place, const char* path, mode_t mode, int flags) {
+  char whole[PATH_MAX];
+  if (disk_path(place, path, whole) && fails(0)) return -1;
+  (void)flags;
+  return (int)syscall(SYS_fchmodat, place, path, mode);
+}
+int chmod(const char* path, mode_t mode) { return fchmodat(AT_FDCWD, path, mode, 0); }
+int fchmod(int file, mode_t mode) {
+  if (mine(file) && fails(0)) return -1;
+  return (int)syscall(SYS_fchmod, file, mode);
+}
+
+// Not counted, since nothing is lost where it fails; but a disk that has gone bad removes nothing either.
+int unlinkat(int place, const char* path, int flags) {
+  char whole[PATH_MAX];
+  const int in = disk_path(place, path, whole);
+  if (in && fails_at && calls >= fails_at && lasts && kind == EIO) {
+    errno = EIO;
+    return -1;
   }
+  const int done = (int)syscall(SYS_unlinkat, place, path, flags);
+  if (in && !done) disk_removed(whole);
+  return done;
+}
+int unlink(const char* path) { return unlinkat(AT_FDCWD, path, 0); }
+int rmdir(const char* path) { return unlinkat(AT_FDCWD, path, AT_REMOVEDIR); }
+
+static int open_at(int place, const char* path, int flags, mode_t mode) {
+  char whole[PATH_MAX];
+  const int made = flags & O_CREAT && disk_path(place, path, whole);
+  if (made && fails(kGrows | kIsRepeated)) return -1;
+  const int is_new = made && faccessat(place, path, F_OK, 0);
+  const int file = (int)syscall(SYS_openat, place, path, flags, mode);
+  if (file >= 0) disk_opened(file);
+  if (file >= 0 && is_new) disk_made(whole);
   return file;
 }
 
-#define OPEN(name)                                                            \
-  int name(const char* path, int flags, ...) {                                \
-    REAL(name);                                                               \
-    va_list rest;                                                             \
-    va_start(rest, flags);                                                    \
-    const mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;           \
-    va_end(rest);                                                             \
-    if ((flags & O_CREAT) && inside(path) && fails_counting()) return -1;     \
-    const int is_new = (flags & O_CREAT) && access(path, F_OK);               \
-    return opened(real(path, flags, mode), path, is_new);                     \
-  }
-
+#define MODE                                                            \
+  va_list rest;                                                         \
+  va_start(rest, flags);                                                \
+  const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(rest, mode_t) : 0; \
+  va_end(rest);
+#define OPEN(name) \
+  int name(const char* path, int flags, ...) { MODE return open_at(AT_FDCWD, path, flags, mode); }
+#define OPEN_AT(name) \
+  int name(int place, const char* path, int flags, ...) { MODE return open_at(place, path, flags, mode); }
 OPEN(open)
 OPEN(open64)
+OPEN_AT(openat)
+OPEN_AT(openat64)
+
+// What else changes a file. A library that begins to use one of them is noticed.
+#define REAL(name) static __typeof__(name)* real; if (!real) *(void**)&real = dlsym(RTLD_NEXT, #name)
+#define NEVER(type, name, parameters, arguments, file)         \
+  type name parameters {                                       \
+    REAL(name);                                                \
+    if (to_write(file)) disk_give_up(#name " is not followed"); \
+    return real arguments;                                     \
+  }
+typedef const struct iovec* Parts;
+NEVER(ssize_t, pwrite, (int f, const void* d, size_t n, off_t at), (f, d, n, at), f)
+NEVER(ssize_t, pwrite64, (int f, const void* d, size_t n, off64_t at), (f, d, n, at), f)
+NEVER(ssize_t, writev, (int f, Parts d, int n), (f, d, n), f)
+NEVER(ssize_t, pwritev, (int f, Parts d, int n, off_t at), (f, d, n, at), f)
+NEVER(ssize_t, pwritev64, (int f, Parts d, int n, off64_t at), (f, d, n, at), f)
+NEVER(int, posix_fallocate, (int f, off_t at, off_t n), (f, at, n), f)
+NEVER(int, posix_fallocate64, (int f, off64_t at, off64_t n), (f, at, n), f)
+NEVER(int, fallocate, (int f, int mode, off_t at, off_t n), (f, mode, at, n), f)
+NEVER(int, fallocate64, (int f, int mode, off64_t at, off64_t n), (f, mode, at, n), f)
+NEVER(ssize_t, copy_file_range, (int from, off64_t* a, int f, off64_t* b, size_t n, unsigned flags),
+      (from, a, f, b, n, flags), f)
+NEVER(FILE*, fdopen, (int f, const char* mode), (f, mode), f)
+
+#define STREAM(name)                                                                      \
+  FILE* name(const char* path, const char* mode) {                                        \
+    REAL(name);                                                                           \
+    char whole[PATH_MAX];                                                                 \
+    if (disk_path(AT_FDCWD, path, whole) && strpbrk(mode, "wa+")) disk_give_up(#name " is not followed"); \
+    return real(path, mode);                                                              \
+  }
+STREAM(fopen)
+STREAM(fopen64)
+
+#define NAMED(name)                                                                       \
+  int name(char* path) {                                                                  \
+    REAL(name);                                                                           \
+    char whole[PATH_MAX];                                                                 \
+    if (disk_path(AT_FDCWD, path, whole)) disk_give_up(#name " is not followed");         \
+    return real(path);                                                                    \
+  }
+NAMED(mkstemp)
+NAMED(mkstemp64)
+
+#define MAP(name, offset)                                                                 \
+  void* name(void* at, size_t size, int allowed, int flags, int file, offset place) {     \
+    if (flags & MAP_SHARED && allowed & PROT_WRITE && to_write(file)) disk_give_up("mmap is not followed"); \
+    return (void*)syscall(SYS_mmap, at, size, allowed, flags, file, place);               \
+  }
+MAP(mmap, off_t)
+MAP(mmap64, off64_t)

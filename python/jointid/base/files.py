@@ -2,12 +2,14 @@
 
 import errno
 import os
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from io import FileIO
 from pathlib import Path
 
 from jointid.base.errors import InputError
 
+_NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOTSUP, errno.ENOSYS, errno.EMLINK)
 _LONGEST = 50  # characters of a name in that of a file beside it: the whole must be a name, too
 
 
@@ -30,20 +32,52 @@ def write_whole(path: Path, content: bytes) -> None:
     """
     target = path.resolve()
     for folder in (path.parent, target.parent):
-        if not folder.is_dir():
-            raise InputError(
-                f"the folder '{folder}' does not exist", place=str(path), remedy="create it first"
-            )
+        _require_folder(folder, path)
     if target.is_dir():
         raise IsADirectoryError(
             errno.EISDIR, "this is a folder; a file name is expected", str(path)
         )
-    try:
-        _replace(target, content)
-    except OSError as error:  # it names the temporary file, which nobody knows
-        if error.errno is None:  # a message of its own
-            raise
-        raise OSError(error.errno, error.strerror, str(path)) from error
+    mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
+    with _named(path):
+        _put(target, content, mode, Path.replace)
+
+
+def write_new(path: Path, content: bytes) -> None:
+    """Write a file that does not exist yet; there is the whole of it or nothing, also after a crash.
+
+    Parameters
+    ----------
+    path : Path
+    content : bytes
+
+    Raises
+    ------
+    InputError
+        The folder does not exist.
+    FileExistsError
+        The file exists; it is unchanged.
+    OSError
+        The folder cannot be written; the error names the path.
+    """
+    _require_folder(path.parent, path)
+    with _named(path):
+        _put(path, content, 0o666 & ~_umask(), _link)
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder, and those above it that are missing; on return their names are on the disk.
+
+    Without that, everything in it may go with the power, however safe the files are.
+
+    Raises
+    ------
+    OSError
+        It is a file, or cannot be made.
+    """
+    missing = [each for each in (path, *path.parents) if not each.exists()]
+    path.mkdir(parents=True, exist_ok=True)
+    for each in missing:
+        sync_folder(each.parent)
 
 
 def open_locked(path: Path) -> FileIO:
@@ -105,8 +139,42 @@ def new_beside(target: Path) -> tuple[int, Path]:
             return os.open(path, flags, 0o600), path
 
 
-def _replace(target: Path, content: bytes) -> None:
-    mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
+def _require_folder(folder: Path, path: Path) -> None:
+    if not folder.is_dir():
+        raise InputError(
+            f"the folder '{folder}' does not exist", place=str(path), remedy="create it first"
+        )
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Let an error name the file, not the one beside it, which nobody knows."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None:  # a message of its own
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def _link(temporary: Path, target: Path) -> None:
+    """Give a file its name, unless that is taken."""
+    try:
+        os.link(temporary, target)
+    except FileExistsError:
+        raise
+    except OSError as error:  # some file systems have no second names
+        if error.errno not in _NO_LINKS:
+            raise
+        if os.path.lexists(target):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST)) from None
+        temporary.replace(target)
+    else:
+        temporary.unlink()
+
+
+def _put(target: Path, content: bytes, mode: int, name: Callable[[Path, Path], object]) -> None:
+    """Write a file beside its place, and then let it be named."""
     handle, temporary = new_beside(target)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -114,7 +182,7 @@ def _replace(target: Path, content: bytes) -> None:
             file.flush()
             os.fsync(file.fileno())
         temporary.chmod(mode)
-        temporary.replace(target)
+        name(temporary, target)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise

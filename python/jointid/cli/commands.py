@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
+    from jointid.base.files import make_folder
     from jointid.cli.demo import demonstrate
     from jointid.cli.progress import Progress
     from jointid.report.saving import save_report
@@ -35,7 +36,7 @@ def demo(arguments: argparse.Namespace) -> None:
     with Progress(enabled=not arguments.quiet) as progress:
         demonstration = demonstrate(callback=progress)
     estimate = demonstration.estimate
-    arguments.output.mkdir(exist_ok=True)
+    make_folder(arguments.output)
     page = save_report(
         estimate,
         arguments.output / "report.html",

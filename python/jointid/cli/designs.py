@@ -278,6 +278,7 @@ def _draw(found: Design, path: Path) -> None:
     mpl.use("Agg")
     from matplotlib import pyplot
 
-    figure = found.plot()[0].figure
-    figure.savefig(path, dpi=150)  # type: ignore[union-attr]
+    from jointid.base.pictures import write_picture
+
+    write_picture(found.plot()[0].figure, path, dpi=150)
     pyplot.close("all")

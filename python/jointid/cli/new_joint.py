@@ -66,6 +66,7 @@ def add_new(new: CommandParser) -> None:
 
 def new(arguments: argparse.Namespace) -> None:
     """Write a joint file that did not exist."""
+    from jointid.base.files import write_new
     from jointid.joint.joint_file import load_joint
     from jointid.joint.new_file import new_joint_text
 
@@ -78,8 +79,7 @@ def new(arguments: argparse.Namespace) -> None:
     following = _next(arguments)
     text = new_joint_text(joint, ["A joint file of jointid.", *found, following])
     try:
-        with arguments.file.open("x", encoding="utf-8") as file:
-            file.write(text)
+        write_new(arguments.file, text.encode())
     except FileExistsError:
         raise _exists(arguments.file) from None
     load_joint(arguments.file)

@@ -95,8 +95,10 @@ def check_folder(argument: str, path: Path | None) -> None:
         return
     try:  # the permissions alone do not tell: some folders take no files from anybody
         handle, tried = new_beside(path)
-        os.close(handle)
-        tried.unlink()
+        try:
+            os.close(handle)
+        finally:
+            tried.unlink()
     except OSError as error:
         # In such a folder "no such file" is meant of the file to be written.
         reason = f" ({error.strerror})" if error.strerror and error.errno != errno.ENOENT else ""

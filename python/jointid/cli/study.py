@@ -213,12 +213,13 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
     if arguments.plot is not None:
         from matplotlib.figure import Figure
 
+        from jointid.base.pictures import write_picture
         from jointid.plot.study import sweep as draw
 
         figure = Figure(figsize=(6.4, 4.0), constrained_layout=True)
         y = study.swept[1] if len(study.swept) > 1 else None
         draw(study, y=y, ax=figure.subplots())
-        figure.savefig(arguments.plot, dpi=160)
+        write_picture(figure, arguments.plot, dpi=160)
     if arguments.report is not None:
         from jointid.report.saving import save_report
 

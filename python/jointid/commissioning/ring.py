@@ -12,6 +12,7 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.files import make_folder
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
 from jointid.hardware.bench.bench import Bench
@@ -193,7 +194,7 @@ def commission(
     fresh = False
     if folder is not None:
         fresh = not folder.exists()
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
     runs: list[BenchRun] = []
     estimates: list[Estimate] = []
     true_run: BenchRun | None = None

@@ -87,7 +87,7 @@ class StudyFile:
                     place=str(self.path),
                     remedy=_ANOTHER,
                 )
-            self._file.truncate(length)  # a line that a crash cut off
+            os.ftruncate(self._file.fileno(), length)  # a line that a crash cut off
             self._file.seek(length)
             if known["trials"] == header["trials"]:
                 return
@@ -107,8 +107,8 @@ class StudyFile:
             while rest:
                 rest = rest[self._file.write(rest) :]
         except BaseException:  # a full disk takes a part of a line, which the next one would follow
-            with suppress(OSError):
-                self._file.truncate(end)
+            with suppress(OSError):  # `FileIO.truncate` gives up when a signal interrupts it
+                os.ftruncate(self._file.fileno(), end)
                 self._file.seek(end)
             raise
         if time.monotonic() - self._synced > _SYNC:

@@ -7,6 +7,7 @@ import math
 import os
 import sys
 from collections import deque
+from pathlib import Path
 from typing import Any
 
 _PAUSE = 0.1  # [s] between two pictures
@@ -69,11 +70,12 @@ def main() -> int:
     """Draw until the input ends."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--span", type=float, required=True)
-    parser.add_argument("--picture")
+    parser.add_argument("--picture", type=Path)
     parser.add_argument("--no-window", action="store_true")
     arguments = parser.parse_args()
     import matplotlib as mpl
 
+    from jointid.base.pictures import write_picture
     from jointid.hardware.live.plot import POINT
 
     if arguments.no_window:
@@ -100,7 +102,7 @@ def main() -> int:
             pyplot.pause(_PAUSE)
     panels.draw()
     if arguments.picture is not None:
-        figure.savefig(arguments.picture)
+        write_picture(figure, arguments.picture)
     return 0
 
 

@@ -7,6 +7,7 @@ import queue
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -153,7 +154,10 @@ class Recorder:
         finally:
             self._syncing.close()
             for file in files:
-                file.close()
+                try:
+                    file.close()
+                except OSError as error:  # some network file systems say here what went wrong
+                    self._failure = self._failure or error
 
     def _write_waiting(self) -> bool:
         """Write what comes in a while; whether there will be more."""
@@ -192,7 +196,8 @@ def _created(path: Path, log: Path, header: bytes) -> tuple[AppendedFile, Append
         sync_folder(path.parent)
     except OSError:
         for file in made:
-            file.close()
+            with suppress(OSError):
+                file.close()
             file.path.unlink(missing_ok=True)
         raise
     return rows, frames

@@ -1,0 +1,30 @@
+"""Writing a picture completely or not at all."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+from jointid.base.files import write_whole
+
+
+def write_picture(figure: Any, path: Path, **options: Any) -> None:
+    """Write a figure of matplotlib to a file, which keeps what it was when that fails.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    path : Path
+        Its ending chooses the format.
+    **options
+        Of `Figure.savefig`.
+
+    Raises
+    ------
+    InputError, OSError
+        As of `write_whole`.
+    """
+    content = io.BytesIO()
+    figure.savefig(content, format=path.suffix[1:].lower(), **options)
+    write_whole(path, content.getvalue())
