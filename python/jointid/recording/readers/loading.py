@@ -23,7 +23,7 @@ from jointid.recording.signals import Kind, TorqueHold
 from jointid.recording.table import Table
 from jointid.recording.unpacking import allowing
 from jointid.recording.unreadable import read_leniently
-from jointid.recording.wide.one_joint import OneJoint, one_joint
+from jointid.recording.wide.one_joint import OneJoint, joint_of_table
 
 _SURROGATE = "[\ud800-\udfff]"
 _SORT = "sort the rows by time, or cut the file where a second run begins"
@@ -155,7 +155,7 @@ def load(
         raise also_joints(
             error, partial(table_of, file, kind=kind, unpacked=unpacked), columns
         ) from None
-    one = one_joint(table, joint, columns, extra)
+    one = joint_of_table(table, joint, columns, extra)
     ratio = _ratio(one, gear_ratio)
     read = partial(
         read_contents,
@@ -238,7 +238,7 @@ def load_runs(
     >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
-    one = one_joint(
+    one = joint_of_table(
         table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked),
         joint,
         columns,

@@ -43,7 +43,7 @@ class OneJoint:
     gear_ratio: float | None = None
 
 
-def one_joint(
+def joint_of_table(
     table: Table,
     joint: str | int | None,
     columns: Mapping[str, str | int | None] | None,
