@@ -120,121 +120,63 @@ __all__: list[str] = [
 ]
 
 class Control(enum.Enum):
-    """
-    What a model-based controller does about a term.
-    """
-
     compensated = ...
     feedback = ...
     refused = ...
 
 class Term:
-    """
-    One term of the torque balance: a coefficient times a basis.
-    """
     @property
-    def advice(self) -> str:
-        """
-        Which motion determines it.
-        """
+    def advice(self) -> str: ...
     @property
     def control(self) -> Control: ...
     @property
-    def decay(self) -> str:
-        """
-        How its friction fades with speed: the simulated joint's field of that name.
-        """
+    def decay(self) -> str: ...
     @property
-    def family(self) -> bool:
-        """
-        True if the row stands for a term an order, as in ripple_sin_2, or a signal.
-        """
+    def family(self) -> bool: ...
     @property
-    def friction(self) -> bool:
-        """
-        Whether it opposes motion, and so belongs to the friction map.
-        """
+    def friction(self) -> bool: ...
     @property
-    def key(self) -> str:
-        """
-        What a model lists; unique.
-        """
+    def key(self) -> str: ...
     @property
     def meaning(self) -> str: ...
     @property
-    def name(self) -> str:
-        """
-        The parameter's name.
-        """
+    def name(self) -> str: ...
     @property
-    def needs_load(self) -> bool:
-        """
-        Whether it is friction that depends on the drive's torque, too.
-        """
+    def needs_load(self) -> bool: ...
     @property
     def non_negative(self) -> bool: ...
     @property
-    def option(self) -> str:
-        """
-        What adds it: "name" is a friction model, else an option of the model; empty: always there.
-        """
+    def option(self) -> str: ...
     @property
-    def own(self) -> bool:
-        """
-        True for a term of a named signal, as viscous_of_q6.
-        """
+    def own(self) -> bool: ...
     @property
-    def shapes(self) -> list[str]:
-        """
-        Names of the basis's shape parameters.
-        """
+    def shapes(self) -> list[str]: ...
     @property
-    def simulated(self) -> bool:
-        """
-        Whether the simulated joint has it.
-        """
+    def simulated(self) -> bool: ...
     @property
     def unit(self) -> str: ...
     @property
     def unit_prismatic(self) -> str: ...
 
 class Shape:
-    """
-    A shape parameter: the basis of a term is not linear in it.
-    """
     @property
-    def advice(self) -> str:
-        """
-        Which motion determines it.
-        """
+    def advice(self) -> str: ...
     @property
-    def lower(self) -> float:
-        """
-        Default bound where speed_power is 0.
-        """
+    def lower(self) -> float: ...
     @property
     def meaning(self) -> str: ...
     @property
     def name(self) -> str: ...
     @property
-    def speed_power(self) -> float:
-        """
-        Default bounds are shares of the peak speed to this power; 0: lower, upper.
-        """
+    def speed_power(self) -> float: ...
     @property
     def unit(self) -> str: ...
     @property
     def unit_prismatic(self) -> str: ...
     @property
-    def upper(self) -> float:
-        """
-        Default bound where speed_power is 0.
-        """
+    def upper(self) -> float: ...
 
 class Model:
-    """
-    A friction model by name, as the keys of its terms.
-    """
     @property
     def equation(self) -> str: ...
     @property
@@ -243,17 +185,10 @@ class Model:
     def terms(self) -> list[str]: ...
 
 class Hold(enum.Enum):
-    """
-    The torque signal between samples.
-    """
-
     linear = ...
     zero_order = ...
 
 class Recording:
-    """
-    Signals of one run; arrays of floats are kept, not copied.
-    """
     def __init__(
         self,
         *,
@@ -269,10 +204,7 @@ class Recording:
         own: collections.abc.Sequence[
             tuple[str, typing.Annotated[numpy.typing.ArrayLike, numpy.float64]]
         ] = [],
-    ) -> None:
-        """
-        own: key of an own term and its integral from the first sample to each.
-        """
+    ) -> None: ...
     @property
     def samples(self) -> int: ...
 
@@ -341,103 +273,54 @@ class WindowOptions:
         """
 
 class Residual(enum.Enum):
-    """
-    What a window's residual is compared with.
-    """
-
     instruments = ...
     sensor = ...
     torque = ...
 
 class PenaltyFunction:
-    """
-    What every form of the penalty offers to a search.
-    """
     def __call__(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> float:
-        """
-        Sum of squared residuals.
-        """
+    ) -> float: ...
     def columns(
         self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Columns of all coefficients, shape (rows, coefficients).
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def evaluate(
         self,
         candidates: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
         *,
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Penalties of many candidates, one a column, shape (parameters, count).
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     def jacobian(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Derivatives of the residuals, shape (rows, parameters).
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def linear_columns(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Columns of the balance made linear there, shape (rows, coefficients).
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Residuals, one a row.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
     def coefficients(self) -> int: ...
     @property
-    def is_linear(self) -> bool:
-        """
-        Whether the balance is linear in the coefficients for given shapes.
-        """
+    def is_linear(self) -> bool: ...
     @property
     def names(self) -> list[str]: ...
     @property
     def residual(self) -> Residual: ...
     @property
-    def target(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        What the columns add up to [N m s], one a row.
-        """
+    def target(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
 class FirstStage:
-    """
-    The sensor's reading, explained by the motion of a rigid link.
-    """
     @property
-    def acceleration(self) -> bool:
-        """
-        Whether the velocity change is among the instruments; it is left out where gravity suffices.
-        """
+    def acceleration(self) -> bool: ...
     @property
-    def share(self) -> float:
-        """
-        Share of the reading's square without its mean that only they explain.
-        """
+    def share(self) -> float: ...
     @property
-    def strength(self) -> float:
-        """
-        F statistic of the link's columns beyond those of the balance.
-        """
+    def strength(self) -> float: ...
     @property
-    def weak(self) -> bool:
-        """
-        Whether they explain too little for an estimate of the gain.
-        """
+    def weak(self) -> bool: ...
 
 class Penalty(PenaltyFunction):
-    """
-    The integral penalty of recordings and terms, by the direct sum; a row is a window.
-    """
     def __init__(
         self,
         *,
@@ -457,117 +340,74 @@ class Penalty(PenaltyFunction):
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
-    ]:
-        """
-        The same, and what `columns` returns at its shapes.
-        """
+    ]: ...
     def bending(
         self,
         recordings: collections.abc.Sequence[Recording],
         mask_standstill: bool,
         theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        What the windows' friction lacks because the trapezoid rule takes it as straight.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     def columns(
         self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Window integrals of all coefficients, shape (windows, coefficients), of the reading itself.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def linearised(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> tuple[
         float,
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
-    ]:
-        """
-        Penalty, window residuals with the reading itself, and the derivatives of the penalty's residuals, in one pass: what the sandwich of an estimate's covariance is made of.
-        """
+    ]: ...
     def link_motion(
         self,
         recordings: collections.abc.Sequence[Recording],
         mask_standstill: bool,
         periods: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
         slow: typing.SupportsFloat | typing.SupportsIndex,
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        How a rigid link moves in each window, shape (window_count, 11): how much faster it becomes; cosine and sine of the angle in its middle, times the integrated time; that time; how far the torque rises over the usable intervals, times the recording's period in `periods`; friction of one size, viscous, and fading with the speed over `slow`; the integrals of the torque and of the reading; the time from first to last sample.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def project_reading(
         self,
         free: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
         *,
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
-    ) -> None:
-        """
-        Replace the gain's column by the part of the reading that the motion explains; `free` are the parameters that vary. Only with the residual 'instruments', which is that of the torque before.
-        """
+    ) -> None: ...
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Residuals of the windows, with the reading itself.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     def torque_steps(
         self, recordings: collections.abc.Sequence[Recording], mask_standstill: bool
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        How far the torque rises over each window's usable intervals.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
     def cumulative(self) -> bool: ...
     @property
-    def first_stage(self) -> FirstStage | None:
-        """
-        How the motion explains the reading; None if it is not projected.
-        """
+    def first_stage(self) -> FirstStage | None: ...
     @property
     def noise_limited(self) -> bool: ...
     @property
     def noise_share(self) -> float: ...
     @property
-    def reading(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Window integrals of the sensor's reading. Only with a gain.
-        """
+    def reading(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
-        """
-        Which recording each window belongs to, shape (window_count,).
-        """
+    def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]: ...
     @property
     def standing_samples(self) -> int: ...
     @property
-    def terms(self) -> list[Term]:
-        """
-        The term of each coefficient.
-        """
+    def terms(self) -> list[Term]: ...
     @property
     def total_samples(self) -> int: ...
     @property
     def unusable_intervals(self) -> int: ...
     @property
-    def usable_duration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Integrated time of each window [s].
-        """
+    def usable_duration(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
     def window_count(self) -> int: ...
     @property
     def window_duration(self) -> float: ...
     @property
-    def windows(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 2]"]:
-        """
-        First and last sample of each window, shape (window_count, 2).
-        """
+    def windows(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 2]"]: ...
 
 class CompressedPenalty(PenaltyFunction):
-    """
-    The same penalty within bounds, at a cost that does not depend on the recording's length.
-    """
     def __init__(
         self,
         penalty: Penalty,
@@ -577,30 +417,15 @@ class CompressedPenalty(PenaltyFunction):
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
     @property
-    def error(self) -> float:
-        """
-        Largest error found between those, of the columns' squared size.
-        """
+    def error(self) -> float: ...
     @property
-    def exact(self) -> bool:
-        """
-        Whether it meets the tolerance; else use the direct sum.
-        """
+    def exact(self) -> bool: ...
     @property
-    def passes(self) -> int:
-        """
-        Shapes at which the samples were summed.
-        """
+    def passes(self) -> int: ...
     @property
-    def reason(self) -> str:
-        """
-        Why not; empty if it does.
-        """
+    def reason(self) -> str: ...
 
 class PenaltyParts:
-    """
-    A penalty that is summed part by part, for what needs it once or twice.
-    """
     def __init__(
         self,
         *,
@@ -620,10 +445,7 @@ class PenaltyParts:
         start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         *,
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        The minimum within bounds near a start.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     def ripple(
         self,
         theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -631,18 +453,11 @@ class PenaltyParts:
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
         halves: typing.SupportsInt | typing.SupportsIndex,
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
-    ) -> tuple[int, float, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]:
-        """
-        Number of windows, sum of squared mean residuals, and the magnitude of their sum over each half multiple of the motor's angle.
-        """
+    ) -> tuple[int, float, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]: ...
     @property
     def window_count(self) -> int: ...
 
 class Stop(enum.Enum):
-    """
-    Why a search ended.
-    """
-
     converged = ...
     generations = ...
     observer = ...
@@ -1011,62 +826,35 @@ class Generation:
     def number(self) -> int: ...
 
 class GaState:
-    """
-    A genetic search between two generations, from which it goes on to the same bits.
-    """
     @staticmethod
-    def from_bytes(content: bytes) -> GaState:
-        """
-        What `to_bytes` gave; ValueError for anything else.
-        """
+    def from_bytes(content: bytes) -> GaState: ...
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> bytes: ...
     def __hash__(self) -> int: ...
     def __setstate__(self, arg0: bytes) -> None: ...
-    def to_bytes(self) -> bytes:
-        """
-        Exact, with a checksum: the content of a checkpoint file.
-        """
+    def to_bytes(self) -> bytes: ...
     @property
-    def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Parameters of the best so far.
-        """
+    def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
     def evaluations(self) -> int: ...
     @property
-    def generation(self) -> int:
-        """
-        The last evaluated.
-        """
+    def generation(self) -> int: ...
     @property
-    def genes(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Free parameters scaled to [0, 1], shape (parameters, individuals).
-        """
+    def genes(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     @property
     def history(self) -> list[Generation]: ...
     @property
     def options(self) -> GaOptions: ...
     @property
-    def penalties(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Of the individuals.
-        """
+    def penalties(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def penalty(self) -> float:
-        """
-        Its penalty.
-        """
+    def penalty(self) -> float: ...
     @property
     def seed(self) -> int: ...
     @property
     def trial(self) -> int: ...
 
 class GaResult:
-    """
-    Best individual, history and why the search ended.
-    """
     @property
     def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
@@ -1076,22 +864,13 @@ class GaResult:
     @property
     def penalty(self) -> float: ...
     @property
-    def series(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 7]"]:
-        """
-        A row a generation: number, best, mean, diversity, probabilities of crossover and mutation, evaluations.
-        """
+    def series(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 7]"]: ...
     @property
-    def state(self) -> GaState | None:
-        """
-        From which the search can go on; None after a random search.
-        """
+    def state(self) -> GaState | None: ...
     @property
     def stop(self) -> Stop: ...
 
 class TrialResult:
-    """
-    What is left of one of many searches.
-    """
     @property
     def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
@@ -1104,9 +883,6 @@ class TrialResult:
     def stop(self) -> Stop: ...
 
 class SeparableResult:
-    """
-    The separable optimum.
-    """
     @property
     def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
@@ -1115,21 +891,12 @@ class SeparableResult:
     def penalty(self) -> float: ...
 
 class Projected:
-    """
-    The projected search's optimum, if any.
-    """
     @property
     def found(self) -> SeparableResult | None: ...
     @property
-    def reason(self) -> str:
-        """
-        Why nothing was found; empty otherwise.
-        """
+    def reason(self) -> str: ...
 
 class PolishResult:
-    """
-    A local optimum.
-    """
     @property
     def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
@@ -1140,32 +907,17 @@ class PolishResult:
     def penalty(self) -> float: ...
 
 class MotionScale:
-    """
-    Scale of a motion, which the mask compares speeds with.
-    """
     def __init__(self, recording: Recording) -> None: ...
     @property
-    def memory(self) -> float:
-        """
-        Time at rest that distinguishes a standing joint from a slow one [s].
-        """
+    def memory(self) -> float: ...
     @property
     def moves(self) -> bool: ...
     @property
-    def peak(self) -> float:
-        """
-        Largest speed.
-        """
+    def peak(self) -> float: ...
     @property
-    def travel(self) -> float:
-        """
-        From the lowest position to the highest.
-        """
+    def travel(self) -> float: ...
 
 class SlidingPenalty:
-    """
-    The penalty over the last seconds of a motion that goes on.
-    """
     def __init__(
         self,
         *,
@@ -1184,93 +936,45 @@ class SlidingPenalty:
         samples: Recording,
         begin: typing.SupportsInt | typing.SupportsIndex,
         end: typing.SupportsInt | typing.SupportsIndex,
-    ) -> None:
-        """
-        Digest the sample intervals begin to end - 1; the other samples are context.
-        """
-    def compressed(self) -> CompressedPenalty | None:
-        """
-        The penalty over all stretches; None while there is no window with motion.
-        """
-    def forget(self, time: typing.SupportsFloat | typing.SupportsIndex) -> None:
-        """
-        Drop the stretches that end no later than this time [s].
-        """
+    ) -> None: ...
+    def compressed(self) -> CompressedPenalty | None: ...
+    def forget(self, time: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     def linearised(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> tuple[
         float,
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
-    ]:
-        """
-        Penalty, window residuals and derivatives, by the direct sum.
-        """
-    def total(self, coefficient: typing.SupportsInt | typing.SupportsIndex) -> float:
-        """
-        Sum of a constant column over all windows.
-        """
+    ]: ...
+    def total(self, coefficient: typing.SupportsInt | typing.SupportsIndex) -> float: ...
     @property
-    def begin(self) -> float:
-        """
-        [s]
-        """
+    def begin(self) -> float: ...
     @property
-    def end(self) -> float:
-        """
-        [s]
-        """
+    def end(self) -> float: ...
     @property
     def stretches(self) -> int: ...
     @property
-    def usable_duration(self) -> float:
-        """
-        Integrated time of all windows [s].
-        """
+    def usable_duration(self) -> float: ...
     @property
     def window_count(self) -> int: ...
 
 class PositionNoise:
-    """
-    Noise of a position signal.
-    """
     @property
-    def quantum(self) -> float:
-        """
-        The encoder's step [rad or m]; 0: positions lie on no grid.
-        """
+    def quantum(self) -> float: ...
     @property
-    def sigma(self) -> float:
-        """
-        Standard deviation at a sample, apart from that of the stamps [rad or m].
-        """
+    def sigma(self) -> float: ...
     @property
-    def timing(self) -> float:
-        """
-        Scatter of the time stamps [s].
-        """
+    def timing(self) -> float: ...
 
 class LocalVelocity:
-    """
-    Velocity derived from position.
-    """
     @property
-    def noise(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Its standard deviation at each sample.
-        """
+    def noise(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def refined(self) -> bool:
-        """
-        False: the noise is harmless, every velocity is the difference.
-        """
+    def refined(self) -> bool: ...
     @property
     def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
 class SmoothWindows:
-    """
-    Smooth windows over a stretch without a gap.
-    """
     def __init__(
         self,
         time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
@@ -1297,108 +1001,53 @@ class SmoothWindows:
         ] = [],
         jumping: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None,
         answer: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        What a torque or a reading may be a sum of; a row a window.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def rates(
         self, signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Mean rate of a signal in each window.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def used(self) -> numpy.typing.NDArray[numpy.int64]:
-        """
-        Middle samples of the windows that are used.
-        """
+    def used(self) -> numpy.typing.NDArray[numpy.int64]: ...
 
 class FittedShift:
-    """
-    A shift, with its standard error [s].
-    """
     @property
     def conservative(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
     def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
-    def leading(self) -> float | None:
-        """
-        The first column's coefficient without a shift; None where one was searched.
-        """
+    def leading(self) -> float | None: ...
     @property
     def unexplained(self) -> float: ...
     @property
     def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
 
 class RepeatedNoise:
-    """
-    Noise of a reading in the torque.
-    """
     @property
-    def earlier(self) -> float:
-        """
-        By how many samples the torque has it earlier.
-        """
+    def earlier(self) -> float: ...
     @property
-    def error(self) -> float:
-        """
-        Standard error, in samples.
-        """
+    def error(self) -> float: ...
     @property
-    def share(self) -> float:
-        """
-        Correlation of both noises.
-        """
+    def share(self) -> float: ...
 
 class SpikeRule(enum.Enum):
-    """
-    What a spike of a signal is held against.
-    """
-
     command = ...
     other = ...
     position = ...
 
 class Limit:
-    """
-    Samples at one of a signal's extremes.
-    """
     @property
-    def moving(self) -> int:
-        """
-        On it while the joint moves.
-        """
+    def moving(self) -> int: ...
     @property
-    def near(self) -> int:
-        """
-        Within 1 % of the range, those on it too.
-        """
+    def near(self) -> int: ...
     @property
-    def there(self) -> int:
-        """
-        On it.
-        """
+    def there(self) -> int: ...
 
 class SignalFacts:
-    """
-    What a single signal shows by itself.
-    """
     @property
-    def changes(self) -> int:
-        """
-        Steps that are not zero.
-        """
+    def changes(self) -> int: ...
     @property
-    def fine(self) -> bool:
-        """
-        The usual step is at least 30 smallest ones.
-        """
+    def fine(self) -> bool: ...
     @property
-    def frozen(self) -> int:
-        """
-        Of those: in long runs.
-        """
+    def frozen(self) -> int: ...
     @property
     def highest(self) -> float: ...
     @property
@@ -1406,129 +1055,69 @@ class SignalFacts:
     @property
     def lowest(self) -> float: ...
     @property
-    def moving(self) -> int:
-        """
-        Intervals at a fair speed.
-        """
+    def moving(self) -> int: ...
     @property
-    def smallest(self) -> float:
-        """
-        The smallest of those; infinite: none.
-        """
+    def smallest(self) -> float: ...
     @property
-    def stale(self) -> int:
-        """
-        Of those: no step, and not on a limit.
-        """
+    def stale(self) -> int: ...
     @property
     def upper(self) -> Limit: ...
 
 class Spike:
-    """
-    The largest spike of a signal.
-    """
     @property
-    def count(self) -> int:
-        """
-        0: none.
-        """
+    def count(self) -> int: ...
     @property
     def height(self) -> float: ...
     @property
     def index(self) -> int: ...
 
 class Agreement:
-    """
-    position change = scale * integrated velocity + lag * velocity change.
-    """
     @property
-    def lag(self) -> float:
-        """
-        [s]
-        """
+    def lag(self) -> float: ...
     @property
-    def lag_error(self) -> float:
-        """
-        [s]
-        """
+    def lag_error(self) -> float: ...
     @property
     def scale(self) -> float: ...
 
 class Inspection:
-    """
-    What a recording shows by itself.
-    """
     @property
     def agreement(self) -> Agreement | None: ...
     @property
-    def facts(self) -> list[SignalFacts]:
-        """
-        One a channel.
-        """
+    def facts(self) -> list[SignalFacts]: ...
     @property
-    def jump(self) -> int:
-        """
-        The sample before a jump of the position; -1: none.
-        """
+    def jump(self) -> int: ...
     @property
     def peak_speed(self) -> float: ...
     @property
-    def spikes(self) -> list[Spike]:
-        """
-        One a channel.
-        """
+    def spikes(self) -> list[Spike]: ...
     @property
     def swing(self) -> float: ...
     @property
-    def timing_errors(self) -> tuple[float, float]:
-        """
-        Scatter of the samples' times about the stamps and about an even grid [s].
-        """
+    def timing_errors(self) -> tuple[float, float]: ...
 
 class Clustered:
-    """
-    The sandwich of one clustering of windows.
-    """
     @property
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     @property
-    def freedom(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Behind each parameter's variance.
-        """
+    def freedom(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
     def pooled_freedom(self) -> float: ...
     @property
     def segments(self) -> int: ...
     @property
-    def size(self) -> float:
-        """
-        Of all corrected scores, squared.
-        """
+    def size(self) -> float: ...
 
 class Folds:
-    """
-    Cross-validated least squares on any of many columns.
-    """
     def __init__(
         self,
         rows: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
         edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
-    ) -> None:
-        """
-        The last column is the target.
-        """
+    ) -> None: ...
     def misfit(
         self, columns: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Sum of squares left in each block, with these columns fitted to the other blocks.
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
 class Trajectory:
-    """
-    A desired motion; use it through jointid.Trajectory.
-    """
     @staticmethod
     def multisine(
         *,
@@ -1567,68 +1156,16 @@ class Trajectory:
         acceleration: typing.SupportsFloat | typing.SupportsIndex,
         duration: typing.SupportsFloat | typing.SupportsIndex,
     ) -> Trajectory: ...
-    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float, float]:
-        """
-        Position, velocity and acceleration at a time.
-        """
+    def at(
+        self, time: typing.SupportsFloat | typing.SupportsIndex
+    ) -> tuple[float, float, float]: ...
     def sample(
         self, time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Position, velocity and acceleration, shape (times, 3).
-        """
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     @property
     def duration(self) -> float: ...
 
 class SimulatedJoint:
-    """
-    A joint as the core simulates it: output side, SI.
-
-    Parameters
-    ----------
-    inertia : default 1.0
-        Of the drive [kg·m²].
-    link_inertia : default 0.0
-        Behind the torque sensor [kg·m²].
-    load : default 0.0
-        Constant torque behind the sensor [N·m].
-    torque_offset : default 0.0
-        Constant torque in the drive [N·m].
-    torque_limit : default 1e+300
-        Of the drive [N·m].
-    decay : default 'gaussian'
-        How static friction fades: "none", "gaussian" (4-1) or "general" (2-3).
-    coulomb_positive : default 0.0
-        [N·m]
-    coulomb_negative : default 0.0
-        [N·m]
-    static_positive : default 0.0
-        Excess over Coulomb [N·m].
-    static_negative : default 0.0
-        Excess over Coulomb [N·m].
-    viscous_positive : default 0.0
-        [N·m·s/rad]
-    viscous_negative : default 0.0
-        [N·m·s/rad]
-    stribeck : default 0.0
-        Of the gaussian decay [s²/rad²].
-    stribeck_velocity : default 1.0
-        Of the general decay [rad/s].
-    stribeck_exponent : default 1.0
-        Of the general decay [1].
-    load_friction : default 0.0
-        Dry friction per torque of the drive [1].
-    bristles : default False
-        Friction behind a spring (Dahl, LuGre).
-    bristle_stiffness : default 0.0
-        [N·m/rad]
-    bristle_damping : default 0.0
-        [N·m·s/rad]
-    weights : default []
-        Torque [N·m] and angle [rad] of each weight.
-    harmonics : default []
-        Order [1], cos and sin part [N·m].
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -1659,10 +1196,7 @@ class SimulatedJoint:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -1687,115 +1221,49 @@ class SimulatedJoint:
         bristle_damping: float = ...,
         weights: list[tuple[float, float]] = ...,
         harmonics: list[tuple[float, float, float]] = ...,
-    ) -> SimulatedJoint:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> SimulatedJoint: ...
     @property
-    def bristle_damping(self) -> float:
-        """
-        [N·m·s/rad]
-        """
+    def bristle_damping(self) -> float: ...
     @property
-    def bristle_stiffness(self) -> float:
-        """
-        [N·m/rad]
-        """
+    def bristle_stiffness(self) -> float: ...
     @property
-    def bristles(self) -> bool:
-        """
-        Friction behind a spring (Dahl, LuGre).
-        """
+    def bristles(self) -> bool: ...
     @property
-    def coulomb_negative(self) -> float:
-        """
-        [N·m]
-        """
+    def coulomb_negative(self) -> float: ...
     @property
-    def coulomb_positive(self) -> float:
-        """
-        [N·m]
-        """
+    def coulomb_positive(self) -> float: ...
     @property
-    def decay(self) -> str:
-        """
-        How static friction fades: "none", "gaussian" (4-1) or "general" (2-3).
-        """
+    def decay(self) -> str: ...
     @property
-    def harmonics(self) -> list[tuple[float, float, float]]:
-        """
-        Order [1], cos and sin part [N·m].
-        """
+    def harmonics(self) -> list[tuple[float, float, float]]: ...
     @property
-    def inertia(self) -> float:
-        """
-        Of the drive [kg·m²].
-        """
+    def inertia(self) -> float: ...
     @property
-    def link_inertia(self) -> float:
-        """
-        Behind the torque sensor [kg·m²].
-        """
+    def link_inertia(self) -> float: ...
     @property
-    def load(self) -> float:
-        """
-        Constant torque behind the sensor [N·m].
-        """
+    def load(self) -> float: ...
     @property
-    def load_friction(self) -> float:
-        """
-        Dry friction per torque of the drive [1].
-        """
+    def load_friction(self) -> float: ...
     @property
-    def static_negative(self) -> float:
-        """
-        Excess over Coulomb [N·m].
-        """
+    def static_negative(self) -> float: ...
     @property
-    def static_positive(self) -> float:
-        """
-        Excess over Coulomb [N·m].
-        """
+    def static_positive(self) -> float: ...
     @property
-    def stribeck(self) -> float:
-        """
-        Of the gaussian decay [s²/rad²].
-        """
+    def stribeck(self) -> float: ...
     @property
-    def stribeck_exponent(self) -> float:
-        """
-        Of the general decay [1].
-        """
+    def stribeck_exponent(self) -> float: ...
     @property
-    def stribeck_velocity(self) -> float:
-        """
-        Of the general decay [rad/s].
-        """
+    def stribeck_velocity(self) -> float: ...
     @property
-    def torque_limit(self) -> float:
-        """
-        Of the drive [N·m].
-        """
+    def torque_limit(self) -> float: ...
     @property
-    def torque_offset(self) -> float:
-        """
-        Constant torque in the drive [N·m].
-        """
+    def torque_offset(self) -> float: ...
     @property
-    def viscous_negative(self) -> float:
-        """
-        [N·m·s/rad]
-        """
+    def viscous_negative(self) -> float: ...
     @property
-    def viscous_positive(self) -> float:
-        """
-        [N·m·s/rad]
-        """
+    def viscous_positive(self) -> float: ...
     @property
-    def weights(self) -> list[tuple[float, float]]:
-        """
-        Torque [N·m] and angle [rad] of each weight.
-        """
+    def weights(self) -> list[tuple[float, float]]: ...
 
 class Sensors:
     """
@@ -1973,9 +1441,6 @@ class Sensors:
         """
 
 class ControlRun:
-    """
-    A controller at work, one step at a time.
-    """
     def step(
         self,
         *,
@@ -1986,31 +1451,11 @@ class ControlRun:
         reference: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         reference_velocity: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         reference_acceleration: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-    ) -> float:
-        """
-        Return the torque [N·m] to hold until the next step.
-
-        Parameters
-        ----------
-        time, position, velocity : float
-            [s], [rad], [rad/s], as measured.
-        sensor : float
-            Raw reading of the torque sensor. Default 0.
-        reference, reference_velocity, reference_acceleration : float
-            Desired motion [rad], [rad/s], [rad/s²]. Default 0.
-
-        Raises
-        ------
-        ValueError
-            One of them is not finite.
-        """
+    ) -> float: ...
     @property
     def period(self) -> float: ...
     @property
-    def saturations(self) -> int:
-        """
-        How often the limit cut the torque.
-        """
+    def saturations(self) -> int: ...
     @property
     def torque_limit(self) -> float: ...
 
@@ -2716,24 +2161,6 @@ class LugreObserver:
         """
 
 class Scenario:
-    """
-    What all simulations of a batch share.
-
-    Parameters
-    ----------
-    duration : default 1.0
-        [s]
-    control_period : default 0.001
-        Time for which a command is held [s].
-    integration_step : default 0.0005
-        [s]; a whole number of them is a control period.
-    sample_every : default 1
-        Control periods a recorded sample.
-    settling : default 0.0
-        Left out of the tracking error [s].
-    sensors : default Sensors(encoder_counts=0.0, velocity='exact', velocity_counts=5, velocity_time=0.01, torque_noise=0.0, ripple=0.0, ripple_order=2.0, ripple_phase=0.0, nonlinearity=0.0, full_scale=650.0, filter_order=0, filter_frequency=5000.0, converter_bits=0, converter_range=1.0, converter_noise=0.0, converter_samples=1)
-        The sensors.
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -2749,10 +2176,7 @@ class Scenario:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -2762,64 +2186,21 @@ class Scenario:
         sample_every: int = ...,
         settling: float = ...,
         sensors: Sensors = ...,
-    ) -> Scenario:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> Scenario: ...
     @property
-    def control_period(self) -> float:
-        """
-        Time for which a command is held [s].
-        """
+    def control_period(self) -> float: ...
     @property
-    def duration(self) -> float:
-        """
-        [s]
-        """
+    def duration(self) -> float: ...
     @property
-    def integration_step(self) -> float:
-        """
-        [s]; a whole number of them is a control period.
-        """
+    def integration_step(self) -> float: ...
     @property
-    def sample_every(self) -> int:
-        """
-        Control periods a recorded sample.
-        """
+    def sample_every(self) -> int: ...
     @property
-    def sensors(self) -> Sensors:
-        """
-        The sensors.
-        """
+    def sensors(self) -> Sensors: ...
     @property
-    def settling(self) -> float:
-        """
-        Left out of the tracking error [s].
-        """
+    def settling(self) -> float: ...
 
 class Setup:
-    """
-    One simulation of a batch.
-
-    Parameters
-    ----------
-    joint : default SimulatedJoint(inertia=1.0, link_inertia=0.0, load=0.0, torque_offset=0.0, torque_limit=1e+300, decay='gaussian', coulomb_positive=0.0, coulomb_negative=0.0, static_positive=0.0, static_negative=0.0, viscous_positive=0.0, viscous_negative=0.0, stribeck=0.0, stribeck_velocity=1.0, stribeck_exponent=1.0, load_friction=0.0, bristles=False, bristle_stiffness=0.0, bristle_damping=0.0, weights=[], harmonics=[])
-        What is simulated.
-    controller : default OpenLoop(gain=1.0)
-        Any controller.
-    gear_ratio : default 1.0
-        Motor's angle per output angle.
-    sensor_gain : default 1.0
-        Torque per unit of the reading.
-    sensor_offset : default 0.0
-        [N·m]
-    position : default 0.0
-        At the start [rad].
-    velocity : default 0.0
-        At the start [rad/s].
-    seed : default 0
-        Of the noise.
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -2837,10 +2218,7 @@ class Setup:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -2852,100 +2230,45 @@ class Setup:
         position: float = ...,
         velocity: float = ...,
         seed: int = ...,
-    ) -> Setup:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> Setup: ...
     @property
-    def controller(self) -> OpenLoop | Pd | Pid | CompensatedPid | AdaptiveRobust | LugreObserver:
-        """
-        Any controller.
-        """
+    def controller(
+        self,
+    ) -> OpenLoop | Pd | Pid | CompensatedPid | AdaptiveRobust | LugreObserver: ...
     @property
-    def gear_ratio(self) -> float:
-        """
-        Motor's angle per output angle.
-        """
+    def gear_ratio(self) -> float: ...
     @property
-    def joint(self) -> SimulatedJoint:
-        """
-        What is simulated.
-        """
+    def joint(self) -> SimulatedJoint: ...
     @property
-    def position(self) -> float:
-        """
-        At the start [rad].
-        """
+    def position(self) -> float: ...
     @property
-    def seed(self) -> int:
-        """
-        Of the noise.
-        """
+    def seed(self) -> int: ...
     @property
-    def sensor_gain(self) -> float:
-        """
-        Torque per unit of the reading.
-        """
+    def sensor_gain(self) -> float: ...
     @property
-    def sensor_offset(self) -> float:
-        """
-        [N·m]
-        """
+    def sensor_offset(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        At the start [rad/s].
-        """
+    def velocity(self) -> float: ...
 
 class Outcome:
-    """
-    The result of one simulation.
-    """
     @property
-    def peak_error(self) -> float:
-        """
-        Of tracking, after settling [rad].
-        """
+    def peak_error(self) -> float: ...
     @property
-    def rms_error(self) -> float:
-        """
-        Of tracking, after settling [rad].
-        """
+    def rms_error(self) -> float: ...
     @property
-    def saturations(self) -> int:
-        """
-        Control periods in which the torque limit cut the command.
-        """
+    def saturations(self) -> int: ...
     @property
-    def signals(self) -> dict[str, typing.Any]:
-        """
-        Recorded and true signals by name.
-        """
+    def signals(self) -> dict[str, typing.Any]: ...
 
 class Observation:
-    """
-    What sensors show at one instant.
-    """
     @property
-    def position(self) -> float:
-        """
-        [rad]
-        """
+    def position(self) -> float: ...
     @property
-    def reading(self) -> float:
-        """
-        Of the torque sensor.
-        """
+    def reading(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        [rad/s]
-        """
+    def velocity(self) -> float: ...
 
 class SteppedJoint:
-    """
-    A simulated joint that is moved step by step.
-    """
     def __init__(
         self,
         *,
@@ -2964,62 +2287,18 @@ class SteppedJoint:
         self,
         torque: typing.SupportsFloat | typing.SupportsIndex,
         duration: typing.SupportsFloat | typing.SupportsIndex,
-    ) -> None:
-        """
-        Hold a torque [N·m] for a time [s].
-        """
-    def observe(self) -> Observation:
-        """
-        What the sensors show; advances their noise.
-        """
+    ) -> None: ...
+    def observe(self) -> Observation: ...
     @property
-    def link_torque(self) -> float:
-        """
-        [N·m]
-        """
+    def link_torque(self) -> float: ...
     @property
-    def position(self) -> float:
-        """
-        [rad]
-        """
+    def position(self) -> float: ...
     @property
-    def time(self) -> float:
-        """
-        [s]
-        """
+    def time(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        [rad/s]
-        """
+    def velocity(self) -> float: ...
 
 class ServoLoop:
-    """
-    A servo with its position loop, as the core simulates it.
-
-    Parameters
-    ----------
-    joint : default SimulatedJoint(inertia=1.0, link_inertia=0.0, load=0.0, torque_offset=0.0, torque_limit=1e+300, decay='gaussian', coulomb_positive=0.0, coulomb_negative=0.0, static_positive=0.0, static_negative=0.0, viscous_positive=0.0, viscous_negative=0.0, stribeck=0.0, stribeck_velocity=1.0, stribeck_exponent=1.0, load_friction=0.0, bristles=False, bristle_stiffness=0.0, bristle_damping=0.0, weights=[], harmonics=[])
-        What is moved, without friction of the load.
-    torque_per_voltage : default 1.0
-        k_t / R [N·m/V].
-    back_emf : default 0.0
-        k_t² / R [N·m·s/rad], while driven.
-    load_friction : default 0.0
-        Dry friction per torque through the gear [1].
-    closed : default True
-        Whether the command is a wanted position, or the duty itself.
-    gain : default 1.0
-        Duty per error [1/rad].
-    saturation : default 1.0
-        Of the duty.
-    delay : default 0.0
-        From the error to the duty [s].
-    position : default 0.0
-        At the start [rad].
-    velocity : default 0.0
-        At the start [rad/s].
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -3039,10 +2318,7 @@ class ServoLoop:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -3056,84 +2332,29 @@ class ServoLoop:
         delay: float = ...,
         position: float = ...,
         velocity: float = ...,
-    ) -> ServoLoop:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> ServoLoop: ...
     @property
-    def back_emf(self) -> float:
-        """
-        k_t² / R [N·m·s/rad], while driven.
-        """
+    def back_emf(self) -> float: ...
     @property
-    def closed(self) -> bool:
-        """
-        Whether the command is a wanted position, or the duty itself.
-        """
+    def closed(self) -> bool: ...
     @property
-    def delay(self) -> float:
-        """
-        From the error to the duty [s].
-        """
+    def delay(self) -> float: ...
     @property
-    def gain(self) -> float:
-        """
-        Duty per error [1/rad].
-        """
+    def gain(self) -> float: ...
     @property
-    def joint(self) -> SimulatedJoint:
-        """
-        What is moved, without friction of the load.
-        """
+    def joint(self) -> SimulatedJoint: ...
     @property
-    def load_friction(self) -> float:
-        """
-        Dry friction per torque through the gear [1].
-        """
+    def load_friction(self) -> float: ...
     @property
-    def position(self) -> float:
-        """
-        At the start [rad].
-        """
+    def position(self) -> float: ...
     @property
-    def saturation(self) -> float:
-        """
-        Of the duty.
-        """
+    def saturation(self) -> float: ...
     @property
-    def torque_per_voltage(self) -> float:
-        """
-        k_t / R [N·m/V].
-        """
+    def torque_per_voltage(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        At the start [rad/s].
-        """
+    def velocity(self) -> float: ...
 
 class MotionBounds:
-    """
-    What the reference of a designed motion is held within.
-
-    Parameters
-    ----------
-    lowest : default -1.0
-        Position [rad].
-    highest : default 1.0
-        Position [rad].
-    velocity : default 1.0
-        [rad/s]
-    acceleration : default 1.0
-        [rad/s²]
-    torque : default 1e+300
-        Of the drive [N·m].
-    inertia : default 0.0
-        Largest that the prior allows [kg·m²].
-    viscous : default 0.0
-        The same [N·m·s/rad].
-    dry : default 0.0
-        The same, dry friction and load [N·m].
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -3151,10 +2372,7 @@ class MotionBounds:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -3166,70 +2384,25 @@ class MotionBounds:
         inertia: float = ...,
         viscous: float = ...,
         dry: float = ...,
-    ) -> MotionBounds:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> MotionBounds: ...
     @property
-    def acceleration(self) -> float:
-        """
-        [rad/s²]
-        """
+    def acceleration(self) -> float: ...
     @property
-    def dry(self) -> float:
-        """
-        The same, dry friction and load [N·m].
-        """
+    def dry(self) -> float: ...
     @property
-    def highest(self) -> float:
-        """
-        Position [rad].
-        """
+    def highest(self) -> float: ...
     @property
-    def inertia(self) -> float:
-        """
-        Largest that the prior allows [kg·m²].
-        """
+    def inertia(self) -> float: ...
     @property
-    def lowest(self) -> float:
-        """
-        Position [rad].
-        """
+    def lowest(self) -> float: ...
     @property
-    def torque(self) -> float:
-        """
-        Of the drive [N·m].
-        """
+    def torque(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        [rad/s]
-        """
+    def velocity(self) -> float: ...
     @property
-    def viscous(self) -> float:
-        """
-        The same [N·m·s/rad].
-        """
+    def viscous(self) -> float: ...
 
 class MotionFamily:
-    """
-    Sums of sines that start and end at rest.
-
-    Parameters
-    ----------
-    sines : default 5
-        How many.
-    duration : default 12.0
-        [s]
-    fade : default 0.5
-        Time over which they grow and shrink [s].
-    slowest : default 0.1
-        Frequency [rad/s].
-    fastest : default 20.0
-        Frequency [rad/s].
-    bounds : default MotionBounds(lowest=-1.0, highest=1.0, velocity=1.0, acceleration=1.0, torque=1e+300, inertia=0.0, viscous=0.0, dry=0.0)
-        What the reference is held within.
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -3245,10 +2418,7 @@ class MotionFamily:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -3258,60 +2428,21 @@ class MotionFamily:
         slowest: float = ...,
         fastest: float = ...,
         bounds: MotionBounds = ...,
-    ) -> MotionFamily:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> MotionFamily: ...
     @property
-    def bounds(self) -> MotionBounds:
-        """
-        What the reference is held within.
-        """
+    def bounds(self) -> MotionBounds: ...
     @property
-    def duration(self) -> float:
-        """
-        [s]
-        """
+    def duration(self) -> float: ...
     @property
-    def fade(self) -> float:
-        """
-        Time over which they grow and shrink [s].
-        """
+    def fade(self) -> float: ...
     @property
-    def fastest(self) -> float:
-        """
-        Frequency [rad/s].
-        """
+    def fastest(self) -> float: ...
     @property
-    def sines(self) -> int:
-        """
-        How many.
-        """
+    def sines(self) -> int: ...
     @property
-    def slowest(self) -> float:
-        """
-        Frequency [rad/s].
-        """
+    def slowest(self) -> float: ...
 
 class HeldLimits:
-    """
-    What the joints themselves are held within.
-
-    Parameters
-    ----------
-    lowest : default -1e+300
-        Position [rad].
-    highest : default 1e+300
-        Position [rad].
-    velocity : default 1e+300
-        [rad/s]
-    acceleration : default 1e+300
-        [rad/s²]
-    torque : default 1e+300
-        Of the drive [N·m].
-    link_torque : default 1e+300
-        At the torque sensor [N·m].
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -3327,10 +2458,7 @@ class HeldLimits:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -3340,60 +2468,21 @@ class HeldLimits:
         acceleration: float = ...,
         torque: float = ...,
         link_torque: float = ...,
-    ) -> HeldLimits:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> HeldLimits: ...
     @property
-    def acceleration(self) -> float:
-        """
-        [rad/s²]
-        """
+    def acceleration(self) -> float: ...
     @property
-    def highest(self) -> float:
-        """
-        Position [rad].
-        """
+    def highest(self) -> float: ...
     @property
-    def link_torque(self) -> float:
-        """
-        At the torque sensor [N·m].
-        """
+    def link_torque(self) -> float: ...
     @property
-    def lowest(self) -> float:
-        """
-        Position [rad].
-        """
+    def lowest(self) -> float: ...
     @property
-    def torque(self) -> float:
-        """
-        Of the drive [N·m].
-        """
+    def torque(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        [rad/s]
-        """
+    def velocity(self) -> float: ...
 
 class BalanceNoise:
-    """
-    Noise of the torque balance, and what an identification leaves out.
-
-    Parameters
-    ----------
-    torque : default 1.0
-        Of a sample, white [N·m].
-    position : default 0.0
-        At a window's end [rad].
-    velocity : default 0.0
-        At a window's end [rad/s].
-    slowest : default 0.0
-        Slower samples tell nothing [rad/s].
-    reversal : default 0.0
-        Of a window with a change of sign [N·m·s].
-    sampled : default 0.0
-        Between samples of the recording [s].
-    """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -3409,10 +2498,7 @@ class BalanceNoise:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
-    def asdict(self) -> dict[str, typing.Any]:
-        """
-        The fields as a dictionary.
-        """
+    def asdict(self) -> dict[str, typing.Any]: ...
     def replace(
         self,
         *,
@@ -3422,45 +2508,21 @@ class BalanceNoise:
         slowest: float = ...,
         reversal: float = ...,
         sampled: float = ...,
-    ) -> BalanceNoise:
-        """
-        A copy with the given fields changed.
-        """
+    ) -> BalanceNoise: ...
     @property
-    def position(self) -> float:
-        """
-        At a window's end [rad].
-        """
+    def position(self) -> float: ...
     @property
-    def reversal(self) -> float:
-        """
-        Of a window with a change of sign [N·m·s].
-        """
+    def reversal(self) -> float: ...
     @property
-    def sampled(self) -> float:
-        """
-        Between samples of the recording [s].
-        """
+    def sampled(self) -> float: ...
     @property
-    def slowest(self) -> float:
-        """
-        Slower samples tell nothing [rad/s].
-        """
+    def slowest(self) -> float: ...
     @property
-    def torque(self) -> float:
-        """
-        Of a sample, white [N·m].
-        """
+    def torque(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        At a window's end [rad/s].
-        """
+    def velocity(self) -> float: ...
 
 class BalanceColumn:
-    """
-    What a free parameter does to the torque balance.
-    """
     def __init__(
         self,
         *,
@@ -3472,9 +2534,6 @@ class BalanceColumn:
     ) -> None: ...
 
 class DrawnJoint:
-    """
-    A joint that the prior allows.
-    """
     def __init__(
         self,
         *,
@@ -3488,70 +2547,31 @@ class DrawnJoint:
         viscous: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
     @property
-    def weight(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        1: asked for, 0: not.
-        """
+    def weight(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
 class MotionJudgement:
-    """
-    What a motion is worth for one joint.
-    """
     @property
-    def acceleration(self) -> float:
-        """
-        [rad/s²]
-        """
+    def acceleration(self) -> float: ...
     @property
-    def bias(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        The part of them that each recording shows.
-        """
+    def bias(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Expected errors (RMS) over their scales.
-        """
+    def errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def excess(self) -> float:
-        """
-        Largest share by which a limit is exceeded; 0: none.
-        """
+    def excess(self) -> float: ...
     @property
-    def highest(self) -> float:
-        """
-        Position that the joint reaches [rad].
-        """
+    def highest(self) -> float: ...
     @property
-    def information(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Of this motion alone.
-        """
+    def information(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     @property
-    def link_torque(self) -> float:
-        """
-        At the sensor [N·m].
-        """
+    def link_torque(self) -> float: ...
     @property
-    def lowest(self) -> float:
-        """
-        Position that the joint reaches [rad].
-        """
+    def lowest(self) -> float: ...
     @property
-    def torque(self) -> float:
-        """
-        Of the drive [N·m].
-        """
+    def torque(self) -> float: ...
     @property
-    def velocity(self) -> float:
-        """
-        [rad/s]
-        """
+    def velocity(self) -> float: ...
 
 class Excitation:
-    """
-    Judges motions, and searches for the best.
-    """
     def __init__(
         self,
         *,
@@ -3562,26 +2582,17 @@ class Excitation:
         criterion: str,
         window: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def judge(self, trajectory: Trajectory) -> list[MotionJudgement]:
-        """
-        One judgement a joint.
-        """
+    def judge(self, trajectory: Trajectory) -> list[MotionJudgement]: ...
     def leave_out(
         self,
         candidates: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
         *,
         largest: typing.SupportsFloat | typing.SupportsIndex,
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
-    ) -> None:
-        """
-        Leave out, for each joint, what none of these motions determines to within `largest`.
-        """
+    ) -> None: ...
     def motion(
         self, genes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> dict[str, typing.Any]:
-        """
-        Arguments of Trajectory.multisine.
-        """
+    ) -> dict[str, typing.Any]: ...
     def search(
         self,
         *,
@@ -3590,36 +2601,22 @@ class Excitation:
         trial: typing.SupportsInt | typing.SupportsIndex = 0,
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
         callback: collections.abc.Callable[..., typing.Any] | None = None,
-    ) -> GaResult:
-        """
-        Genetic search for the motion of the smallest cost.
-        """
+    ) -> GaResult: ...
     @property
-    def genes(self) -> int:
-        """
-        How many numbers make a motion.
-        """
+    def genes(self) -> int: ...
     @property
     def joints(self) -> list[DrawnJoint]: ...
 
 def chi_square_quantile(
     tail: typing.SupportsFloat | typing.SupportsIndex,
     freedom: typing.SupportsFloat | typing.SupportsIndex,
-) -> float:
-    """
-    Beyond which this probability of chi-square lies.
-    """
-
+) -> float: ...
 def circle(
     angle: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> tuple[
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
-]:
-    """
-    Cosine and sine.
-    """
-
+]: ...
 def clustered(
     jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3627,31 +2624,15 @@ def clustered(
     cuts: collections.abc.Sequence[
         collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
     ],
-) -> tuple[list[Clustered], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]:
-    """
-    The sandwich of each clustering, segments from one cut to the next, and White's variances: each row a cluster.
-    """
-
+) -> tuple[list[Clustered], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]: ...
 def covering_half_width(
     probability: typing.SupportsFloat | typing.SupportsIndex,
     offset: typing.SupportsFloat | typing.SupportsIndex,
-) -> float:
-    """
-    Half the width of the symmetric interval that holds a normal variable of this mean and deviation 1.
-    """
-
+) -> float: ...
 def even_grid(
     time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
-    """
-    Even times from the first to the last, and how far off the times are [s].
-    """
-
-def find_control_character(content: bytes) -> int:
-    """
-    The place of the first byte that no text contains in any encoding; -1 without one.
-    """
-
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]: ...
+def find_control_character(content: bytes) -> int: ...
 def fit_shift(
     windows: collections.abc.Sequence[SmoothWindows],
     signals: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
@@ -3662,31 +2643,19 @@ def fit_shift(
     reach: typing.SupportsFloat | typing.SupportsIndex,
     robust: bool,
     least: typing.SupportsFloat | typing.SupportsIndex,
-) -> FittedShift | None:
-    """
-    The shift that a balance asks for, or None.
-    """
-
+) -> FittedShift | None: ...
 def friction_basis(
     key: str,
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     load: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    The friction term's basis at each velocity [rad/s or m/s] while the drive transmits a load [N·m or N]: what its coefficient multiplies.
-    """
-
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 def half_length(
     signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     period: typing.SupportsFloat | typing.SupportsIndex,
     *,
     position: bool,
-) -> int:
-    """
-    Half the length of a window that averages the acceleration's noise.
-    """
-
+) -> int: ...
 def inspect(
     *,
     time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
@@ -3698,27 +2667,15 @@ def inspect(
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]
     ],
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> Inspection:
-    """
-    Look at a recording's signals; a channel is a signal, its rule, and whether to look for spikes.
-    """
-
-def is_parameter(name: str) -> bool:
-    """
-    Whether a parameter can have this name.
-    """
-
+) -> Inspection: ...
+def is_parameter(name: str) -> bool: ...
 def leading_coefficient(
     windows: collections.abc.Sequence[SmoothWindows],
     signals: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
     columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     *,
     held: bool,
-) -> float:
-    """
-    Of the first column, in least squares of the signals, not shifted, on the columns.
-    """
-
+) -> float: ...
 def local_velocity(
     time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
@@ -3726,11 +2683,7 @@ def local_velocity(
     gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
     noise: PositionNoise,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> LocalVelocity:
-    """
-    Velocity by local cubics whose length follows the noise; the differences where they are fine.
-    """
-
+) -> LocalVelocity: ...
 def minimise_genetic(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3744,22 +2697,14 @@ def minimise_genetic(
     resume: GaState | None = None,
     checkpoint: collections.abc.Callable[..., typing.Any] | None = None,
     checkpoint_interval: typing.SupportsInt | typing.SupportsIndex = 50,
-) -> GaResult:
-    """
-    Genetic search. `resume` goes on from a state made with the same options, seed, trial, bounds and penalty; `checkpoint` is called with the state every `checkpoint_interval` generations.
-    """
-
+) -> GaResult: ...
 def minimise_projected(
     penalty: Penalty,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     *,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> Projected:
-    """
-    The separable optimum by a dozen direct sums; nothing where that is not safe.
-    """
-
+) -> Projected: ...
 def minimise_random(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3770,11 +2715,7 @@ def minimise_random(
     trial: typing.SupportsInt | typing.SupportsIndex = 0,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
     callback: collections.abc.Callable[..., typing.Any] | None = None,
-) -> GaResult:
-    """
-    Random search with the budget of the genetic one: population, islands and generations of the options count, nothing else.
-    """
-
+) -> GaResult: ...
 def minimise_separable(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3791,63 +2732,31 @@ def minimise_trials(
     seeds: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
     random: bool = False,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> list[TrialResult]:
-    """
-    Many genetic (or random) searches side by side, a thread each: the same bits as one by one.
-    """
-
+) -> list[TrialResult]: ...
 def model_names() -> tuple[typing.Any, ...]: ...
-def model_terms(name: str, *, asymmetric: bool = False) -> list[str]:
-    """
-    Keys of a friction model's terms; asymmetric: two for each, one a direction of motion.
-    """
-
-def models() -> list[Model]:
-    """
-    All friction models.
-    """
-
+def model_terms(name: str, *, asymmetric: bool = False) -> list[str]: ...
+def models() -> list[Model]: ...
 def motion_cuts(
     start: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     stop: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     travel: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
     length: typing.SupportsFloat | typing.SupportsIndex,
-) -> list[int]:
-    """
-    First windows of the segments of motion, and the end of the last one; `edges` are the first windows of the recordings, and the end of the last one.
-    """
-
+) -> list[int]: ...
 def non_negative_least_squares(
     matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     target: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
-    """
-    The solution without negative entries, and the norm of what is left of the target.
-    """
-
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]: ...
 def number_list(
     values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-) -> str | None:
-    """
-    A list of finite numbers as JSON; None where Python has to write it.
-    """
-
+) -> str | None: ...
 def number_table(
     text: str,
     below: typing.SupportsInt | typing.SupportsIndex,
     separator: str,
     columns: typing.SupportsInt | typing.SupportsIndex,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None:
-    """
-    The numbers of all rows below the first lines; None where a cell is not a plain number.
-    """
-
-def parameter_names() -> tuple[typing.Any, ...]:
-    """
-    All parameters but the harmonics, a shape parameter after its first term.
-    """
-
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None: ...
+def parameter_names() -> tuple[typing.Any, ...]: ...
 def polish(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3861,11 +2770,7 @@ def position_noise(
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
     period: typing.SupportsFloat | typing.SupportsIndex,
-) -> PositionNoise:
-    """
-    Noise of a position: the encoder's step, white noise, errors of the stamps.
-    """
-
+) -> PositionNoise: ...
 def refine_separable(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3874,11 +2779,7 @@ def refine_separable(
     *,
     everywhere: bool = True,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> SeparableResult:
-    """
-    The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
-    """
-
+) -> SeparableResult: ...
 def repeated_noise(
     pairs: collections.abc.Sequence[
         tuple[
@@ -3886,11 +2787,7 @@ def repeated_noise(
             typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
         ]
     ],
-) -> RepeatedNoise | None:
-    """
-    The noise of readings that the torque repeats, of pairs of both; None where it does not.
-    """
-
+) -> RepeatedNoise | None: ...
 def roll_out_servos(
     loops: collections.abc.Sequence[ServoLoop],
     logs: collections.abc.Sequence[
@@ -3902,26 +2799,10 @@ def roll_out_servos(
     *,
     step: typing.SupportsFloat | typing.SupportsIndex,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> list[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]]:
-    """
-    Position and velocity at each sample of each log: time, command, supply and driven.
-    """
-
-def roughness(signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> float:
-    """
-    Standard deviation of a signal's third differences.
-    """
-
-def shape(name: str) -> Shape:
-    """
-    The shape parameter of that name.
-    """
-
-def shapes() -> list[Shape]:
-    """
-    All shape parameters.
-    """
-
+) -> list[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]]: ...
+def roughness(signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> float: ...
+def shape(name: str) -> Shape: ...
+def shapes() -> list[Shape]: ...
 def simulate_runs(
     scenario: Scenario,
     trajectory: Trajectory,
@@ -3929,83 +2810,43 @@ def simulate_runs(
     *,
     signals: bool,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> list[Outcome]:
-    """
-    One Outcome a setup; InputError when a loop is not stable.
-    """
-
+) -> list[Outcome]: ...
 def solve_independent(
     triangle: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     columns: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
     target: typing.SupportsInt | typing.SupportsIndex,
-) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float] | None:
-    """
-    Coefficients of columns for another one, and the norm of what they leave; None unless they are clearly independent.
-    """
-
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float] | None: ...
 def student_quantile(
     probability: typing.SupportsFloat | typing.SupportsIndex,
     freedom: typing.SupportsFloat | typing.SupportsIndex,
-) -> float:
-    """
-    Below which this probability of Student's t lies.
-    """
-
-def term(key: str) -> Term:
-    """
-    The term of that key; "ripple_sin_2" is order 2 of its family, viscous_of_q6 the signal q6's.
-    """
-
-def terms() -> list[Term]:
-    """
-    All terms, in canonical order.
-    """
-
+) -> float: ...
+def term(key: str) -> Term: ...
+def terms() -> list[Term]: ...
 def timing_errors(
     time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     period: typing.SupportsFloat | typing.SupportsIndex,
-) -> tuple[float, float]:
-    """
-    Scatter of the samples' times about the stamps and about an even grid [s].
-    """
-
+) -> tuple[float, float]: ...
 def triangle(
     matrix: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     *,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-    """
-    R of the QR decomposition of a tall matrix.
-    """
-
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
 def usable_intervals(
     recording: Recording, mask_standstill: bool = True
-) -> numpy.typing.NDArray[numpy.uint8]:
-    """
-    One flag per sample interval: 1 where the joint moves and the recording has no gap.
-    """
-
+) -> numpy.typing.NDArray[numpy.uint8]: ...
 def window_duration(
     recording: Recording,
     parameters: typing.SupportsInt | typing.SupportsIndex,
     mask_standstill: bool,
-) -> float:
-    """
-    The duration of a window that the velocity's noise asks for [s].
-    """
-
+) -> float: ...
 def window_integrals(
     values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     weights: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     windows: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
     *,
     rise: bool = False,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-    """
-    Integrals over windows, one row a window, or how far the values rise there.
-    """
-
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
 def window_shifts(
     penalty: Penalty,
     *,
@@ -4021,9 +2862,6 @@ def window_shifts(
 ) -> tuple[
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
-]:
-    """
-    The minima with each window halved and with neighbours joined in pairs; None where there are no such windows.
-    """
+]: ...
 
 __version__: str

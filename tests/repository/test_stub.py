@@ -8,6 +8,7 @@ from types import ModuleType
 
 import pytest
 
+import jointid as jid
 from jointid import _core
 
 STUB = Path(__file__).resolve().parents[2] / "python" / "jointid" / "_core.pyi"
@@ -75,3 +76,21 @@ def test_option_fields_of_the_stub_equal_asdict(name: str) -> None:
     # The stub has no expression for an enumeration's member, only for plain values.
     shown = [repr(v) if isinstance(v, int | float | str) else "..." for v in values.values()]
     assert defaults == shown
+
+
+PUBLIC = [name for name in CLASSES if name in dir(jid)]
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_the_stub_documents_what_is_public(name: str) -> None:
+    class_, stub = getattr(_core, name), stub_classes()[name]
+    assert ast.get_docstring(stub) == inspect.cleandoc(class_.__doc__)
+    fields = {
+        method.name: ast.get_docstring(method)
+        for method in stub.body
+        if isinstance(method, ast.FunctionDef) and method.name in public(class_)
+    }
+    for field, text in fields.items():
+        member = inspect.getattr_static(class_, field)
+        if isinstance(member, property) and member.__doc__:
+            assert text == inspect.cleandoc(member.__doc__), field
