@@ -21,8 +21,9 @@ REWRITES = [
     (r"^    @classmethod\n    def __new__\(cls, value\):\n.*\n", ""),
     # Bare containers.
     (r"(: |-> )dict(?=[,:)])", r"\1dict[str, typing.Any]"),
-    # The version is written once, in pyproject.toml.
+    # The version is written once, in pyproject.toml; the processor is the reader's.
     (r"^__version__: str = .*$", "__version__: str"),
+    (r"^__avx2__: bool = .*$", "__avx2__: bool"),
     (r"-> tuple:", "-> tuple[typing.Any, ...]:"),
     (r"collections\.abc\.Callable(?!\[)", "collections.abc.Callable[..., typing.Any]"),
 ]

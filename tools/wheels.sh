@@ -33,7 +33,11 @@ smoke() {
     jointid demo --output demo >demo.txt
     python - "$excited" <<'USE'
 import sys
+from pathlib import Path
 import jointid as jid
+from jointid import _core
+has = " avx2 " in Path("/proc/cpuinfo").read_text()
+assert getattr(_core, "__avx2__", False) == has, "the processor's vectors are not found"
 found = jid.identify(jid.load(sys.argv[1]), jid.thesis_joint())
 true = {"coulomb": 25.0, "viscous": 20.0, "sensor_gain": 2.4, "sensor_offset": 15.0}
 for name, value in true.items():

@@ -2864,4 +2864,5 @@ def window_shifts(
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
 ]: ...
 
+__avx2__: bool
 __version__: str
