@@ -163,8 +163,12 @@ CHECK_CASE("terms: the slope of every basis is the difference of its values") {
 CHECK_CASE("terms: keys and names") {
   CHECK(identify::find_term("static_general").name == "static");
   CHECK(identify::find_term("ripple_cos_2").order == 2.0);
+  CHECK(identify::find_term("ripple_cos_1e-05").order == 1e-05);
+  CHECK(identify::find_term("ripple_cos_0.1234567890123456789").order == 0.1234567890123456789);
   for (const char* bad :
-       {"ripple_cos", "ripple_cos_", "ripple_cos_x", "ripple_cos_-2", "coulom", ""}) {
+       {"ripple_cos", "ripple_cos_", "ripple_cos_x", "ripple_cos_-2", "coulom", "", "ripple_cos_ 2",
+        "ripple_cos_+2", "ripple_cos_0x2", "ripple_cos_2,5", "ripple_cos_2e", "ripple_cos_1.2.3",
+        "ripple_cos_inf", "ripple_cos_nan", "ripple_cos_1e999", "ripple_cos_0", "ripple_cos_1e6"}) {
     CHECK_REFUSED(identify::find_term(bad), "known are inertia, ");
   }
   for (const char* good :

@@ -1,10 +1,10 @@
 #include "identify/balance/terms.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
+#include "base/digits.hpp"
 #include "base/input_error.hpp"
 
 namespace jointid::identify {
@@ -197,8 +197,8 @@ std::vector<Term> make_terms() {
 
 /// The number behind the last underscore, as written in a harmonic's key.
 bool read_order(std::string_view text, double& order) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), order);
-  return error == std::errc{} && end == text.data() + text.size() && order > 0.0 && order < 1e6;
+  order = base::read_digits(text).value_or(0.0);
+  return order > 0.0 && order < 1e6;
 }
 
 /// The signal's name behind an own row's key and an underscore; empty if there is none.
