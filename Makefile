@@ -123,7 +123,7 @@ check-sdist: dist/.wheel  ## a wheel from the sdist installs, imports and runs i
 wheels: .venv/.created  ## wheels for Linux in dist/wheels, each tried where no compiler is; by hand
 	@tools/wheels.sh $(PYTHONS)
 
-matrix: .venv/.created  ## Debian 13 by chroot, gcc 14, clang 19, oldest and newest dependencies; by hand, as root, an hour
+matrix: .venv/.created  ## Debian 13 by chroot, gcc 14, clang 19 and 14, oldest and newest dependencies; by hand, as root, an hour
 	@tools/matrix.sh $(MATRIX)
 
 study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to docs/

@@ -7,20 +7,21 @@
 #   trixie     the package built there by gcc 14, the demo, the tests
 #   oldest     the tests of the rooms with the oldest dependencies, in this system's Python
 #   newest     the same with the newest
+#   clang14    like compilers, with this system's clang 14 (Debian 12)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 here="$PWD/build/matrix"
 root="$here/trixie"
 packages=ca-certificates,python3-venv,python3-dev,g++,clang,make,git
 mkdir -p "$here"
-[ $# -gt 0 ] || set -- root compilers trixie oldest newest
+[ $# -gt 0 ] || set -- root compilers trixie oldest newest clang14
 
 fail() { echo "matrix.sh: $1" >&2; exit 1; }
 
 # inside COMMAND...: in the root, in a copy of this checkout.
 inside() {
   chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/bin:/bin:/usr/sbin:/sbin LANG=C.UTF-8 \
-    OPENBLAS_NUM_THREADS=1 CXX="${CXX:-g++}" bash -o pipefail -c "cd /jointid && $*"
+    OPENBLAS_NUM_THREADS=1 bash -o pipefail -c "cd /jointid && $*"
 }
 
 # enter: with the files of the system that programs expect, until this script ends.
@@ -50,25 +51,36 @@ part_root() {
   inside '/venv/bin/python -m pip install --quiet --no-input --group build'
 }
 
+# strictly COMPILER BIN FOLDER: the command that compiles all of cpp/ into a wheel and the core's checks, and runs these.
+# A folder for each compiler: CMake stays with the one it found first.
+strictly() {
+  echo "PATH=$2:\$PATH CXX=$1 python -m pip wheel --quiet --no-input --no-deps --no-build-isolation -Cbuild-dir=$3/$1 \
+    -Ccmake.define.JOINTID_BUILD_CHECKS=ON -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON \
+    -Ccmake.define.CMAKE_CXX_SCAN_FOR_MODULES=OFF --wheel-dir $3/wheels-$1 . && $3/$1/core_check | tail -1 && ls $3/wheels-$1"
+}
+
 part_compilers() {
   enter
   local compiler
   for compiler in g++ clang++; do
     echo "All of cpp/ with $(inside "$compiler --version" | head -1), warnings are errors"
-    CXX="$compiler" inside "export PATH=/venv/bin:\$PATH && cmake -S . -B build/$compiler -G Ninja -DCMAKE_BUILD_TYPE=Release \
-      -DJOINTID_BUILD_CHECKS=ON -DJOINTID_WARNINGS_AS_ERRORS=ON -DPython_EXECUTABLE=/venv/bin/python \
-      -DCMAKE_CXX_SCAN_FOR_MODULES=OFF >build-$compiler.log && cmake --build build/$compiler >>build-$compiler.log || \
-      { tail -60 build-$compiler.log; exit 1; }; build/$compiler/core_check | tail -1"
-    CXX="$compiler" inside "export PATH=/venv/bin:\$PATH && python -m pip wheel --quiet --no-input --no-deps \
-      --no-build-isolation -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON -Ccmake.define.CMAKE_CXX_SCAN_FOR_MODULES=OFF \
-      --wheel-dir wheels-$compiler . && ls wheels-$compiler"
+    inside "$(strictly "$compiler" /venv/bin build)"
   done
+}
+
+part_clang14() {
+  command -v clang++-14 >/dev/null || fail "clang 14 is not installed: apt-get install clang-14, on Debian 12"
+  echo "All of cpp/ with $(clang++-14 --version | head -1), warnings are errors"
+  "$(tools/find_python.sh)" -m venv "$here/build"
+  "$here/build/bin/python" -m pip install --quiet --no-input --upgrade 'pip>=25.1'
+  "$here/build/bin/python" -m pip install --quiet --no-input --group build
+  bash -o pipefail -c "$(strictly clang++-14 "$here/build/bin" "$here")"
 }
 
 part_trixie() {
   enter
   inside '/venv/bin/python -m pip install --quiet --no-input --group test'
-  inside '/venv/bin/python -m pip uninstall --quiet --yes jointid; /venv/bin/python -m pip install --quiet wheels-g++/*.whl'
+  inside '/venv/bin/python -m pip uninstall --quiet --yes jointid; /venv/bin/python -m pip install --quiet build/wheels-g++/*.whl'
   inside 'export PATH=/venv/bin:$PATH && python --version && jointid demo --output /tmp/demo'
   inside '/venv/bin/python -m pytest -q --numprocesses auto --dist loadfile'
 }
