@@ -18,12 +18,12 @@ using Eigen::VectorXd;
 constexpr double kLeast = 0.05;
 // Norm of a segment's shares up to which the series of its correction takes fewer operations than
 // eigenvalues.
-constexpr double kFew = 0.5;
+constexpr double kSmallShare = 0.5;
 
 /// scores -> (1 - shares)^(-1/2) scores, by the binomial series; false where it takes long to
 /// converge.
 bool correct_by_series(const MatrixXd& shares, VectorXd& scores) {
-  if (!(shares.norm() < kFew)) return false;
+  if (!(shares.norm() < kSmallShare)) return false;
   const double enough = 1e-17 * scores.norm();
   VectorXd term = scores;
   VectorXd next(term.size());

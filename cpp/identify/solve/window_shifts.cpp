@@ -16,9 +16,10 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr double kSmallest = 1e-14;      // of a column's square: less is the products' rounding
-constexpr double kShare = 0.02;          // of a shift, which is a part of an error itself
-constexpr std::int64_t kKept = 1 << 20;  // samples up to which the parts are kept between steps
+constexpr double kSmallest = 1e-14;  // of a column's square: less is the products' rounding
+constexpr double kShare = 0.02;      // of a shift, which is a part of an error itself
+constexpr std::int64_t kKeptSamples =
+    1 << 20;  // samples up to which the parts are kept between steps
 
 /// Windows, and the first of those that belong together; at the end their number.
 struct Nested {
@@ -107,7 +108,7 @@ class Halves {
  public:
   Halves(const Nested& cut, PenaltyParts parts, Eigen::Index gain, base::Pool* pool)
       : cut_(cut), parts_(std::move(parts)), gain_(gain), pool_(pool) {
-    if (parts_.samples() > kKept) return;
+    if (parts_.samples() > kKeptSamples) return;
     kept_.resize(parts_.count());
     for_each(parts_.count(), pool,
              [&](std::size_t i) { kept_[i] = std::make_unique<Penalty>(parts_.part(i)); });
