@@ -1,5 +1,7 @@
 """Deflates the files of a wheel anew, as small as deflate can: the same files, the same RECORD, for any zip reader.
 
+Entries of folders, which auditwheel adds and no installer needs, are left out.
+
     python tools/smaller_wheel.py dist/wheels/jointid-*.whl
 
 The standard library's zipfile writes only what its own compressor made: here the few records of a zip file are written
@@ -21,7 +23,8 @@ _UNIX = 3 << 8  # who made it: the rights of files are Unix's
 
 def deflated(content: bytes) -> bytes:
     """Return the smallest deflate stream of the content that zopfli finds."""
-    whole: bytes = zopfli.zlib.compress(content)
+    as_many_as_pay = 0  # blocks; 15 at most by default
+    whole: bytes = zopfli.zlib.compress(content, blocksplittingmax=as_many_as_pay)
     return whole[2:-4]  # without zlib's header and checksum
 
 
@@ -29,7 +32,7 @@ def make_smaller(wheel: Path) -> None:
     """Write the wheel anew in its place; its files keep their order, time and rights."""
     made, listed = bytearray(), bytearray()
     with zipfile.ZipFile(wheel) as given:
-        files = [(file, given.read(file)) for file in given.infolist()]
+        files = [(file, given.read(file)) for file in given.infolist() if not file.is_dir()]
     for file, content in files:
         name, body = file.filename.encode("ascii"), deflated(content)
         year, month, day, hour, minute, second = file.date_time

@@ -20,6 +20,23 @@ too_large=()
 
 quiet_pip() { "$1" -m pip install --quiet --no-input --disable-pip-version-check "${@:2}"; }
 
+# write_compiler NAME PYTHON: zig as a compiler. It hands few options on to its linker, LLD. So what is loaded is linked as
+# zig says, but by LLD itself, which keeps one of functions that are identical and puts side by side what is alike:
+# deflate looks back 32 kB.
+write_compiler() {
+  cat <<COMPILER
+#!/bin/sh
+zig() { "$2" -m ziglang "\$@"; }
+compile() { zig $1 -target $machine-linux-gnu.$glibc $flags "\$@"; }
+case " \$* " in
+*" -shared "*)
+  said="\$(compile "\$@" -v 2>&1)" || { echo "\$said" >&2; exit 1; }
+  zig \$(echo "\$said" | grep '^ld.lld .* -shared ' | tail -n 1) --icf=all --bp-compression-sort=both --hash-style=gnu ;;
+*) compile "\$@" ;;
+esac
+COMPILER
+}
+
 # smoke ENVIRONMENT: what a user would do first; nothing but the environment's programs is on PATH.
 smoke() {
   local folder
@@ -65,10 +82,10 @@ for python in "$@"; do
     echo "$zig zopfli $flags" >"$here/tools/made"
   fi
   for name in cc c++; do
-    printf '#!/bin/sh\nexec "%s" -m ziglang %s -target %s-linux-gnu.%s %s "$@"\n' \
-      "$tools" "$name" "$machine" "$glibc" "$flags" >"$here/bin/$name"
+    write_compiler "$name" "$tools" >"$here/bin/$name"
     chmod +x "$here/bin/$name"
   done
+  rm -f "$here"/build/_core.*.so  # ninja does not see how it was linked
   # CMake looks for clang-scan-deps beside a clang, and there is none: no modules are scanned for.
   PATH="$here/tools/bin:$PATH" CC="$here/bin/cc" CXX="$here/bin/c++" "$tools" -m pip wheel --quiet --no-input \
     --disable-pip-version-check --no-deps --no-build-isolation -Cbuild-dir="$here/build" \
