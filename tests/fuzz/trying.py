@@ -6,7 +6,8 @@ import importlib.metadata
 import random
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,7 +22,8 @@ _LONGEST = 10_000  # characters of a sentence
 _HANGS = 120  # [s], also where a sanitizer and others take the processor
 
 
-def look_up_plugins_once() -> None:
+@contextmanager
+def plugins_looked_up_once() -> Iterator[None]:
     """Keep what is installed: readers of frame logs and benches ask for it at each file, which takes ms."""
     real = importlib.metadata.entry_points
 
@@ -29,9 +31,18 @@ def look_up_plugins_once() -> None:
     def entry_points(**chosen: Any) -> Any:
         return real(**chosen)
 
-    for module in list(sys.modules.values()):
-        if getattr(module, "entry_points", None) is real:
-            module.entry_points = entry_points  # type: ignore[attr-defined]
+    asking = [
+        module
+        for module in list(sys.modules.values())
+        if getattr(module, "entry_points", None) is real
+    ]
+    for module in asking:
+        module.entry_points = entry_points  # type: ignore[attr-defined]
+    try:
+        yield
+    finally:  # tests of what is installed come behind, in the same process
+        for module in asking:
+            module.entry_points = real  # type: ignore[attr-defined]
 
 
 def _give_up(_: int, __: FrameType | None) -> None:
@@ -56,13 +67,13 @@ def faults(
     inside = gzip.decompress(content) if file.endswith(".gz") else b""
     memory = Path("/dev/shm")
     wrong = []
-    with TemporaryDirectory(dir=memory if memory.is_dir() else None) as folder:
+    with TemporaryDirectory(dir=memory if memory.is_dir() else None) as folder, ExitStack() as kept:
         path = Path(folder) / file
         for other, known in beside.items():
             path.with_name(other).write_bytes(known)
         path.write_bytes(content)
         use(path)  # the seed is valid
-        look_up_plugins_once()
+        kept.enter_context(plugins_looked_up_once())
         gc.freeze()  # what was imported is not looked through again and again
         before = signal.signal(signal.SIGALRM, _give_up)
         try:

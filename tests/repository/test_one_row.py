@@ -25,6 +25,11 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("torque_offset", "cpp/identify/penalty/penalty.cpp", "its integral is a window's duration"),
     (
         "torque_offset",
+        "cpp/identify/penalty/part_residuals.cpp",
+        "its integral is a window's duration",
+    ),
+    (
+        "torque_offset",
         "python/jointid/",
         "an option of the model, which the sensor's offset excludes",
     ),
