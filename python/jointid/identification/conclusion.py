@@ -57,7 +57,7 @@ def infer(
     penalty: _core.Penalty,
     domain: SearchDomain,
     best: Array,
-    balance: Balance,
+    balance: Balance | None,
     shifts: tuple[Array | None, Array | None],
     beside: Mapping[str, Array | None],
     convergence: Convergence | None,
@@ -72,8 +72,8 @@ def infer(
 
     Parameters
     ----------
-    balance : tuple
-        What the penalty's `balance_at` returns at the minimum.
+    balance : tuple or None
+        What the penalty's `balance_at` returns at the minimum; None: computed here.
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
     refinements : Refinements
@@ -87,7 +87,7 @@ def infer(
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
     # of an hour fills the memory.
     inspections = tuple(inspect(run, threads) for run in problem.recordings)
-    value, residual, jacobian, columns = balance
+    value, residual, jacobian, columns = balance or penalty.balance_at(best)
     sizes = np.linalg.norm(jacobian, axis=0)
     noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
     alone = noise / np.where(

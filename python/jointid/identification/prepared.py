@@ -145,7 +145,7 @@ class Prepared:
             penalty=self.penalty,
             domain=domain,
             best=best,
-            balance=known_there or self.penalty.balance_at(best),
+            balance=known_there,
             shifts=self._window_shifts(best),
             beside={
                 "residual_side": of_residual_side(self.problem, self.windows, domain, best),

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 # Largest error of the compressed penalty: as a share of the penalty, and of the target's square.
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-13
+_KEPT = 50_000  # windows
 
 
 # Penalty, residuals, their derivatives, and columns.
@@ -30,7 +31,7 @@ class Outcome:
     Attributes
     ----------
     balance : tuple or None
-        The direct sum at `best`, where the search has verified itself by it.
+        The direct sum at `best`, where the search has verified itself by it over few windows.
     """
 
     best: Array
@@ -97,8 +98,9 @@ class Engine:
         gain = 1.0
         if direct.residual == _core.Residual.sensor:
             gain = float(best[direct.names.index("sensor_gain")])
-        balance = direct.balance_at(best)
-        expected = balance[0]
+        # Of hours of motion the arrays are not kept beside all that follows.
+        balance = direct.balance_at(best) if direct.window_count <= _KEPT else None
+        expected = direct(best) if balance is None else balance[0]
         size = inner(direct.target, direct.target) / gain**2
         if abs(self.form(best) - expected) <= _RELATIVE * expected + _ABSOLUTE * size:
             return replace(outcome, balance=balance)
