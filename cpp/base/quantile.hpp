@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/cancel.hpp"
+#include "base/ranks.hpp"
 
 namespace jointid::base {
 
@@ -19,14 +20,6 @@ constexpr std::size_t kCopied = 4096;  // so few are copied and partitioned as t
 constexpr double kMargin = 0.06;       // share of the sample either side of the wanted rank
 constexpr std::size_t kFew = 256;      // values looked at together
 constexpr std::size_t kBlock = 65536;  // values between two looks at the cancel flag
-
-/// The values of rank `rank` and the next one (the same if there is none) of a scratch vector.
-inline void two_of(std::vector<double>& values, std::size_t rank, double& first, double& second) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(values.begin(), middle, values.end());
-  first = *middle;
-  second = middle + 1 == values.end() ? first : *std::min_element(middle + 1, values.end());
-}
 
 inline double between(double first, double second, double share) {
   return share == 0.0 ? first : first + share * (second - first);
@@ -45,8 +38,6 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
   const double position = q * static_cast<double>(kept - 1);
   const auto rank = static_cast<std::size_t>(position);
   const double share = position - static_cast<double>(rank);
-  double first = 0.0;
-  double second = 0.0;
   double one = 0.0;
   std::vector<double> near;
   if (kept > kCopied) {
@@ -62,9 +53,7 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
     if (near.size() >= kSample / 4) {
       const auto last = static_cast<double>(near.size() - 1);
       const auto at_share = [&](double place) {
-        const auto it = near.begin() + static_cast<std::ptrdiff_t>(place * last);
-        std::nth_element(near.begin(), it, near.end());
-        return *it;
+        return at_rank(near.data(), near.size(), static_cast<std::size_t>(place * last)).value;
       };
       const double low = at_share(std::max(0.0, q - kMargin));
       const double high = at_share(std::min(1.0, q + kMargin));
@@ -92,15 +81,13 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
       if (rank >= below && rank + 1 < reached) {
         const std::size_t ends = below + at_low;  // values up to `low`
         const std::size_t inner = near.size();
-        const auto at = [&](std::size_t wanted) {
-          if (wanted < ends) return low;
-          if (wanted >= ends + inner) return high;
-          const auto it = near.begin() + static_cast<std::ptrdiff_t>(wanted - ends);
-          std::nth_element(near.begin(), it, near.end());
-          return *it;
-        };
-        first = at(rank);
-        return between(first, share == 0.0 ? first : at(rank + 1), share);
+        if (rank >= ends && rank < ends + inner) {
+          const Ranked found = at_rank(near.data(), inner, rank - ends);
+          return between(found.value, rank + 1 < ends + inner ? found.next : high, share);
+        }
+        if (rank >= ends) return high;
+        if (share == 0.0 || rank + 1 < ends) return low;
+        return between(low, inner > 0 ? at_rank(near.data(), inner, 0).value : high, share);
       }
     }
     near.clear();
@@ -109,8 +96,8 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
   for (std::size_t i = 0; i < count; ++i) {
     if (value(i, one)) near.push_back(one);
   }
-  two_of(near, rank, first, second);
-  return between(first, second, share);
+  const Ranked found = at_rank(near.data(), near.size(), rank);
+  return between(found.value, found.next, share);
 }
 
 }  // namespace jointid::base

@@ -148,7 +148,9 @@ JOINTID_CLONES double largest_rate(const double* time, const double* x, std::siz
 
 JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::size_t places) {
   Four high;
+  Four deep;  // apart, so that neither waits for the other
   fill(high, 0.0);
+  fill(deep, 0.0);
   std::size_t i = 0;
   for (; i + kFour <= places; i += kFour) {
     Four middle;
@@ -160,11 +162,12 @@ JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::si
     Four low = there;  // of a sample below both, the distance from the lower one
     lower(low, back);
     subtract(low, middle);
-    raise(high, low);
+    raise(deep, low);
     raise(there, back);
     subtract(middle, there);
     raise(high, middle);
   }
+  raise(high, deep);
   double found = most_of(high);
   for (; i < places; ++i) {
     const double middle = x[i + width];

@@ -22,9 +22,11 @@ using Eigen::VectorXd;
 constexpr double kLongestDecay = 0.4;  // Stribeck speed, of the peak speed; each next one is half
 constexpr std::size_t kDecays = 6;
 constexpr std::size_t kFriction = 10 + kDecays;
-constexpr std::size_t kStride = 512;  // samples whose friction is kept at a time: column by column
-static_assert(2 * kLongestHalf + 4 <= kStride);
-constexpr std::int64_t kSmoothFrom = 7;  // samples of half a window: shorter ones smooth little
+constexpr std::size_t kKept = 512;  // samples whose friction is kept at a time: column by column
+static_assert(2 * kLongestHalf + 4 <= kKept);
+constexpr std::size_t kStride = kKept + 8;  // columns 4096 bytes apart share a few lines of a cache
+constexpr double kNothing = 1e-75;          // a decay whose fourth power is still a normal number
+constexpr std::int64_t kSmoothFrom = 7;     // samples of half a window: shorter ones smooth little
 
 struct Samples {
   const double* velocity;
@@ -78,6 +80,7 @@ JOINTID_CLONES void friction_at(const Samples& of, std::size_t first, std::size_
     put(2, v * speed);
     put(3, speed);
     for (std::size_t k = 0; k < kDecays; ++k) {
+      base::leave_out_small(decay, kNothing);
       put(4 + k, sign * decay);
       const Four square = decay * decay;
       decay = square * square;  // of half the speed
@@ -106,7 +109,7 @@ void friction_means(const EvenStretch& stretch, const SmoothWindows& windows,
       stretch.velocity.data(), smooth.size() > 0 ? smooth.data() : stretch.velocity.data(),
       choice.cosine.data(),    choice.sine.data(),
       kLongestDecay * peak,    1.0 / static_cast<double>(std::max<std::int64_t>(1, count - 1))};
-  constexpr auto kMost = static_cast<std::int64_t>(kStride);
+  constexpr auto kMost = static_cast<std::int64_t>(kKept);
   VectorXd columns(static_cast<Index>(kFriction * kStride));
   for (std::size_t w = 0; w < used.size();) {
     const std::int64_t first = used[w] - half;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "base/ranks.hpp"
 
 namespace jointid::identify {
 
@@ -161,9 +162,7 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
     }
   }
   if (!lengths.empty()) {
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    choice_.duration = *middle;
+    choice_.duration = base::at_rank(lengths.data(), lengths.size(), lengths.size() / 2).value;
   }
   const auto rows = static_cast<Eigen::Index>(windows_.size());
   if (rows == 0) {

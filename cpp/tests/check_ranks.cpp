@@ -1,0 +1,57 @@
+// Order statistics against a sort: values in any order, many of them equal, few and many.
+
+#include "base/ranks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/random.hpp"
+#include "check.hpp"
+
+namespace jointid::tests {
+namespace {
+
+void compare(const std::vector<double>& values, std::size_t rank) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  const auto found = base::at_rank(values.data(), values.size(), rank);
+  CHECK(found.value == sorted[rank]);
+  CHECK(found.next == sorted[std::min(rank + 1, sorted.size() - 1)]);
+}
+
+CHECK_CASE("ranks: as a sort has them") {
+  base::Random draw(5, 0, 0, 0);
+  for (int trial = 0; trial < 3000; ++trial) {
+    const auto count = 1 + static_cast<std::size_t>(draw.uniform() * (trial % 3 == 0 ? 30 : 900));
+    // Of few different values most are equal; of one, all.
+    const double kinds = trial % 2 == 0 ? 1e9 : 1.0 + draw.uniform() * 20.0;
+    std::vector<double> values(count);
+    for (double& value : values) value = std::floor(draw.uniform() * kinds) - 0.5 * kinds;
+    compare(values, static_cast<std::size_t>(draw.uniform() * static_cast<double>(count)));
+    compare(values, 0);
+    compare(values, count - 1);
+  }
+}
+
+CHECK_CASE("ranks: values in order, and orders that no pivot divides well") {
+  std::vector<double> values(1000);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
+  for (const std::size_t rank : {std::size_t{0}, std::size_t{499}, std::size_t{999}}) {
+    compare(values, rank);
+  }
+  std::reverse(values.begin(), values.end());
+  compare(values, 250);
+  // The pivots' places hold the smallest values, round after round.
+  std::vector<double> poor(400, 1e6);
+  for (std::size_t i = 0; i < poor.size(); ++i) poor[i] += static_cast<double>(i);
+  for (std::size_t left = poor.size(); left > 3; left -= 2) {
+    poor[poor.size() - left + left / 4] = -static_cast<double>(left);
+    poor[poor.size() - left + left / 2] = -static_cast<double>(left) - 0.5;
+  }
+  compare(poor, 399);
+  compare(poor, 200);
+}
+
+}  // namespace
+}  // namespace jointid::tests
