@@ -1,7 +1,9 @@
 // Tables of numbers: what is plain is read to the last bit, everything else is left alone. The
 // tests in Python compare with the other parser on random tables.
 
+#include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/random.hpp"
@@ -22,6 +24,30 @@ CHECK_CASE("number table: plain rows") {
   CHECK((*table)(0, 1) == -2.5e-3);
   CHECK((*table)(1, 0) == 0.5);
   CHECK((*table)(1, 1) == 3.0);
+}
+
+CHECK_CASE("number table: digits by eights, and what stands among them") {
+  const auto table =
+      number_table("0.12345678,-9.423353971,1234567.00000001,0.1234567890123", 0, ',', 4);
+  CHECK(table.has_value());
+  if (!table) return;
+  CHECK((*table)(0, 0) == 0.12345678);
+  CHECK((*table)(0, 1) == -9.423353971);
+  CHECK((*table)(0, 2) == 1234567.00000001);
+  CHECK((*table)(0, 3) == 0.1234567890123);
+  for (std::size_t place = 0; place < 8; ++place) {
+    for (int byte = 1; byte < 256; ++byte) {
+      const bool digit = byte >= '0' && byte <= '9';
+      std::string row = "0.00000000";
+      row[2 + place] = static_cast<char>(byte);
+      const auto found = number_table(row, 0, ',', 1);
+      if (digit) {
+        CHECK(found && (*found)(0, 0) == std::strtod(row.c_str(), nullptr));
+      } else if (std::string_view("\n\r eE").find(row[2 + place]) == std::string_view::npos) {
+        CHECK_WITH(!found, row);  // the others end a number or continue it
+      }
+    }
+  }
 }
 
 CHECK_CASE("number table: what is not plain is left to another parser") {

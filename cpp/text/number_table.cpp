@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
+#include <optional>
 #include <system_error>
 #include <version>
 
@@ -30,6 +33,36 @@ unsigned digit(char sign) {
   return static_cast<unsigned>(sign) - static_cast<unsigned>('0');
 }
 
+/// The value of eight digits, all at once: neighbours are joined to pairs, pairs to fours, fours to
+/// all of them. Null where one of the characters is no digit. (D. Lemire, "Quickly parsing eight
+/// digits", 2018.)
+std::optional<std::uint64_t> eight_digits(const char* at) {
+  if constexpr (std::endian::native != std::endian::little) return std::nullopt;
+  std::uint64_t signs = 0;
+  std::memcpy(&signs, at, sizeof signs);
+  const std::uint64_t high = signs & 0xf0f0f0f0f0f0f0f0U;
+  const std::uint64_t beyond = (signs + 0x0606060606060606U) & 0xf0f0f0f0f0f0f0f0U;
+  if ((high | (beyond >> 4U)) != 0x3333333333333333U) return std::nullopt;
+  signs -= 0x3030303030303030U;
+  signs = signs * 10 + (signs >> 8U);
+  constexpr std::uint64_t kPairs = 0x000000ff000000ffU;
+  constexpr std::uint64_t kFirst = 100U + (1'000'000ULL << 32U);
+  constexpr std::uint64_t kSecond = 1U + (10'000ULL << 32U);
+  return ((signs & kPairs) * kFirst + ((signs >> 16U) & kPairs) * kSecond) >> 32U;
+}
+
+/// Appends the digits that follow to a number.
+const char* take_digits(const char* at, const char* end, std::uint64_t& number) {
+  while (end - at >= 8) {
+    const auto eight = eight_digits(at);
+    if (!eight) break;
+    number = number * 100'000'000 + *eight;
+    at += 8;
+  }
+  while (at != end && digit(*at) < 10) number = number * 10 + digit(*at++);
+  return at;
+}
+
 /// Reads a short number such as -12.3456 exactly: digits that a double holds, divided by a power of
 /// ten that a double holds, is the nearest double. Null where it is longer, or has an exponent.
 const char* read_short(const char* at, const char* end, double& value) {
@@ -44,7 +77,7 @@ const char* read_short(const char* at, const char* end, double& value) {
   std::ptrdiff_t decimals = 0;
   if (at != end && *at == '.') {
     const char* const point = at++;
-    while (at != end && digit(*at) < 10) digits = digits * 10 + digit(*at++);
+    at = take_digits(at, end, digits);
     decimals = at - point - 1;
     count += decimals;
   }

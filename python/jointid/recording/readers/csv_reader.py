@@ -31,6 +31,7 @@ from jointid.recording.table import Table
 from jointid.recording.truncated import no_sample, session_text, with_metadata
 
 _LONG = 1 << 20  # characters: a longer file is read as a stream if it holds only numbers
+_BEGINS_AT_ONCE = re.compile(r"[^\s#%/]").match  # a line that is surely no comment
 _SHORT = 1 << 15  # characters: most tables begin within
 _FEW = 12  # columns: of more, only those used are converted
 _INNER = "\x1f"  # separates cells that are joined again: no text file contains it
@@ -241,10 +242,17 @@ def _first_lines(text: str) -> list[str]:
     for length in (_SHORT, _LONG):
         if len(text) > length:
             lines = _lines(text[:length])[:-1]
-            filled = (line for line in lines if line.strip() and not is_comment(line))
-            if length == _LONG or next(islice(filled, SEARCHED, None), None) is not None:
+            if length == _LONG or _more_than(SEARCHED, lines):
                 return lines
     return _lines(text)
+
+
+def _more_than(count: int, lines: Sequence[str]) -> bool:
+    """Return whether so many of the lines are neither empty nor comments."""
+    if len(lines) > count and all(map(_BEGINS_AT_ONCE, lines[: count + 1])):
+        return True
+    filled = (line for line in lines if line.strip() and not is_comment(line))
+    return next(islice(filled, count, None), None) is not None
 
 
 def _no_number(cell: str) -> str:
