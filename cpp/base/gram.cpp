@@ -1,8 +1,10 @@
 #include "base/gram.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "base/clones.hpp"
+#include "base/four.hpp"
 #include "base/inner_product.hpp"
 
 namespace jointid::base {
@@ -54,7 +56,75 @@ JOINTID_CLONES void combine(const double* columns, std::size_t stride, const dou
   }
 }
 
+constexpr std::size_t kTall = 2 * kFour;  // rows whose sums stay in registers, of four columns
+
+/// result(r, c) = sum over k of left(r, k) right(k, c), for kTall rows and four columns; `left` has
+/// its rows side by side, kTall apart from k to k.
+[[gnu::always_inline]] inline void tall_block(const double* left, const double* right,
+                                              std::size_t depth, std::size_t stride, double* result,
+                                              std::size_t rows) {
+  Four a0{}, a1{}, b0{}, b1{}, c0{}, c1{}, d0{}, d1{};  // an array of them would live in memory
+  const double* one = right;
+  const double* two = right + stride;
+  const double* three = right + 2 * stride;
+  const double* four = right + 3 * stride;
+  for (std::size_t k = 0; k < depth; ++k) {
+    Four low;
+    Four high;
+    load(low, left + k * kTall);
+    load(high, left + k * kTall + kFour);
+    a0 = a0 + low * one[k];
+    a1 = a1 + high * one[k];
+    b0 = b0 + low * two[k];
+    b1 = b1 + high * two[k];
+    c0 = c0 + low * three[k];
+    c1 = c1 + high * three[k];
+    d0 = d0 + low * four[k];
+    d1 = d1 + high * four[k];
+  }
+  store(result, a0);
+  store(result + kFour, a1);
+  store(result + rows, b0);
+  store(result + rows + kFour, b1);
+  store(result + 2 * rows, c0);
+  store(result + 2 * rows + kFour, c1);
+  store(result + 3 * rows, d0);
+  store(result + 3 * rows + kFour, d1);
+}
+
+/// A strip of kTall rows by all columns, which are a multiple of four; result has `rows` rows.
+JOINTID_CLONES void multiply_strip(const double* left, const double* right, std::size_t depth,
+                                   std::size_t stride, std::size_t columns, double* result,
+                                   std::size_t rows) {
+  for (std::size_t c = 0; c < columns; c += 4) {
+    tall_block(left, right + c * stride, depth, stride, result + c * rows, rows);
+  }
+}
+
 }  // namespace
+
+Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& left,
+                        const Eigen::Ref<const Eigen::MatrixXd>& right) {
+  const Eigen::Index depth = left.cols();
+  constexpr auto kHeight = static_cast<Eigen::Index>(kTall);
+  // Filled up with zeros to whole blocks.
+  const Eigen::Index rows = (left.rows() + kHeight - 1) / kHeight * kHeight;
+  const Eigen::Index columns = (right.cols() + 3) / 4 * 4;
+  Eigen::MatrixXd filled(depth, columns);
+  filled.leftCols(right.cols()) = right;
+  filled.rightCols(columns - right.cols()).setZero();
+  Eigen::MatrixXd result(rows, columns);
+  Eigen::MatrixXd strip(kHeight, depth);
+  for (Eigen::Index row = 0; row < rows; row += kHeight) {
+    const Eigen::Index height = std::min(kHeight, left.rows() - row);
+    strip.topRows(height) = left.middleRows(row, height);
+    strip.bottomRows(kHeight - height).setZero();
+    multiply_strip(strip.data(), filled.data(), static_cast<std::size_t>(depth),
+                   static_cast<std::size_t>(depth), static_cast<std::size_t>(columns),
+                   result.data() + row, static_cast<std::size_t>(rows));
+  }
+  return result.topLeftCorner(left.rows(), right.cols());
+}
 
 Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left,
                                    const Eigen::Ref<const Eigen::MatrixXd>& right) {

@@ -14,6 +14,11 @@ Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left
 Eigen::VectorXd products(const Eigen::Ref<const Eigen::MatrixXd>& left,
                          const Eigen::Ref<const Eigen::VectorXd>& right);
 
+/// left right of two matrices of some hundred rows and columns: each sum in the order of left's
+/// columns, whatever the vector width. Eigen's own product has that of the compiler's options.
+Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& left,
+                        const Eigen::Ref<const Eigen::MatrixXd>& right);
+
 /// A sum of columns, each times its coefficient.
 Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
                        const Eigen::VectorXd& coefficients);

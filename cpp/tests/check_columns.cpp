@@ -60,6 +60,26 @@ CHECK_CASE("columns: symmetric products, also of a part of a matrix") {
   CHECK((part - wanted).cwiseAbs().maxCoeff() < 1e-14);
 }
 
+CHECK_CASE("columns: products of matrices of any shape, in the order of the sums") {
+  for (const Eigen::Index rows : {1, 7, 8, 29}) {
+    for (const Eigen::Index depth : {1, 13}) {
+      for (const Eigen::Index columns : {1, 4, 6}) {
+        const Eigen::MatrixXd left = scattered(rows + 2, depth).middleRows(1, rows);
+        const Eigen::MatrixXd right = scattered(depth, columns);
+        const Eigen::MatrixXd found = base::product(left, right);
+        CHECK(found.rows() == rows && found.cols() == columns);
+        for (Eigen::Index i = 0; i < rows; ++i) {
+          for (Eigen::Index j = 0; j < columns; ++j) {
+            double sum = 0.0;
+            for (Eigen::Index k = 0; k < depth; ++k) sum += left(i, k) * right(k, j);
+            CHECK(found(i, j) == sum);
+          }
+        }
+      }
+    }
+  }
+}
+
 CHECK_CASE("scans: extremes of samples and steps, wherever they lie") {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const Eigen::VectorXd base = scattered(23, 1);

@@ -5,6 +5,7 @@
 
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
+#include "base/gram.hpp"
 #include "identify/compressed/shape_table.hpp"
 #include "model/friction.hpp"
 
@@ -162,7 +163,7 @@ Eigen::MatrixXd GeneralTable::remainders(const Eigen::MatrixXd& products) const 
   std::vector<Eigen::MatrixXd> images;          // of all shapes, as a column of one term or another
   Eigen::MatrixXd left(shapes.cols(), shaped);  // what is not yet served, squared
   for (Eigen::Index j = 0; j < shaped; ++j) {
-    images.emplace_back(full.middleCols(j * moments, moments) * shapes);
+    images.push_back(base::product(full.middleCols(j * moments, moments), shapes));
     const auto own = images.back().middleRows(j * moments, moments);
     left.col(j) = own.cwiseProduct(shapes).colwise().sum().transpose();
   }
