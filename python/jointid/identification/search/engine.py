@@ -81,6 +81,13 @@ class Engine:
         if self.form is self.direct and shapes < 2:
             found = _core.polish(self.direct, domain.lower, domain.upper, start)
             return found.best, found.iterations, found.converged
+        if self.form is not self.direct and shapes > 1:
+            # Two shapes by their table take a thousand candidates, by projection some hundred.
+            whole = _core.minimise_projected(
+                self.direct, domain.lower, domain.upper, threads=self.threads
+            ).found
+            if whole is not None and whole.penalty <= self.form(start):
+                return whole.best, whole.evaluations, True
         near = _core.refine_separable(
             self.form, domain.lower, domain.upper, start, threads=self.threads
         )
