@@ -300,11 +300,21 @@ class _Fitter:
             self._callback(ComparisonStep(number=self._done, total=self.total, model=text_of(spec)))
 
     def _values(
-        self, spec: Model, training: Sequence[Recording], windows: Windows, where: str
+        self,
+        spec: Model,
+        training: Sequence[Recording],
+        windows: Windows,
+        where: str,
+        whole: Estimate,
     ) -> FittedModel:
-        """The values alone: a score needs neither intervals nor causes."""
+        """The values alone: a score needs neither intervals nor causes.
+
+        What all data show of their signals holds for their parts: delays, the speed below which motion contradicts
+        itself, and that a reading is not taken before the torque steps. How much it lacks each part measures.
+        """
         search = self._common["search"]
         stated = {name: value for name, value in self._common.items() if name != "search"}
+        stated["min_speed"] = whole.settings["min_speed"]
         try:
             prepared = prepare(
                 training,
@@ -313,6 +323,7 @@ class _Fitter:
                 windows=windows,
                 threads=search.threads,
                 measure=False,
+                instant="sensor_before_step" in whole.settings,
                 **stated,
             )
             outcome = run_search(search, prepared.penalty, prepared.domain)
@@ -333,7 +344,7 @@ class _Fitter:
             fitted = (
                 FittedModel.of(self.fit(spec, split.training, windows, where))
                 if inferred
-                else self._values(spec, split.training, windows, where)
+                else self._values(spec, split.training, windows, where, whole)
             )
             try:
                 found.append(split.residual(fitted, predictor))

@@ -276,6 +276,7 @@ def prepare(
     unfit: Mapping[str, str] | None = None,
     on_time: bool = False,
     measure: bool = True,
+    instant: bool = True,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
 
@@ -291,6 +292,8 @@ def prepare(
         Default False.
     measure : bool
         Whether delays beside those of `shift` are looked for. Default True.
+    instant : bool
+        Whether it is measured when the sensor is sampled, against the steps of a held torque. Default True.
 
     Raises
     ------
@@ -336,7 +339,9 @@ def prepare(
         else:
             problem, delays = without_delays(problem, shift, measure=measure)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
-        problem, penalty, instant = without_early_reading(problem, penalty, windows)
+        sensor_instant = None
+        if instant:
+            problem, penalty, sensor_instant = without_early_reading(problem, penalty, windows)
         problem, penalty = with_instruments(
             problem, penalty, parameters, windows, residual is not None
         )
@@ -357,7 +362,9 @@ def prepare(
         domain=domain,
         windows=windows,
         given=runs,
-        refinements=Refinements(delays=delays, slow_motion=slow_motion, sensor_instant=instant),
+        refinements=Refinements(
+            delays=delays, slow_motion=slow_motion, sensor_instant=sensor_instant
+        ),
         selection=selection,
     )
 

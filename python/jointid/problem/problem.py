@@ -100,7 +100,9 @@ class Problem:
     @property
     def peak_speed(self) -> float:
         """Largest speed in the recordings [rad/s or m/s]."""
-        return max(float(np.abs(recording.velocity).max()) for recording in self.recordings)
+        return max(
+            [abs(end) for recording in self.recordings for end in recording.ranges["velocity"]]
+        )
 
     def window_options(self, windows: Windows) -> _core.WindowOptions:
         """Return the argument `windows` of a call as options for these recordings.

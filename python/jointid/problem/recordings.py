@@ -71,8 +71,9 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
                 place=place,
                 remedy=Action("call", {"units": {"time": unit}}, function="load"),
             )
-        travel = np.ptp(run.position)
-        if not run.velocity_derived and not run.velocity.any() and travel > 0.0:
+        lowest, highest = run.ranges["position"]
+        travel = highest - lowest
+        if not run.velocity_derived and run.ranges["velocity"] == (0.0, 0.0) and travel > 0.0:
             raise InputError(
                 f"it is 0 throughout, as if the joint never moved, but the position changes by {travel:.3g}: "
                 "drivers that do not measure it log zeros",
@@ -106,11 +107,11 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
 
 
 def _check_magnitudes(run: Recording, place: str) -> None:
-    for name in run.signals:
-        values = getattr(run, name)
-        largest = max(float(values.max()), -float(values.min()))
+    for name, (lowest, highest) in run.ranges.items():
+        largest = max(highest, -lowest)
         if name == "time" or largest == 0.0 or _SMALLEST <= largest <= _LARGEST:
             continue
+        values = getattr(run, name)
         beyond = np.flatnonzero(np.abs(values) > _LARGEST)
         if 0 < len(beyond) <= _FEW * len(values):
             index = int(beyond[0])

@@ -210,6 +210,17 @@ class Recording(Parts):
         """Median time between samples [s]."""
         return median(np.diff(self.time))
 
+    @functools.cached_property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each signal by name, in its unit.
+
+        Examples
+        --------
+        >>> slowest, fastest = recording.ranges["velocity"]
+        """
+        signals = {name: getattr(self, name) for name in self.signals}
+        return {name: (float(each.min()), float(each.max())) for name, each in signals.items()}
+
     @property
     def duration(self) -> float:
         """Time from the first sample to the last [s]."""

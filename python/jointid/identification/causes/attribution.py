@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +15,7 @@ from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, summed
 from jointid.identification.causes.slow_passages import SlowRows, slow_rows
+from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
 
@@ -51,7 +55,7 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
     if _of_the_limit(fit, matrix[:, base], matrix[:, -1]):
         return ()
     scaled = at_scales(fit, matrix)
-    whole = {factor: folds.misfit(base).sum() for factor, folds in scaled}
+    whole = {factor: folds.total(base) for factor, folds in scaled}
     found: list[Attributed] = []
     taken: set[str] = set()
     slow_event = False
@@ -178,14 +182,17 @@ def score_of(
     """
     total, best, at, sure = 0.0, 0.0, 1, False
     for factor, folds in scaled:
-        before, after = folds.misfit(base), folds.misfit([*base, *columns])
-        ratio = float(after.sum() / max(before.sum(), 1e-300))
-        total -= np.log(min(max(ratio, 1e-6), 1.5))
+        more = [*base, *columns]
+        before, after = folds.total(base), folds.total(more)
+        ratio = after / max(before, 1e-300)
+        total -= math.log(min(max(ratio, 1e-6), 1.5))
         if 1.0 - ratio > best:
             best, at = 1.0 - ratio, factor
-        enough = float((before - after).sum()) > _SHARE_OF_ALL * whole.get(factor, np.inf)
-        sure |= enough and 1.0 - ratio > _SHARE and _steady(before, after)
-    return Score(float(total) / max(1, len(scaled)), best, at, sure)
+        enough = before - after > _SHARE_OF_ALL * whole.get(factor, math.inf)
+        sure = sure or (
+            enough and 1.0 - ratio > _SHARE and _steady(folds.misfit(base), folds.misfit(more))
+        )
+    return Score(total / max(1, len(scaled)), best, at, sure)
 
 
 def _steady(before: Array, after: Array) -> bool:
@@ -195,7 +202,7 @@ def _steady(before: Array, after: Array) -> bool:
     misfit. A cause at reversals is silent in the blocks without one: the loud blocks must then fall
     together.
     """
-    if steadiness(before, after) > _SURE:
+    if any(errors > _SURE for errors in _each_steadiness(before, after)):
         return True
     loud = before > 0.2 * before.mean()
     half = after.sum() < 0.5 * before.sum()
@@ -204,14 +211,21 @@ def _steady(before: Array, after: Array) -> bool:
 
 def steadiness(before: Array, after: Array) -> float:
     """Return how many errors the mean fall of the blocks' misfit is from none; the larger of two ways to count."""
+    return max(_each_steadiness(before, after))
+
+
+def _each_steadiness(before: Array, after: Array) -> Iterator[float]:
     floor = 1e-12 * before.sum()
-    ratios = np.log((before + floor) / (after + floor))
-    return max(_errors_from_none(ratios), _errors_from_none(before - after))
+    yield _errors_from_none(np.log((before + floor) / (after + floor)))
+    yield _errors_from_none(before - after)
 
 
 def _errors_from_none(values: Array) -> float:
-    error = float(values.std(ddof=1)) / np.sqrt(len(values))
-    return float(values.mean() / max(error, 1e-300))
+    count = len(values)
+    mean = float(values.sum()) / count
+    beside = values - mean
+    error = math.sqrt(inner(beside, beside) / (count - 1) / count)
+    return mean / max(error, 1e-300)
 
 
 def _parsimonious(scores: dict[int, Score], tried: list[Candidate]) -> int:

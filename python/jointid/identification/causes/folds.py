@@ -64,6 +64,17 @@ class Folds:
         """Misfits that were asked for: what is fitted anyway is compared with many candidates."""
         return {}
 
+    @functools.cached_property
+    def _totals(self) -> dict[tuple[int, ...], float]:
+        return {}
+
+    def total(self, columns: list[int]) -> float:
+        """Sum of `misfit` over all blocks."""
+        asked = tuple(columns)
+        if asked not in self._totals:
+            self._totals[asked] = float(self.misfit(columns).sum())
+        return self._totals[asked]
+
     def misfit(self, columns: list[int]) -> Array:
         """Sum of squares of the residual in each block, with these columns fitted to the other blocks."""
         asked = tuple(columns)

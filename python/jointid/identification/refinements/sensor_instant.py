@@ -166,9 +166,10 @@ def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Ar
 def _rests_on_a_limit(recording: Recording) -> bool:
     """Whether the reading may be clipped: what it lacks there is no half step."""
     reading, speed = np.asarray(recording.sensor), np.abs(recording.velocity)
-    moving = speed > _MOVING * speed.max()  # at rest a clean reading stays, too
+    fastest = max(map(abs, recording.ranges["velocity"]))
+    moving = speed > _MOVING * fastest  # at rest a clean reading stays, too
     most = _RESTING * np.count_nonzero(moving)
-    for limit in (reading.min(), reading.max()):
+    for limit in recording.ranges["sensor"]:
         there = reading == limit
         # First all of them, which is a single count.
         if np.count_nonzero(there) > most and np.count_nonzero(there & moving) > most:
