@@ -105,25 +105,34 @@ JOINTID_CLONES void multiply_strip(const double* left, const double* right, std:
 
 Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                         const Eigen::Ref<const Eigen::MatrixXd>& right) {
-  const Eigen::Index depth = left.cols();
   constexpr auto kHeight = static_cast<Eigen::Index>(kTall);
-  // Filled up with zeros to whole blocks.
-  const Eigen::Index rows = (left.rows() + kHeight - 1) / kHeight * kHeight;
-  const Eigen::Index columns = (right.cols() + 3) / 4 * 4;
-  Eigen::MatrixXd filled(depth, columns);
-  filled.leftCols(right.cols()) = right;
-  filled.rightCols(columns - right.cols()).setZero();
-  Eigen::MatrixXd result(rows, columns);
-  Eigen::MatrixXd strip(kHeight, depth);
-  for (Eigen::Index row = 0; row < rows; row += kHeight) {
+  const Eigen::Index depth = left.cols();
+  const Eigen::Index whole = right.cols() / 4 * 4;
+  const Eigen::Index rest = right.cols() - whole;
+  Eigen::MatrixXd result(left.rows(), right.cols());
+  // What does not fill a block is filled up with zeros, in blocks of their own.
+  Eigen::MatrixXd last = Eigen::MatrixXd::Zero(depth, rest > 0 ? 4 : 0);
+  last.leftCols(rest) = right.rightCols(rest);
+  Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(kHeight, depth);
+  Eigen::MatrixXd block(kHeight, 4);
+  Eigen::MatrixXd low(left.rows() % kHeight > 0 ? kHeight : 0, whole);
+  const auto size = [](Eigen::Index number) { return static_cast<std::size_t>(number); };
+  for (Eigen::Index row = 0; row < left.rows(); row += kHeight) {
     const Eigen::Index height = std::min(kHeight, left.rows() - row);
     strip.topRows(height) = left.middleRows(row, height);
-    strip.bottomRows(kHeight - height).setZero();
-    multiply_strip(strip.data(), filled.data(), static_cast<std::size_t>(depth),
-                   static_cast<std::size_t>(depth), static_cast<std::size_t>(columns),
-                   result.data() + row, static_cast<std::size_t>(rows));
+    if (height == kHeight) {
+      multiply_strip(strip.data(), right.data(), size(depth), size(right.outerStride()),
+                     size(whole), result.data() + row, size(result.rows()));
+    } else {
+      multiply_strip(strip.data(), right.data(), size(depth), size(right.outerStride()),
+                     size(whole), low.data(), kTall);
+      result.block(row, 0, height, whole) = low.topRows(height);
+    }
+    if (rest == 0) continue;
+    multiply_strip(strip.data(), last.data(), size(depth), size(depth), 4, block.data(), kTall);
+    result.block(row, whole, height, rest) = block.topLeftCorner(height, rest);
   }
-  return result.topLeftCorner(left.rows(), right.cols());
+  return result;
 }
 
 Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left,

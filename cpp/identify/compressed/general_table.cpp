@@ -22,6 +22,7 @@ constexpr double kNothing = 3e-16;             // of the largest column, squared
 constexpr int kSpread = 80;
 constexpr double kSpreadDensity = 12.0;
 constexpr double kLargest = 100.0;
+constexpr double kVanished = 1e-30;   // of 1: nothing beside the sums' rounding
 constexpr std::size_t kTogether = 4;  // points between two looks at the sums
 
 JOINTID_CLONES void decays(const double* points, std::size_t count, double velocity,
@@ -159,11 +160,10 @@ Eigen::MatrixXd GeneralTable::remainders(const Eigen::MatrixXd& products) const 
   const Eigen::MatrixXd shapes = decays_of(spread(lower_, upper_));
   const Eigen::Index moments = shapes.rows();
   const auto shaped = static_cast<Eigen::Index>(shaped_);
-  const Eigen::MatrixXd full = products.selfadjointView<Eigen::Lower>();
   std::vector<Eigen::MatrixXd> images;          // of all shapes, as a column of one term or another
   Eigen::MatrixXd left(shapes.cols(), shaped);  // what is not yet served, squared
   for (Eigen::Index j = 0; j < shaped; ++j) {
-    images.push_back(base::product(full.middleCols(j * moments, moments), shapes));
+    images.push_back(base::product(products.middleCols(j * moments, moments), shapes));
     const auto own = images.back().middleRows(j * moments, moments);
     left.col(j) = own.cwiseProduct(shapes).colwise().sum().transpose();
   }
@@ -193,10 +193,11 @@ Eigen::MatrixXd GeneralTable::remainders(const Eigen::MatrixXd& products) const 
 }
 
 void GeneralTable::combine(const double* decay, double* result) const {
-  const std::size_t count = points_.size();
+  const std::size_t all = points_.size();
+  std::size_t count = all;  // fast samples come last, and most decays have vanished there
+  while (count > 0 && std::fabs(decay[count - 1]) < kVanished) --count;
   for (std::size_t j = 0; j < shaped_; ++j) {
-    weighted_rows(decay, count, matrix_.data() + j * count * padded_, padded_,
-                  result + j * padded_);
+    weighted_rows(decay, count, matrix_.data() + j * all * padded_, padded_, result + j * padded_);
   }
 }
 

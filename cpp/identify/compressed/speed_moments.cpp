@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/clones.hpp"
 #include "identify/compressed/digest.hpp"
@@ -41,7 +42,7 @@ JOINTID_CLONES void add_products(const double* row, const Span* spans, std::size
 struct Part {
   std::vector<Eigen::MatrixXd> triangles;
   std::vector<Matrix> projections;  ///< of the moments, then of the probes' columns
-  Matrix products;                  ///< of the moments, i <= j
+  Eigen::MatrixXd products;         ///< of the moments, the lower triangle
 };
 
 class Sums {
@@ -192,14 +193,14 @@ SpeedMoments speed_moments(const Penalty& penalty, const SpeedPieces& pieces, co
   for (const auto& part : parts) blocks += static_cast<Eigen::Index>(part.triangles.size());
   Eigen::MatrixXd triangles(blocks * m, m);
   Eigen::MatrixXd projections(blocks * m, count + sums.direct().cols());
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count, count);
+  Eigen::MatrixXd products = std::move(parts[0].products);  // by itself as large as all the rest
+  for (std::size_t i = 1; i < parts.size(); ++i) products += parts[i].products;
   Eigen::Index row = 0;
   for (const auto& part : parts) {
     for (std::size_t i = 0; i < part.triangles.size(); ++i, row += m) {
       triangles.middleRows(row, m) = part.triangles[i];
       projections.middleRows(row, m) = part.projections[i];
     }
-    products += part.products.transpose();  // now the lower triangle
   }
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(triangles);
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(triangles.rows(), m);
@@ -208,6 +209,10 @@ SpeedMoments speed_moments(const Penalty& penalty, const SpeedPieces& pieces, co
   const Eigen::MatrixXd all = q.transpose() * projections;
   result.projections = all.leftCols(count);
   products.selfadjointView<Eigen::Lower>().rankUpdate(result.projections.transpose(), -1.0);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Eigen::Index rest = count - 1 - j;
+    products.row(j).tail(rest) = products.col(j).tail(rest).transpose();
+  }
   result.products = std::move(products);
 
   const auto number = static_cast<Eigen::Index>(probes.size());

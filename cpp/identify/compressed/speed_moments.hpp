@@ -15,7 +15,7 @@ namespace jointid::identify {
 struct SpeedMoments {
   Eigen::MatrixXd triangle;     ///< m x m, upper: constant columns, target
   Eigen::MatrixXd projections;  ///< m x (shaped * moments)
-  /// Inner products of what remains of the moments' columns; the lower triangle.
+  /// Inner products of what remains of the moments' columns.
   Eigen::MatrixXd products;
   /// The functions of a GeneralTable at the probes, by direct sums: functions x probes.
   Eigen::MatrixXd expected;
