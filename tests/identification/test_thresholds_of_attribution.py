@@ -22,7 +22,10 @@ from jointid.identification.causes.slow_passages import slow_rows
 def _folds(before: Any, after: Any) -> Any:
     """Misfits of the blocks with the columns of the base, [0], and with more."""
     known = {1: np.asarray(before, dtype=float), 2: np.asarray(after, dtype=float)}
-    return SimpleNamespace(misfit=lambda columns: known[len(columns)])
+    return SimpleNamespace(
+        misfit=lambda columns: known[len(columns)],
+        total=lambda columns: float(known[len(columns)].sum()),
+    )
 
 
 def _score(*scales: tuple[int, float], whole: float = 20.0) -> Score:

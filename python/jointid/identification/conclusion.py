@@ -40,7 +40,7 @@ from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
 from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
 from jointid.problem.constant_torque import undivided
-from jointid.problem.inner_products import columns_with, size
+from jointid.problem.inner_products import column_sizes, columns_with, size
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
 
@@ -88,7 +88,7 @@ def infer(
     # of an hour fills the memory.
     inspections = tuple(inspect(run, threads) for run in problem.recordings)
     value, residual, jacobian, columns = balance or penalty.balance_at(best)
-    sizes = np.linalg.norm(jacobian, axis=0)
+    sizes = column_sizes(jacobian)
     noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
     alone = noise / np.where(
         sizes > 0.0, sizes, 1.0

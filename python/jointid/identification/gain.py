@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.search.domain import SearchDomain
-from jointid.identification.search.stated_bounds import known_parameters
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
 from jointid.problem.terms import WEAK_READING
@@ -22,7 +21,7 @@ _LOADED = "friction depends on the sensed load"
 def with_instruments(
     problem: Problem,
     penalty: _core.Penalty,
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None,
+    known: Sequence[Parameter],
     windows: Windows,
     stated: bool,
 ) -> tuple[Problem, _core.Penalty]:
@@ -41,8 +40,8 @@ def with_instruments(
         Its choice has the residual "instruments", or another one, which is left as it is.
     penalty : Penalty
         Over `windows`, of which it projects the reading.
-    parameters : mapping or None
-        Argument of the call; what it or the joint fixes is no instrument.
+    known : sequence of Parameter
+        What joint and call state of each parameter of the penalty; one that is fixed is no instrument.
     windows : int, float, str, WindowOptions or None
     stated : bool
         Whether the caller asked for this residual, which then is not replaced.
@@ -50,8 +49,7 @@ def with_instruments(
     Raises
     ------
     InputError
-        The caller asked for instruments and for friction that depends on the load; or `parameters` names
-        one that the model does not have.
+        The caller asked for instruments and for friction that depends on the load.
     """
     if penalty.residual != _core.Residual.instruments:
         return problem, penalty
@@ -66,7 +64,6 @@ def with_instruments(
                 remedy=Action("call", {"residual": "sensor"}),
             )
     if stated or not reason:
-        known = known_parameters(tuple(penalty.names), problem.joint, parameters)
         free = [index for index, each in enumerate(known) if each.vary]
         penalty.project_reading(free, threads=problem.threads)
         stage = penalty.first_stage

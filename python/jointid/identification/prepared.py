@@ -43,6 +43,7 @@ from jointid.identification.search.engine import Outcome
 from jointid.identification.search.own_duplicates import refuse_duplicates
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
+from jointid.identification.search.stated_bounds import known_parameters
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
@@ -342,10 +343,9 @@ def prepare(
         sensor_instant = None
         if instant:
             problem, penalty, sensor_instant = without_early_reading(problem, penalty, windows)
-        problem, penalty = with_instruments(
-            problem, penalty, parameters, windows, residual is not None
-        )
-        domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+        known = known_parameters(tuple(penalty.names), problem.joint, parameters)
+        problem, penalty = with_instruments(problem, penalty, known, windows, residual is not None)
+        domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed, known)
         refuse_duplicates(
             penalty,
             domain,

@@ -4,6 +4,8 @@ BLAS runs long vectors on threads of its own. They keep spinning for tens of mil
 threads, and their number changes the last bits of a result.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,12 +14,17 @@ Array = NDArray[np.float64]
 
 def inner(one: Array, other: Array) -> float:
     """Return the sum of products of two series."""
-    return float(np.einsum("i,i->", one, other))
+    return float(np.add.reduce(one * other))
 
 
 def size(series: Array) -> float:
     """Return the Euclidean norm."""
-    return float(np.sqrt(np.einsum("i,i->", series, series)))
+    return math.sqrt(inner(series, series))
+
+
+def column_sizes(matrix: Array) -> Array:
+    """Return the Euclidean norm of each column of a matrix."""
+    return np.asarray(np.sqrt(np.add.reduce(matrix * matrix, axis=0)))
 
 
 def columns_with(matrix: Array, series: Array) -> Array:

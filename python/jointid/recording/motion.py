@@ -50,7 +50,8 @@ class SmallMotion:
 def small_motion(recording: Recording) -> SmallMotion | None:
     """Return the motion of a recording if it is less than 50 steps of the encoder or noise alone, else None."""
     position = recording.position
-    travel = float(position.max() - position.min())
+    lowest, highest = recording.ranges["position"]
+    travel = highest - lowest
     changes = np.abs(np.diff(position))
     changes = changes[changes > 1e-9 * travel]  # others are rounding errors
     if not len(changes):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.inference.segments import Segments
+from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
 
@@ -66,7 +67,7 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     """
     rows, directions = len(residual), len(whitening)
     freedom = max(1, rows - directions)
-    variance = float(np.einsum("i,i->", residual, residual)) / freedom
+    variance = inner(residual, residual) / freedom
     unit = np.einsum("rp,rp->p", whitening, whitening)
     classical = np.where(unit * variance > 0.0, unit * variance, 1.0)
     known = Stretch(
@@ -80,8 +81,9 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     count = min(each.segments for each in clusterings)
     if count < 3:
         return known
-    pooled = float(np.mean([each.size for each in clusterings])) / (directions * variance)
-    pooled_freedom = float(np.mean([each.pooled_freedom for each in clusterings]))
+    size = sum(each.size for each in clusterings) / len(clusterings)
+    pooled = size / (directions * variance)
+    pooled_freedom = sum(each.pooled_freedom for each in clusterings) / len(clusterings)
     if not _contradicted(residual, pooled, pooled_freedom):
         alone = np.asarray(of_rows) * rows / freedom
         return Stretch(
@@ -124,8 +126,8 @@ def _contradicted(residual: Array, pooled: float, freedom: float) -> bool:
 
     What the velocity's noise adds to one window it takes from the next, and sums over a segment know it.
     """
-    power = float(np.einsum("i,i->", residual, residual))
-    neighbours = float(np.einsum("i,i->", residual[1:], residual[:-1])) / power
+    power = inner(residual, residual)
+    neighbours = inner(residual[1:], residual[:-1]) / power
     freedom = max(freedom - 1.0, 1.0)
     limit = _core.chi_square_quantile(_CERTAIN, freedom) / freedom
     alike = neighbours * np.sqrt(len(residual))

@@ -7,7 +7,7 @@ from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.inference.clustered import stretch_of
 from jointid.identification.inference.segments import Segments, even_segments
-from jointid.problem.inner_products import inner
+from jointid.problem.inner_products import column_sizes, inner
 from jointid.problem.least_squares import solve
 
 Array = NDArray[np.float64]
@@ -114,7 +114,7 @@ def parameter_covariance(
         )
     if triangle is None:
         triangle = Triangle(jacobian, threads).matrix
-    norms = np.linalg.norm(triangle, axis=0)
+    norms = column_sizes(triangle)
     scale = np.where(norms > 0.0, norms, 1.0)
     _, singular, directions = np.linalg.svd(triangle / scale, full_matrices=False)
     known = singular > 1e-10 * singular[0]
@@ -147,7 +147,7 @@ def parameter_covariance(
     if centre is not None:
         gain, offset, mean = centre
         centred[:, gain] -= mean * triangle[:, offset]
-    centred_norms = np.linalg.norm(centred, axis=0)
+    centred_norms = column_sizes(centred)
     centred /= np.where(centred_norms > 0.0, centred_norms, 1.0)
     _, values, vectors = np.linalg.svd(centred, full_matrices=False)
     # A floor, so that two identical columns are fully correlated.

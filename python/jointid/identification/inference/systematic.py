@@ -78,7 +78,7 @@ def systematic_errors(
     parts: dict[str, Array] = {}
     moved = [shift[free] for shift in shifts if shift is not None]
     if moved:
-        parts["windows"] = np.sqrt(np.mean(np.square(moved), axis=0))
+        parts["windows"] = np.sqrt(sum(shift * shift for shift in moved) / len(moved))
     own = list(range(len(free)))
     for place, name in enumerate(lacking if free else ()):
         moves = np.abs(triangle.solve(own, len(free) + place, rcond=1e-10)[0])

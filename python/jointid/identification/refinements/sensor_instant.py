@@ -102,8 +102,7 @@ def _measured(
     integrals = _integrals(problem, penalty, held)
     rows = np.asarray(_core.triangle(integrals))
     torque, reading = integrals.shape[1] - 2, integrals.shape[1] - 1
-    size = np.linalg.norm(rows[:, : _STEPS + 1], axis=0)
-    if size[0] == 0.0 or size[_STEPS] == 0.0:
+    if not (rows[:, 0].any() and rows[:, _STEPS].any()):
         return None
     link = [*range(_STEPS + 1)]
     drive = [index for index in range(torque) if index != _STEPS]
@@ -160,7 +159,7 @@ def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Ar
     moved = penalty.link_motion(problem.in_core, problem.mask_standstill, periods, slow)
     rows, duration, lasting = moved[:, :-1], moved[:, 3], moved[:, -1]
     whole = np.abs(lasting - duration) < 1e-9 * lasting + 1e-12
-    return rows if whole.all() else np.asfortranarray(rows[whole])
+    return rows if whole.all() else np.compress(whole, rows.T, axis=1).T  # still by columns
 
 
 def _rests_on_a_limit(recording: Recording) -> bool:

@@ -69,10 +69,9 @@ def pieces_of(problem: Problem) -> list[Piece]:
         edges = [0, *(gap.index + 1 for gap in recording.gaps), len(recording)]
         for first, last in itertools.pairwise(edges):
             parts = max(1, round((last - first) / _PIECE))
-            cuts = np.linspace(first, last, parts + 1).astype(int)
-            spans += [
-                (number, int(a), int(b)) for a, b in itertools.pairwise(cuts) if b - a >= _SHORTEST
-            ]
+            length = (last - first) / parts
+            cuts = [*(int(first + k * length) for k in range(parts)), last]
+            spans += [(number, a, b) for a, b in itertools.pairwise(cuts) if b - a >= _SHORTEST]
     total = sum(last - first for _, first, last in spans)
     if total > _MOST:
         count = max(1, len(spans) * _MOST // total)

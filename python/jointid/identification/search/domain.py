@@ -1,6 +1,6 @@
 """The search domain: stated bounds, and bounds from the data where none are stated."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,7 @@ def domain_for(
     joint: Joint | None,
     changes: Mapping[str, float | Mapping[str, object] | Parameter] | None,
     peak_speed: float,
+    known: Sequence[Parameter] | None = None,
 ) -> SearchDomain:
     """Return bounds for every parameter of the penalty.
 
@@ -61,6 +62,8 @@ def domain_for(
         Argument `parameters` of the call; a number fixes.
     peak_speed : float
         Largest speed in the recordings [rad/s or m/s].
+    known : sequence of Parameter, optional
+        What joint and call state of each parameter. Default: found here.
 
     Raises
     ------
@@ -71,7 +74,8 @@ def domain_for(
     lower = np.empty(len(names))
     upper = np.empty(len(names))
     from_data = []
-    known = known_parameters(names, joint, changes)
+    if known is None:
+        known = known_parameters(names, joint, changes)
     fixed = {
         name: each.value
         for name, each in zip(names, known, strict=True)
@@ -104,7 +108,7 @@ def domain_for(
             )
         lower[index], upper[index] = low, high
     _refuse_zero_gain(penalty, names, lower, upper)
-    if bool(np.all(lower == upper)):
+    if lower.tolist() == upper.tolist():
         raise InputError("every parameter is fixed; leave at least one free", argument="parameters")
     return SearchDomain(
         names=names,
@@ -115,7 +119,7 @@ def domain_for(
     )
 
 
-def _signs(known: list[Parameter]) -> tuple[float, ...]:
+def _signs(known: Sequence[Parameter]) -> tuple[float, ...]:
     """Return the signs of the sensor's gain that its stated bounds allow."""
     for each in known:
         if each.name == "sensor_gain":

@@ -118,4 +118,5 @@ class Engine:
 
 def _free_shapes(penalty: _core.Penalty, domain: SearchDomain) -> int:
     shapes = slice(penalty.coefficients, None)
-    return int(np.sum(domain.lower[shapes] < domain.upper[shapes]))
+    ranges = zip(domain.lower[shapes].tolist(), domain.upper[shapes].tolist(), strict=True)
+    return sum(low < high for low, high in ranges)

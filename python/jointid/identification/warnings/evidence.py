@@ -19,6 +19,7 @@ from jointid.identification.inference.velocity_noise import VelocityEffect
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided, undivided
+from jointid.problem.inner_products import size
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
@@ -42,12 +43,12 @@ class Regressor:
 
     def norm(self, name: str) -> float:
         """Norm of a term's integrals."""
-        return float(np.linalg.norm(self.triangle.matrix[:, self.names.index(name)]))
+        return size(self.triangle.matrix[:, self.names.index(name)])
 
     @property
     def target(self) -> float:
         """Norm of the torque's integrals."""
-        return float(np.linalg.norm(self.triangle.matrix[:, -1]))
+        return size(self.triangle.matrix[:, -1])
 
 
 def _no_cause(*_: object) -> None:
