@@ -145,9 +145,10 @@ bench: $(INSTALLED) .venv/.bench-tools build/oldest/.installed  ## speed against
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/projections.py --output docs/projection.md
 
 # Version 0.1.0 as it was when limits in milliseconds were set: they are for a machine on which it takes 7.1 ms.
-OLDEST := 6800cc5c
+OLDEST := 6800cc5c31f4fcec87d93d620137ff07dbc62481
 build/oldest/.installed: .venv/.created
 	@echo "Building version 0.1.0, for limits that are milliseconds"
+	@git cat-file -e $(OLDEST) || { echo "make bench: it builds version 0.1.0 from the history, which a shallow clone or an sdist lacks" >&2; exit 1; }
 	@rm -rf build/oldest build/oldest-sources
 	@mkdir -p build/oldest-sources
 	@git archive $(OLDEST) | tar --extract --directory build/oldest-sources

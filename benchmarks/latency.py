@@ -75,6 +75,8 @@ _OLDEST_CALL = """
 import sys, time
 import jointid
 recording, joint = jointid.load(sys.argv[1]), jointid.thesis_joint()
+if hasattr(recording, "ranges"):
+    sys.exit("this is not version 0.1.0 as it was when the limits were set")
 jointid.identify(recording, joint)
 spent = []
 for _ in range(20):

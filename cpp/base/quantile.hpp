@@ -28,8 +28,8 @@ inline double between(double first, double second, double share) {
 }  // namespace quantile_detail
 
 /// The quantile `q` (0 to 1, linear between neighbours; 0.5 is the median) of the values that
-/// `value(i, out)` gives for i < count and for which it returns true; `kept` is their number. 0
-/// without any.
+/// `value(i, out)` gives for i < count and for which it returns true, none of them NaN; `kept` is
+/// their number. 0 without any.
 template <class Value>
 double quantile(std::size_t count, std::size_t kept, double q, Value value,
                 const Cancel* cancel = nullptr) {

@@ -39,7 +39,7 @@ Ranked at_rank(const double* values, std::size_t count, std::size_t rank) {
   // Not set to zero before: a partition writes what the next one reads.
   const std::unique_ptr<double[]> scratch(count > kFew ? new double[2 * count] : nullptr);
   double* to = scratch.get();
-  double* other = to + count;
+  double* other = to == nullptr ? nullptr : to + count;
   double above = 0.0;  // the smallest value above those that are left
   bool is_last = true;
   const auto next_of = [&](double last) { return is_last ? last : above; };

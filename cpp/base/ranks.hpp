@@ -12,7 +12,7 @@ struct Ranked {
 };
 
 /// The value of rank `rank` (0: the smallest) of `count` values, which stay as they are; count >
-/// rank.
+/// rank, and none of them is NaN.
 ///
 /// A partition in which no branch depends on a value: of values in any order std::nth_element
 /// guesses every second branch wrong, which takes three times as long.

@@ -42,13 +42,21 @@ CHECK_CASE("ranks: values in order, and orders that no pivot divides well") {
   }
   std::reverse(values.begin(), values.end());
   compare(values, 250);
-  // The pivots' places hold the smallest values, round after round.
-  std::vector<double> poor(400, 1e6);
-  for (std::size_t i = 0; i < poor.size(); ++i) poor[i] += static_cast<double>(i);
-  for (std::size_t left = poor.size(); left > 3; left -= 2) {
-    poor[poor.size() - left + left / 4] = -static_cast<double>(left);
-    poor[poor.size() - left + left / 2] = -static_cast<double>(left) - 0.5;
+  // Two of the three places that a pivot is taken from hold the smallest values, round after round:
+  // each round leaves out two values. A partition turns round what lies above the pivot.
+  std::vector<std::size_t> left(400);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  std::vector<double> poor(left.size());
+  double next = 0.0;
+  while (left.size() > 24) {
+    const std::size_t one = left[left.size() / 4];
+    const std::size_t other = left[left.size() / 2];
+    poor[one] = next++;
+    poor[other] = next++;
+    std::erase_if(left, [&](std::size_t i) { return i == one || i == other; });
+    std::reverse(left.begin(), left.end());
   }
+  for (const std::size_t i : left) poor[i] = next++;
   compare(poor, 399);
   compare(poor, 200);
 }

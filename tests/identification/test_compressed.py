@@ -1,6 +1,7 @@
 """The compressed penalty against the direct sum, as `identify` uses them."""
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -152,6 +153,32 @@ def test_two_shapes_are_polished_over_their_whole_range(
     best, _, settled = engine.polished(domain, getattr(domain, corner))
     assert settled
     assert penalty(best) == pytest.approx(least, rel=1e-6)
+
+
+@pytest.mark.parametrize("found", [None, "worse"])
+def test_two_shapes_are_polished_by_their_table_where_projection_is_no_help(
+    excited: jid.Recording, monkeypatch: pytest.MonkeyPatch, found: str | None
+) -> None:
+    penalty, domain = made(excited, Case("stribeck_general", "sensor"))
+    engine = Engine.of(penalty, domain, 0)
+    least, steps, _ = engine.polished(domain, domain.lower)  # by projection
+    worse = SimpleNamespace(best=domain.lower, penalty=np.inf, evaluations=1)
+    result = SimpleNamespace(found=worse if found else None)
+    monkeypatch.setattr(_core, "minimise_projected", lambda *_, **__: result)
+    best, table_steps, settled = engine.polished(domain, domain.lower)
+    assert settled
+    assert table_steps > steps
+    assert penalty(best) == pytest.approx(penalty(least), rel=1e-9)
+
+
+def test_two_shapes_of_a_long_recording_are_polished_by_their_table(
+    excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    penalty, domain = made(excited, Case("stribeck_general", "sensor"))
+    engine = Engine.of(penalty, domain, 0)
+    monkeypatch.setattr("jointid.identification.search.engine._PROJECTED", penalty.total_samples)
+    monkeypatch.setattr(_core, "minimise_projected", None)  # a call of it fails
+    assert engine.polished(domain, domain.lower)[2]
 
 
 def test_the_direct_sum_verifies_the_result(excited: jid.Recording) -> None:

@@ -1,5 +1,7 @@
 """When a torque sensor is sampled against the steps of a held torque, and stops shorter than a sample."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -7,6 +9,8 @@ from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
 from jointid import _core
+from jointid.identification.refinements.sensor_instant import without_early_reading
+from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 JOINT = jid.Joint(inertia=1.8, sensor=True, model=jid.Model("stribeck"))
@@ -60,6 +64,23 @@ def test_a_reading_in_the_middle_or_after_the_step_is_known_as_such() -> None:
         assert after.settings["sensor_before_step"] == -1.0
         for estimate in (middle, after):
             assert estimate.parameters["sensor_gain"].value == pytest.approx(2.4, rel=2e-3)
+
+
+def test_folds_measure_the_instant_only_where_all_data_lack_a_part_of_the_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    measured: list[int] = []
+
+    def counted(problem: Problem, *rest: Any) -> Any:
+        measured.append(len(problem.recordings[0]))
+        return without_early_reading(problem, *rest)
+
+    monkeypatch.setattr("jointid.identification.prepared.without_early_reading", counted)
+    early = runs(0.01)[0]
+    for run, times in ((early, 4), (of_middle(early), 1)):  # all data, and three folds
+        measured.clear()
+        jid.compare_models(run, JOINT, models=("stribeck",), folds=3)
+        assert len(measured) == times
 
 
 def test_a_reading_that_is_noise_is_left_as_it_is() -> None:

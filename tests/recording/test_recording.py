@@ -49,6 +49,17 @@ def test_signals_are_read_only_copies_in_canonical_order() -> None:
             array[0] = 1.0
 
 
+def test_ranges_are_of_the_signals_that_there_are() -> None:
+    made = recording(kind="prismatic", extra={"hall": np.arange(N)})
+    assert tuple(made.ranges) == ("time", "position", "velocity", "torque")  # derived, no sensor
+    assert made.ranges["torque"] == (1.0, 1.0)
+    assert made.ranges["position"] == (0.0, np.sin(TIME[-1]))
+    with pytest.raises(TypeError):
+        made.ranges["torque"] = (0.0, 0.0)  # type: ignore[index]
+    assert pickle.loads(pickle.dumps(made)).ranges == made.ranges
+    assert made.with_signals(torque=2.0 * TIME).ranges["torque"] == (0.0, 2.0 * TIME[-1])
+
+
 def test_attributes_are_read_only() -> None:
     made = recording(metadata={"a": 1}, truth={"coulomb": 25.0})
     with pytest.raises(AttributeError, match="name"):

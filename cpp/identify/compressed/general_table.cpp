@@ -22,7 +22,7 @@ constexpr double kNothing = 3e-16;             // of the largest column, squared
 constexpr int kSpread = 80;
 constexpr double kSpreadDensity = 12.0;
 constexpr double kLargest = 100.0;
-constexpr double kVanished = 1e-30;   // of 1: nothing beside the sums' rounding
+constexpr double kVanished = 1e-30;   // decay or slope: nothing beside the sums' rounding
 constexpr std::size_t kTogether = 4;  // points between two looks at the sums
 
 JOINTID_CLONES void decays(const double* points, std::size_t count, double velocity,

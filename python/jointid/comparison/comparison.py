@@ -309,12 +309,11 @@ class _Fitter:
     ) -> FittedModel:
         """The values alone: a score needs neither intervals nor causes.
 
-        What all data show of their signals holds for their parts: delays, the speed below which motion contradicts
-        itself, and that a reading is not taken before the torque steps. How much it lacks each part measures.
+        What all data show of their signals holds for their parts: delays, and that a reading is not taken before the
+        torque steps. How much it lacks each part measures.
         """
         search = self._common["search"]
         stated = {name: value for name, value in self._common.items() if name != "search"}
-        stated["min_speed"] = whole.settings["min_speed"]
         try:
             prepared = prepare(
                 training,

@@ -3,6 +3,7 @@
 import functools
 import os
 from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -211,15 +212,17 @@ class Recording(Parts):
         return median(np.diff(self.time))
 
     @functools.cached_property
-    def ranges(self) -> dict[str, tuple[float, float]]:
-        """Smallest and largest value of each signal by name, in its unit.
+    def ranges(self) -> Mapping[str, tuple[float, float]]:
+        """Smallest and largest value of each of `signals` by name, in its unit; extra ones are not among them.
 
         Examples
         --------
         >>> slowest, fastest = recording.ranges["velocity"]
         """
         signals = {name: getattr(self, name) for name in self.signals}
-        return {name: (float(each.min()), float(each.max())) for name, each in signals.items()}
+        return MappingProxyType(
+            {name: (float(each.min()), float(each.max())) for name, each in signals.items()}
+        )
 
     @property
     def duration(self) -> float:

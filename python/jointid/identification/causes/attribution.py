@@ -215,6 +215,7 @@ def steadiness(before: Array, after: Array) -> float:
 
 
 def _each_steadiness(before: Array, after: Array) -> Iterator[float]:
+    """Both ways to count, one after the other: the first mostly decides."""
     floor = 1e-12 * before.sum()
     yield _errors_from_none(np.log((before + floor) / (after + floor)))
     yield _errors_from_none(before - after)

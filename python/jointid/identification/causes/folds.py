@@ -66,6 +66,7 @@ class Folds:
 
     @functools.cached_property
     def _totals(self) -> dict[tuple[int, ...], float]:
+        """Their sums over the blocks."""
         return {}
 
     def total(self, columns: list[int]) -> float:
