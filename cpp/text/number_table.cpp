@@ -33,31 +33,37 @@ unsigned digit(char sign) {
   return static_cast<unsigned>(sign) - static_cast<unsigned>('0');
 }
 
-/// The value of eight digits, all at once: neighbours are joined to pairs, pairs to fours, fours to
-/// all of them. Null where one of the characters is no digit. (D. Lemire, "Quickly parsing eight
-/// digits", 2018.)
-std::optional<std::uint64_t> eight_digits(const char* at) {
-  if constexpr (std::endian::native != std::endian::little) return std::nullopt;
+/// Takes up to eight digits from eight characters at once, without a branch that depends on how
+/// many there are: neighbours are joined to pairs, pairs to fours, fours to all of them (after D.
+/// Lemire, "Quickly parsing eight digits", 2018). Returns how many there were.
+std::size_t take_some(const char* at, std::uint64_t& number) {
+  constexpr std::array<std::uint64_t, 9> kPowers = {
+      1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
   std::uint64_t signs = 0;
   std::memcpy(&signs, at, sizeof signs);
-  const std::uint64_t high = signs & 0xf0f0f0f0f0f0f0f0U;
-  const std::uint64_t beyond = (signs + 0x0606060606060606U) & 0xf0f0f0f0f0f0f0f0U;
-  if ((high | (beyond >> 4U)) != 0x3333333333333333U) return std::nullopt;
-  signs -= 0x3030303030303030U;
-  signs = signs * 10 + (signs >> 8U);
+  const std::uint64_t digits = signs ^ 0x3030303030303030U;  // 0 to 9, everything else is more
+  const std::uint64_t others = ((digits + 0x7676767676767676U) | digits) & 0x8080808080808080U;
+  const std::size_t count =
+      static_cast<std::size_t>(std::countr_zero(others)) / 8;  // 8 without one
+  if (count == 0) return 0;
+  std::uint64_t value = digits << (8 * (8 - count));  // zeros before them
+  value = value * 10 + (value >> 8U);
   constexpr std::uint64_t kPairs = 0x000000ff000000ffU;
   constexpr std::uint64_t kFirst = 100U + (1'000'000ULL << 32U);
   constexpr std::uint64_t kSecond = 1U + (10'000ULL << 32U);
-  return ((signs & kPairs) * kFirst + ((signs >> 16U) & kPairs) * kSecond) >> 32U;
+  value = ((value & kPairs) * kFirst + ((value >> 16U) & kPairs) * kSecond) >> 32U;
+  number = number * kPowers[count] + value;
+  return count;
 }
 
 /// Appends the digits that follow to a number.
 const char* take_digits(const char* at, const char* end, std::uint64_t& number) {
-  while (end - at >= 8) {
-    const auto eight = eight_digits(at);
-    if (!eight) break;
-    number = number * 100'000'000 + *eight;
-    at += 8;
+  if constexpr (std::endian::native == std::endian::little) {
+    while (end - at >= 8) {
+      const std::size_t count = take_some(at, number);
+      at += count;
+      if (count < 8) return at;
+    }
   }
   while (at != end && digit(*at) < 10) number = number * 10 + digit(*at++);
   return at;
@@ -120,7 +126,9 @@ std::optional<Eigen::MatrixXd> number_table(std::string_view text, std::size_t b
     if (next_line(text).find('\r') != std::string_view::npos) return std::nullopt;
   }
   // A row takes two characters for each column: many empty lines do not ask for much memory.
-  const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
+  const bool ended = text.ends_with('\n');
+  const auto lines =
+      static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + (ended ? 0U : 1U);
   const std::size_t rows = std::min(lines, text.size() / (2 * columns) + 1);
   Eigen::MatrixXd table(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
   Eigen::Index row = 0;
