@@ -8,7 +8,7 @@
 
 #include "base/clones.hpp"
 #include "base/four.hpp"
-#include "base/quantile.hpp"
+#include "base/ranks.hpp"
 
 namespace jointid::signals {
 
@@ -61,12 +61,11 @@ VectorXd thirds_of(const Signal& signal, Index beyond = 0) {
 /// Their standard deviation, as the median of every second one tells it.
 double size_of(const VectorXd& thirds, Index count) {
   if (count == 0) return 0.0;
-  const auto half = static_cast<std::size_t>((count + 1) / 2);
-  const auto size = [&](std::size_t i, double& value) {
-    value = std::fabs(thirds[static_cast<Index>(2 * i)]);
-    return true;
-  };
-  return kOfMedian * base::quantile(half, half, 0.5, size);
+  VectorXd sizes((count + 1) / 2);  // not set to zero before
+  for (Index i = 0; i < sizes.size(); ++i) sizes[i] = std::fabs(thirds[2 * i]);
+  const auto size = static_cast<std::size_t>(sizes.size());
+  const base::Ranked middle = base::at_rank(sizes.data(), size, (size - 1) / 2);
+  return kOfMedian * (size % 2 == 1 ? middle.value : 0.5 * (middle.value + middle.next));
 }
 
 /// Third differences over their usual size, clipped, and `beyond` zeros.

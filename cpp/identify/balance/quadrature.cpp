@@ -175,6 +175,14 @@ void integrate_sign(const Term& term, const RecordingView& r,
   }
 }
 
+/// The speed beyond which a term's decay is nothing beside 1; infinite without a decay.
+double vanished_beyond(const Term& term, const Eigen::VectorXd& shapes) {
+  if (term.basis == model::SpeedBasis::stribeck) return std::sqrt(vanishing_at(shapes[0]));
+  if (term.basis != model::SpeedBasis::stribeck_general) return HUGE_VAL;
+  const double power = vanishing_at(1.0);
+  return shapes[0] * base::exp(base::log(power) / shapes[1]);
+}
+
 }  // namespace
 
 const RecordingView::Signal& own_series(const RecordingView& r, const std::string& name) {
@@ -268,11 +276,11 @@ void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& u
 void integrate_bending(const Term& term, const Eigen::VectorXd& shapes, const RecordingView& r,
                        const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                        Eigen::Ref<Eigen::VectorXd> result) {
-  const bool fades = term.basis == model::SpeedBasis::stribeck && !needs_load(term);
+  const double vanished = needs_load(term) ? HUGE_VAL : vanished_beyond(term, shapes);
   const auto part = [&](std::int64_t k, std::size_t count, double* values) {
     const auto intervals = static_cast<Eigen::Index>(count);
     const double* velocity = r.velocity.data() + k;
-    if (fades && has_vanished(shapes[0], velocity, count + 1)) {
+    if (base::least_sizes(velocity, count + 1).any > vanished) {
       Eigen::Map<Eigen::ArrayXd>(values, intervals).setZero();
       return;
     }
