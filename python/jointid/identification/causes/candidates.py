@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.samples import Samples, all_samples
 from jointid.recording.order_statistics import quantile
 from jointid.recording.recording import Recording
 
@@ -74,20 +75,31 @@ def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
         return
     parts = {}
     for order in (1.0, 2.0):
-        mean = inertia_basis(fit, order).mean(axis=0)
-        momentum = fit.rise(functools.partial(_momentum, order=order, mean=mean))
-        parts[order] = momentum - 0.5 * fit.integral(functools.partial(_centrifugal, order=order))
+        mean = _mean_of_basis(fit, order)
+        momentum = fit.rise_of_each(functools.partial(_momentum, order=order, mean=mean))
+        turning = fit.integral_of_each(functools.partial(_centrifugal, order=order))
+        parts[order] = momentum - 0.5 * turning
     for orders in ((1.0,), (2.0,), (1.0, 2.0)):
         detail = " and ".join(f"{order:g}" for order in orders)
         columns = np.hstack([parts[order] for order in orders])
         yield Candidate(name="inertia_varies", columns=columns, detail=detail)
 
 
-def _momentum(_: int, run: Recording, order: float, mean: Array) -> Array:
+def _mean_of_basis(fit: Fitted, order: float) -> Array:
+    """Means of cosine and sine of a multiple of the angle over all samples."""
+    sums, count = np.zeros(2), 0
+    for recording in fit.problem.recordings:
+        for part in all_samples(recording):
+            sums += _pair(order * part.position).sum(axis=0)
+        count += len(recording)
+    return sums / count
+
+
+def _momentum(_: int, run: Samples, order: float, mean: Array) -> Array:
     return np.asarray((_pair(order * run.position) - mean) * run.velocity[:, None])
 
 
-def _centrifugal(_: int, run: Recording, order: float) -> Array:
+def _centrifugal(_: int, run: Samples, order: float) -> Array:
     return np.asarray(order * _slope(order * run.position) * run.velocity[:, None] ** 2)
 
 
@@ -120,14 +132,15 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
     reach = max(float(np.ptp(run.position)) for run in fit.problem.recordings)
     speeds = fast * np.array([0.02, 0.05, 0.1, 0.2, 0.4])
     ways = reach * np.array([1e-4, 1e-3, 1e-2])
-    linear = fit.integral(
+    linear = fit.integral_of_each(
         lambda _, run: (
             np.exp(-np.abs(run.velocity)[:, None] / speeds) * np.sign(run.velocity)[:, None]
         )
     )
-    since = fit.integral(
-        lambda _, run: (
-            np.exp(-_since_reversal(run)[:, None] / ways) * np.sign(run.velocity)[:, None]
+    gone = [_since_reversal(run) for run in fit.problem.recordings]
+    since = fit.integral_of_each(
+        lambda number, run: (
+            np.exp(-gone[number][run.cut, None] / ways) * np.sign(run.velocity)[:, None]
         )
     )
     family = "slow_motion"
@@ -197,7 +210,7 @@ def _delay(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(name="delay", columns=late[:, None], detail="torque")
     if "sensor_gain" in fit.names and "sensor" not in fit.prompt:
         gain = fit.value("sensor_gain")
-        rise = gain * fit.rise(lambda _, run: _present(run.sensor))
+        rise = gain * fit.rise_of_each(lambda _, run: _present(run.sensor))
         yield Candidate(name="delay", columns=rise[:, None], detail="sensor")
     if not fit.problem.recordings[0].velocity_derived and "velocity" not in fit.prompt:
         rise = fit.rise(lambda _, run: _of_velocity(fit, run))
@@ -238,7 +251,7 @@ def _friction(fit: Fitted, velocity: Array) -> Array:
 def _asymmetry(fit: Fitted) -> Iterator[Candidate]:
     if any(name.endswith("_positive") for name in fit.names):
         return
-    speed = fit.integral(lambda _, run: np.abs(run.velocity))
+    speed = fit.integral_of_each(lambda _, run: np.abs(run.velocity))
     yield Candidate(name="asymmetry", columns=speed[:, None])
 
 
@@ -299,7 +312,7 @@ def _slope(angle: Array) -> Array:
 
 def _angle(fit: Fitted, order: float) -> Array:
     """Cosine and sine without their means, so that they leave an offset where it is."""
-    columns = fit.integral(lambda _, run: _pair(order * run.position))
+    columns = fit.integral_of_each(lambda _, run: _pair(order * run.position))
     if not {"torque_offset", "sensor_offset"} & set(fit.names):
         return columns
     mean = columns.sum(axis=0) / fit.duration.sum()

@@ -82,7 +82,7 @@ def local_event(fit: Fitted, base: Array, residual: Array) -> LocalEvent | None:
 
 
 def _is_slow(fit: Fitted, power: Array) -> bool:
-    speed = fit.integral(lambda _, run: np.abs(run.velocity)) / fit.duration
+    speed = fit.integral_of_each(lambda _, run: np.abs(run.velocity)) / fit.duration
     slow = speed < quantile(speed, _SLOW)
     return float(power[slow].sum()) > 0.5 * float(power.sum())
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.folds import BLOCKS, first_windows
+from jointid.identification.causes.samples import Samples, window_blocks
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
 from jointid.recording.order_statistics import distinct
@@ -182,6 +183,14 @@ class Fitted:
         """How far a signal rises over the integrated part of each window."""
         return self._by_window(signal, rise=True)
 
+    def integral_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
+        """As `integral`, of a signal that depends on each sample alone: of some samples at a time."""
+        return self._by_samples(signal, rise=False)
+
+    def rise_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
+        """As `rise`, of a signal that depends on each sample alone: of some samples at a time."""
+        return self._by_samples(signal, rise=True)
+
     @classmethod
     def of(
         cls,
@@ -238,14 +247,28 @@ class Fitted:
         actual[:, place] = -reading
         return replace(fit, residual=fit.residual + actual @ start, start=start)
 
-    def _by_window(self, signal: Callable[[int, Recording], Array], *, rise: bool) -> Array:
-        bounds = np.asarray(self.penalty.windows)
+    def _by_samples(self, signal: Callable[[int, Samples], Array], *, rise: bool) -> Array:
         parts = []
         for number, recording in enumerate(self.problem.recordings):
-            mine = slice(*np.searchsorted(self._every_run, (number, number + 1)))
+            bounds, weights = self._own_bounds(number), self.weights[number]
+            for windows, cut in window_blocks(bounds):
+                values = np.asarray(signal(number, Samples.of(recording, cut)), dtype=np.float64)
+                own = weights[cut.start : cut.stop - 1]
+                each = _core.window_integrals(values, own, bounds[windows] - cut.start, rise=rise)
+                parts.append(each[:, 0] if values.ndim == 1 else each)
+        return self.summed(np.concatenate(parts))
+
+    def _own_bounds(self, number: int) -> NDArray[np.int64]:
+        """First and last sample of the penalty's windows of one recording."""
+        mine = slice(*np.searchsorted(self._every_run, (number, number + 1)))
+        return np.asarray(self.penalty.windows, dtype=np.int64)[mine]
+
+    def _by_window(self, signal: Callable[[int, Recording], Array], *, rise: bool) -> Array:
+        parts = []
+        for number, recording in enumerate(self.problem.recordings):
             values = np.asarray(signal(number, recording), dtype=np.float64)
             weights = self.weights[number]
-            each = _core.window_integrals(values, weights, bounds[mine], rise=rise)
+            each = _core.window_integrals(values, weights, self._own_bounds(number), rise=rise)
             parts.append(each[:, 0] if values.ndim == 1 else each)
         return self.summed(np.concatenate(parts))
 
@@ -267,11 +290,11 @@ def _on_a_limit(torque: Array) -> Array:
 
 def _explained(fit: Fitted, reading: Array) -> Array:
     """The part of the reading that a rigid link's motion explains: its acceleration and its gravity."""
-    motion = [fit.rise(lambda _, run: run.velocity), fit.duration]
+    motion = [fit.rise_of_each(lambda _, run: run.velocity), fit.duration]
     if fit.problem.recordings[0].kind == "revolute":
         motion += [
-            fit.integral(lambda _, run: np.cos(run.position)),
-            fit.integral(lambda _, run: np.sin(run.position)),
+            fit.integral_of_each(lambda _, run: np.cos(run.position)),
+            fit.integral_of_each(lambda _, run: np.sin(run.position)),
         ]
     columns = np.column_stack(motion)
     size = np.sqrt(np.einsum("ij,ij->j", columns, columns))

@@ -45,7 +45,7 @@ def load_frictions_of_motion(fit: Fitted) -> Iterator[Array]:
 
 def _of_load(fit: Fitted, names: tuple[str, ...], share: float) -> Array:
     """Size of a load times the direction, the load being fitted with this friction in the model."""
-    turned = fit.integral(lambda _, run: np.sign(run.velocity)) / fit.duration
+    turned = fit.integral_of_each(lambda _, run: np.sign(run.velocity)) / fit.duration
     places = [fit.names.index(name) for name in names]
     free = [(k, fit.free.index(place)) for k, place in enumerate(places) if place in fit.free]
     values = fit.best[places]

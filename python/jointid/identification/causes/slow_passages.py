@@ -36,7 +36,7 @@ class SlowRows:
 
 def slow_rows(fit: Fitted, base: Array, residual: Array) -> SlowRows | None:
     """Return the slow windows if they hold most of the misfit, in several passages; else None."""
-    velocity = fit.integral(lambda _, run: np.abs(run.velocity)) / fit.duration
+    velocity = fit.integral_of_each(lambda _, run: np.abs(run.velocity)) / fit.duration
     speed = quantile(velocity, _SLOW)
     rows = velocity < speed
     steps = fit.solve(base, residual)

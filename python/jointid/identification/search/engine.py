@@ -77,16 +77,15 @@ class Engine:
     def polished(self, domain: SearchDomain, start: Array) -> tuple[Array, int, bool]:
         """Return the optimum over the shapes' ranges and near a start, the number of steps, and whether it converged.
 
-        With one free shape and the direct sum: near the start only. Two shapes of a short recording: by projection,
-        where that is at least as good as the start.
+        With one free shape and the direct sum: near the start only. Two shapes of a short recording, or those that
+        have no table: by projection, where that is at least as good as the start.
         """
         shapes = _free_shapes(self.direct, domain)
         if self.form is self.direct and shapes < 2:
             found = _core.polish(self.direct, domain.lower, domain.upper, start)
             return found.best, found.iterations, found.converged
-        short = self.direct.total_samples < _PROJECTED
-        if self.form is not self.direct and shapes > 1 and short:
-            # By their table they take a thousand candidates, whatever the recording; by projection some hundred sums.
+        # By their table two shapes take a thousand candidates, whatever the recording; by projection some hundred sums.
+        if shapes > 1 and (self.form is self.direct or self.direct.total_samples < _PROJECTED):
             whole = _core.minimise_projected(
                 self.direct, domain.lower, domain.upper, threads=self.threads
             ).found
