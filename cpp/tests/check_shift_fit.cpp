@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -228,39 +229,51 @@ CHECK_CASE("segments: the sandwich of scores that are corrected for the freedom 
   const MatrixXd jacobian = MatrixXd::NullaryExpr(
       50, 3, [](Index i, Index j) { return std::sin(static_cast<double>(i * (j + 2))); });
   const VectorXd residual = jacobian.col(0) + 0.5 * jacobian.col(2);
-  MatrixXd whitening(2, 3);
-  whitening << 1.0, 0.5, 0.0, -1.0, 0.0, 2.0;
-  whitening *= 0.05;  // a segment holds a part of each direction
-  const MatrixXd rows = identify::whitened_rows(jacobian, whitening);
-  CHECK((rows - jacobian * whitening.transpose()).norm() < 1e-13 * rows.norm());
-  const auto found = identify::cluster(rows, residual, whitening, {0, 20, 50});
-  MatrixXd covariance = MatrixXd::Zero(3, 3);
-  double size = 0.0;
-  double squares = 0.0;
-  VectorXd even = VectorXd::Zero(3);
-  for (const auto& [first, length] : {std::pair<Index, Index>{0, 20}, {20, 30}}) {
-    const MatrixXd mine = rows.middleRows(first, length).transpose();
-    const MatrixXd shares = mine * mine.transpose();
-    const MatrixXd left = MatrixXd::Identity(2, 2) - shares;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(left);
-    CHECK(solver.eigenvalues().minCoeff() > 0.05);
-    const VectorXd scores = solver.operatorInverseSqrt() * (mine * residual.segment(first, length));
-    covariance += whitening.transpose() * scores * scores.transpose() * whitening;
-    size += scores.squaredNorm();
-    squares += shares.squaredNorm();
-    const VectorXd parts = (whitening.transpose() * shares * whitening).diagonal();
-    const VectorXd whole = whitening.colwise().squaredNorm();
-    even += parts.cwiseQuotient(whole).cwiseAbs2();
+  struct Regime {
+    double scale, from, to;  // of the largest share of a direction that a segment holds
+  };
+  // Small shares are corrected by a series, larger ones by eigenvalues; of a direction that a
+  // segment determines alone a twentieth is taken to be left.
+  for (const auto& [scale, from, to] :
+       {Regime{0.05, 0.1, 0.3}, Regime{0.09, 0.6, 0.9}, Regime{0.2, 2.0, 5.0}}) {
+    MatrixXd whitening(2, 3);
+    whitening << 1.0, 0.5, 0.0, -1.0, 0.0, 2.0;
+    whitening *= scale;
+    const MatrixXd rows = identify::whitened_rows(jacobian, whitening);
+    CHECK((rows - jacobian * whitening.transpose()).norm() < 1e-13 * rows.norm());
+    const auto found = identify::cluster(rows, residual, whitening, {0, 20, 50});
+    MatrixXd covariance = MatrixXd::Zero(3, 3);
+    double size = 0.0;
+    double squares = 0.0;
+    double largest = 0.0;
+    VectorXd even = VectorXd::Zero(3);
+    for (const auto& [first, length] : {std::pair<Index, Index>{0, 20}, {20, 30}}) {
+      const MatrixXd mine = rows.middleRows(first, length).transpose();
+      const MatrixXd shares = mine * mine.transpose();
+      const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(shares);
+      const VectorXd left = (1.0 - solver.eigenvalues().array()).max(0.05);
+      const VectorXd scores = solver.eigenvectors() * left.cwiseSqrt().cwiseInverse().asDiagonal() *
+                              solver.eigenvectors().transpose() *
+                              (mine * residual.segment(first, length));
+      covariance += whitening.transpose() * scores * scores.transpose() * whitening;
+      size += scores.squaredNorm();
+      squares += shares.squaredNorm();
+      largest = std::max(largest, solver.eigenvalues().maxCoeff());
+      const VectorXd parts = (whitening.transpose() * shares * whitening).diagonal();
+      const VectorXd whole = whitening.colwise().squaredNorm();
+      even += parts.cwiseQuotient(whole).cwiseMin(1.0).cwiseAbs2();
+    }
+    CHECK_WITH(largest > from && largest < to, std::to_string(largest));
+    CHECK(found.segments == 2);
+    CHECK((found.covariance - covariance).norm() < 1e-12 * covariance.norm());
+    CHECK(std::fabs(found.size - size) < 1e-12 * size);
+    CHECK((found.freedom - even.cwiseInverse()).norm() < 1e-9);
+    CHECK(std::fabs(found.pooled_freedom - 4.0 / squares) < 1e-9 * found.pooled_freedom);
+    // Of rows alone nothing is corrected.
+    const VectorXd alone = identify::variances_of_rows(rows, residual, whitening);
+    const MatrixXd effects = residual.asDiagonal() * (rows * whitening);
+    CHECK((alone - effects.colwise().squaredNorm().transpose()).norm() < 1e-12 * alone.norm());
   }
-  CHECK(found.segments == 2);
-  CHECK((found.covariance - covariance).norm() < 1e-12 * covariance.norm());
-  CHECK(std::fabs(found.size - size) < 1e-12 * size);
-  CHECK((found.freedom - even.cwiseInverse()).norm() < 1e-9);
-  CHECK(std::fabs(found.pooled_freedom - 4.0 / squares) < 1e-9 * found.pooled_freedom);
-  // Of rows alone nothing is corrected.
-  const VectorXd alone = identify::variances_of_rows(rows, residual, whitening);
-  const MatrixXd effects = residual.asDiagonal() * (rows * whitening);
-  CHECK((alone - effects.colwise().squaredNorm().transpose()).norm() < 1e-12 * alone.norm());
 }
 
 CHECK_CASE("triangle: solves for columns only where they are clearly independent") {
