@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from types import FrameType
 
 import jointid as jid
-from jointid.base import files
+from jointid.base import files, pictures
 from jointid.hardware.session import appended_file
 from write_faults import commands, sessions
 from write_faults.faults import NONE, POWER, Fault, faults_at
@@ -29,6 +29,7 @@ _WRITING = {
     each.__code__
     for each in (files.write_whole, files.write_new, files.make_folder, files.open_locked)
 } | {files.new_beside.__code__, appended_file.AppendedFile.__init__.__code__}
+_WRITING |= {pictures.write_picture.__code__}
 
 
 class Outcome:
