@@ -69,7 +69,7 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
         for (; begin < end; ++begin) {
           if (!value(begin, one)) continue;
           between_both[found] = one;
-          found += (one > low) & (one < high) ? 1U : 0U;
+          found += ((one > low) & (one < high)) ? 1U : 0U;
           below += one < low ? 1U : 0U;
           at_low += one == low ? 1U : 0U;
           at_high += one == high ? 1U : 0U;
