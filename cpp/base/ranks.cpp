@@ -63,7 +63,7 @@ Ranked at_rank(const double* values, std::size_t count, std::size_t rank) {
     }
     std::swap(to, other);
   }
-  std::array<double, kFew> few;
+  std::array<double, kFew> few{};  // gcc 14 does not see that count > rank
   double* sorted = count > kFew ? to : few.data();
   std::copy_n(values, count, sorted);
   std::sort(sorted, sorted + count);
