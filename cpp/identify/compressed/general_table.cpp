@@ -22,8 +22,8 @@ constexpr double kNothing = 3e-16;             // of the largest column, squared
 constexpr int kSpread = 80;
 constexpr double kSpreadDensity = 12.0;
 constexpr double kLargest = 100.0;
-constexpr double kVanished = 1e-30;   // decay or slope: nothing beside the sums' rounding
-constexpr std::size_t kTogether = 4;  // points between two looks at the sums
+constexpr double kNegligible = 1e-30;  // decay or slope: nothing beside the sums' rounding
+constexpr std::size_t kTogether = 4;   // points between two looks at the sums
 
 JOINTID_CLONES void decays(const double* points, std::size_t count, double velocity,
                            double exponent, double origin, double* value) {
@@ -195,7 +195,7 @@ Eigen::MatrixXd GeneralTable::remainders(const Eigen::MatrixXd& products) const 
 void GeneralTable::combine(const double* decay, double* result) const {
   const std::size_t all = points_.size();
   std::size_t count = all;  // fast samples come last, and most decays have vanished there
-  while (count > 0 && std::fabs(decay[count - 1]) < kVanished) --count;
+  while (count > 0 && std::fabs(decay[count - 1]) < kNegligible) --count;
   for (std::size_t j = 0; j < shaped_; ++j) {
     weighted_rows(decay, count, matrix_.data() + j * all * padded_, padded_, result + j * padded_);
   }
