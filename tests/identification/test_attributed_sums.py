@@ -6,9 +6,15 @@ import itertools
 
 import numpy as np
 import pytest
+from example_recordings import WELL_EXCITED
 
+import jointid as jid
 from jointid import _core
+from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds
+from jointid.identification.causes.samples import all_samples
+from jointid.identification.prepared import prepare
+from jointid.identification.search.domain import domain_for
 
 _RIDGE = 1e-9
 
@@ -78,3 +84,30 @@ def test_integrals_are_the_trapezoid_rule_over_what_counts(width: int | None) ->
 def test_windows_beyond_the_samples_are_refused(window: list[int]) -> None:
     with pytest.raises(ValueError, match="windows"):
         _core.window_integrals(np.ones(100), np.ones(99), np.array([window]))
+
+
+@pytest.mark.parametrize("many", [1, 700, 1 << 20])
+def test_sums_of_some_samples_at_a_time_are_those_of_all(
+    monkeypatch: pytest.MonkeyPatch, many: int
+) -> None:
+    joint = jid.thesis_joint()
+    whole = jid.load(WELL_EXCITED)
+    problem = prepare([whole.crop(0.0, 3.0), whole.crop(4.0, 9.0)], joint).problem
+    penalty = problem.penalty(None)
+    domain = domain_for(penalty, joint, None, problem.peak_speed)
+    best = 0.5 * (domain.lower + domain.upper)
+    fit = Fitted.of(problem, penalty, best, (0,))
+    monkeypatch.setattr("jointid.identification.causes.samples._AT_A_TIME", many)
+    for of_each, of_all in (
+        (fit.integral_of_each, fit.integral),
+        (fit.rise_of_each, fit.rise),
+    ):
+        for columns in (1, 2):
+            signals = [run.position[:, None] ** range(1, columns + 1) for run in problem.recordings]
+            signals = [each[:, 0] if columns == 1 else each for each in signals]
+            np.testing.assert_array_equal(
+                of_each(lambda number, run, of=signals: of[number][run.cut]),  # type: ignore[misc]
+                of_all(lambda number, _, of=signals: of[number]),  # type: ignore[misc]
+            )
+    covered = np.concatenate([part.position for part in all_samples(whole)])
+    np.testing.assert_array_equal(covered, whole.position)

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 # Largest error of the compressed penalty: as a share of the penalty, and of the target's square.
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-13
 _KEPT = 50_000  # windows
-# Samples up to which two shapes are polished by projection: of 48,000 it takes as long as by their table.
+# Samples below which two shapes are polished by projection: it is as slow as their table from some 100,000 on.
 _PROJECTED = 48_000
 
 
