@@ -4,6 +4,7 @@
 
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
+#include "base/lanes.hpp"
 
 namespace jointid::base {
 
@@ -22,7 +23,24 @@ JOINTID_CLONES double largest(const double* angle, std::size_t count) {
 
 JOINTID_CLONES void near_circle(const double* angle, std::size_t count, double* cosine,
                                 double* sine) {
-  for (std::size_t i = 0; i < count; ++i) {
+  std::size_t i = 0;
+#if defined(JOINTID_PAIRS) && !defined(JOINTID_CLONED)
+  // Without the choices of wider vectors, gcc leaves the loop below scalar.
+  for (; i + 2 <= count; i += 2) {
+    const auto [r, tail, quadrant] = detail::reduce(detail::Pair{angle[i], angle[i + 1]});
+    const detail::Pair s = detail::sin_series(r, tail);
+    const detail::Pair c = detail::cos_series(r, tail);
+    const detail::PairMask odd = (quadrant & 1ULL) != 0ULL;
+    const auto put = [&](double* to, detail::Pair value, detail::Bits turned) {
+      value = (detail::Pair)((detail::Bits)value ^ (((turned >> 1ULL) & 1ULL) << 63ULL));
+      to[i] = value[0];
+      to[i + 1] = value[1];
+    };
+    put(sine, detail::pick(odd, c, s), quadrant);
+    put(cosine, detail::pick(odd, s, c), quadrant + 1ULL);
+  }
+#endif
+  for (; i < count; ++i) {
     const auto [r, tail, quadrant] = detail::reduce(angle[i]);
     const double s = detail::sin_series(r, tail);
     const double c = detail::cos_series(r, tail);

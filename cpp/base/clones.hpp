@@ -6,6 +6,7 @@
 // Needs ifunc (GNU libc); sanitizers run before it is resolved. Of clang those that have been
 // tried: version 14 leaves the clones of a function out that a header declares without the
 // attribute. There one clone less, since wheels are built by clang and have to be small.
+// JOINTID_CLONED says that there are any.
 // A compiler that is given -DJOINTID_CLONES= makes none, to see what that costs.
 
 #ifndef JOINTID_CLONES
@@ -14,10 +15,12 @@
 #if defined(__clang__) && defined(__GLIBC__)
 #if __clang_major__ >= 19 && !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)
 #define JOINTID_CLONES __attribute__((target_clones("avx2", "default")))
+#define JOINTID_CLONED
 #endif
 #elif defined(__GNUC__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define JOINTID_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#define JOINTID_CLONED
 #endif
 #endif
 #endif

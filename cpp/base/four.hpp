@@ -4,54 +4,69 @@
 // host's width.
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 
+#include "base/clones.hpp"
+#include "base/lanes.hpp"
+
 namespace jointid::base {
 
 inline constexpr std::size_t kFour = 4;
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && (defined(JOINTID_CLONED) || defined(__AVX__))
+#define JOINTID_WHOLE
 using Four = double __attribute__((vector_size(32)));
 #else
-struct Four {
-  double lane[kFour];
-  double operator[](std::size_t l) const { return lane[l]; }
-  double& operator[](std::size_t l) { return lane[l]; }
-  double* begin() { return lane; }
-  double* end() { return lane + kFour; }
-};
-inline Four operator+(const Four& a, const Four& b) {
-  return {{a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}};
-}
-inline Four operator-(const Four& a, const Four& b) {
-  return {{a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]}};
-}
-inline Four operator*(const Four& a, const Four& b) {
-  return {{a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]}};
-}
-inline Four operator/(const Four& a, const Four& b) {
-  return {{a[0] / b[0], a[1] / b[1], a[2] / b[2], a[3] / b[3]}};
-}
-inline Four operator*(const Four& a, double factor) {
-  return {{a[0] * factor, a[1] * factor, a[2] * factor, a[3] * factor}};
-}
+// Pairs where no function is built for wider vectors: of a vector that the host does not have, gcc
+// makes single numbers wherever one of two is chosen.
+using Four = Lanes<2>;
 #endif
 
 /// All of them one value.
 [[gnu::always_inline]] inline void fill(Four& four, double value) {
-  for (std::size_t l = 0; l < kFour; ++l) four[l] = value;
+  four = Four{value, value, value, value};
 }
 
 [[gnu::always_inline]] inline void load(Four& four, const double* x) {
+#ifdef JOINTID_WHOLE
   std::memcpy(&four, x, sizeof four);
+#else
+  for (auto& pair : four.pair) {
+    std::memcpy(&pair, x, sizeof pair);
+    x += 2;
+  }
+#endif
 }
 
 [[gnu::always_inline]] inline void store(double* x, const Four& four) {
+#ifdef JOINTID_WHOLE
   std::memcpy(x, &four, sizeof four);
+#else
+  for (const auto& pair : four.pair) {
+    std::memcpy(x, &pair, sizeof pair);
+    x += 2;
+  }
+#endif
+}
+
+/// result -> where a < b, yes, else no.
+[[gnu::always_inline]] inline void choose(const Four& a, const Four& b, const Four& yes,
+                                          const Four& no, Four& result) {
+#ifdef JOINTID_WHOLE
+  result = a < b ? yes : no;
+#else
+  result = select(a < b, yes, no);
+#endif
+}
+
+/// Adds 1 in lanes where a is not below b. In doubles: exact, and no change of lanes.
+[[gnu::always_inline]] inline void count_not_below(const Four& a, const Four& b, Four& count) {
+  Four one;
+  choose(a, b, Four{}, Four{} + 1.0, one);
+  count = count + one;
 }
 
 /// to -> to - from.
@@ -74,7 +89,7 @@ inline Four operator*(const Four& a, double factor) {
 
 /// sum_of each of four, side by side.
 [[gnu::always_inline]] inline void sums_of(const std::array<Four, kFour>& each, Four& sums) {
-#if defined(__GNUC__) && defined(__has_builtin)
+#if defined(JOINTID_WHOLE) && defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
 #define JOINTID_SHUFFLES
 #endif
@@ -87,55 +102,38 @@ inline Four operator*(const Four& a, double factor) {
   sums = __builtin_shufflevector(one, other, 0, 1, 4, 5) +
          __builtin_shufflevector(one, other, 2, 3, 6, 7);
 #else
-  for (std::size_t l = 0; l < kFour; ++l) sums[l] = sum_of(each[l]);
+  sums = Four{sum_of(each[0]), sum_of(each[1]), sum_of(each[2]), sum_of(each[3])};
 #endif
 }
 
 [[gnu::always_inline]] inline void take_size(Four& four) {
-#if defined(__GNUC__)
+#ifdef JOINTID_WHOLE
   using Bits = std::int64_t __attribute__((vector_size(32)));
   four = (Four)((Bits)four & std::numeric_limits<std::int64_t>::max());
 #else
-  for (std::size_t l = 0; l < kFour; ++l) four[l] = std::fabs(four[l]);
+  four = absolute(four);
 #endif
 }
 
 /// Infinity in the place of what is not above 0.
 [[gnu::always_inline]] inline void leave_out_zeros(Four& four) {
-#if defined(__GNUC__)
-  const Four none = Four{} + std::numeric_limits<double>::infinity();
-  four = four > 0.0 ? four : none;
-#else
-  for (auto& value : four) value = value > 0.0 ? value : std::numeric_limits<double>::infinity();
-#endif
+  choose(Four{}, four, four, Four{} + std::numeric_limits<double>::infinity(), four);
 }
 
 /// 0 in the place of what is not above `least`: powers of what stays are no denormals, which take a
 /// hundred times as long.
 [[gnu::always_inline]] inline void leave_out_small(Four& four, double least) {
-#if defined(__GNUC__)
-  four = four > least ? four : Four{};
-#else
-  for (auto& value : four) value = value > least ? value : 0.0;
-#endif
+  choose(Four{} + least, four, four, Four{}, four);
 }
 
 /// least -> the smaller of both.
 [[gnu::always_inline]] inline void lower(Four& least, const Four& other) {
-#if defined(__GNUC__)
-  least = other < least ? other : least;
-#else
-  for (std::size_t l = 0; l < kFour; ++l) least[l] = other[l] < least[l] ? other[l] : least[l];
-#endif
+  choose(other, least, other, least, least);
 }
 
 /// most -> the larger of both.
 [[gnu::always_inline]] inline void raise(Four& most, const Four& other) {
-#if defined(__GNUC__)
-  most = other > most ? other : most;
-#else
-  for (std::size_t l = 0; l < kFour; ++l) most[l] = other[l] > most[l] ? other[l] : most[l];
-#endif
+  choose(most, other, other, most, most);
 }
 
 [[gnu::always_inline]] inline double least_of(const Four& four) {

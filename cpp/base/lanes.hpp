@@ -124,6 +124,10 @@ struct Lanes {
   Lanes() : Lanes(0.0) {}
   Lanes(double same) { pair.fill(detail::both(same)); }  // a number among lanes stands for all
 
+  Lanes(double a, double b, double c, double d)
+    requires(Pairs == 2)
+      : pair{detail::Pair{a, b}, detail::Pair{c, d}} {}
+
   [[nodiscard]] double operator[](std::size_t i) const { return pair[i / 2][i % 2]; }
   void set(std::size_t i, double value) { pair[i / 2][i % 2] = value; }
 

@@ -14,16 +14,6 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// Adds 1 where a size is 0.
-[[gnu::always_inline]] inline void add_zeros(Four& count, const Four& size) {
-#if defined(__GNUC__)
-  const Four one = Four{} + 1.0;
-  count = count + (size > 0.0 ? Four{} : one);
-#else
-  for (std::size_t l = 0; l < kFour; ++l) count[l] += size[l] > 0.0 ? 0.0 : 1.0;
-#endif
-}
-
 /// Sizes of samples, or of the steps to the samples `ahead`.
 [[gnu::always_inline]] inline Least least(const double* x, std::size_t count, std::size_t ahead) {
   Four any;
@@ -90,8 +80,7 @@ JOINTID_CLONES Survey survey(const double* x, std::size_t steps) {
   fill(low, x[steps]);
   fill(high, x[steps]);
   fill(positive, kNone);
-  Four same;  // counted in doubles, which is exact
-  fill(same, 0.0);
+  Four same{};
   std::size_t i = 0;
   for (; i + kFour <= steps; i += kFour) {
     Four here;
@@ -102,7 +91,7 @@ JOINTID_CLONES Survey survey(const double* x, std::size_t steps) {
     raise(high, here);
     subtract(size, here);
     take_size(size);
-    add_zeros(same, size);
+    count_not_below(Four{}, size, same);
     leave_out_zeros(size);
     lower(positive, size);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/clones.hpp"
+#include "base/four.hpp"
 #include "base/quantile.hpp"
 #include "base/scans.hpp"
 
@@ -50,6 +51,9 @@ struct Rules {
   double fair;  ///< speed
 };
 
+using base::Four;
+using base::kFour;
+
 struct Seen {
   std::int64_t large;   ///< steps
   std::int64_t moving;  ///< intervals
@@ -59,19 +63,57 @@ struct Seen {
 /// Counts over `count` samples, the one behind them included in the steps.
 JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
                             const Rules& rules) {
-  std::int64_t large = 0;
-  std::int64_t moving = 0;
-  std::int64_t odd = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  Four fine;
+  Four fair;
+  Four close;
+  Four lowest;
+  Four highest;
+  Four smallest;
+  Four nowhere;
+  base::fill(fine, kFine);
+  base::fill(fair, rules.fair);
+  base::fill(close, rules.close);
+  base::fill(lowest, rules.lowest);
+  base::fill(highest, rules.highest);
+  base::fill(smallest, rules.smallest);
+  base::fill(nowhere, -1.0);  // where the next sample is the same
+  Four many{};
+  Four slow{};
+  Four strange{};
+  std::size_t i = 0;
+  for (; i + kFour <= count; i += kFour) {
+    Four here;
+    Four step;
+    base::load(here, x + i);
+    base::load(step, x + i + 1);
+    base::subtract(step, here);
+    base::take_size(step);
+    base::count_not_below(step / smallest, fine, many);
+    Four speed;
+    Four next;
+    base::load(speed, v + i);
+    base::load(next, v + i + 1);
+    base::take_size(speed);
+    base::take_size(next);
+    base::lower(speed, next);
+    base::count_not_below(fair, speed, slow);
+    Four near = here - lowest;
+    base::lower(near, highest - here);
+    base::choose(Four{}, step, near, nowhere, near);
+    base::count_not_below(close, near, strange);
+  }
+  const auto number = [](const Four& four) {
+    return static_cast<std::int64_t>(base::sum_of(four));
+  };
+  std::int64_t large = number(many);
+  std::int64_t moving = static_cast<std::int64_t>(i) - number(slow);
+  std::int64_t odd = number(strange);
+  for (; i < count; ++i) {
     const double step = std::fabs(x[i + 1] - x[i]);
-    const double here = std::fabs(v[i]);
-    const double next = std::fabs(v[i + 1]);
-    const double slower = next < here ? next : here;
-    const double near =
-        x[i] - rules.lowest < rules.highest - x[i] ? x[i] - rules.lowest : rules.highest - x[i];
+    const double near = std::min(x[i] - rules.lowest, rules.highest - x[i]);
     large += step / rules.smallest >= kFine ? 1 : 0;
-    moving += slower > rules.fair ? 1 : 0;
-    odd += ((step == 0.0) | (near <= rules.close)) ? 1 : 0;
+    moving += std::min(std::fabs(v[i]), std::fabs(v[i + 1])) > rules.fair ? 1 : 0;
+    odd += step == 0.0 || near <= rules.close ? 1 : 0;
   }
   return {large, moving, odd};
 }

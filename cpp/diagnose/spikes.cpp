@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/clones.hpp"
+#include "base/four.hpp"
 #include "base/quantile.hpp"
 #include "base/scans.hpp"
 
@@ -25,9 +26,25 @@ constexpr double kClearly = 1e-12;  // rounding never decides
 /// Changes over `width` samples that are not zero, and those of at least `enough`.
 JOINTID_CLONES void count_changes(const double* x, std::size_t width, std::size_t changes,
                                   double enough, std::int64_t* positive, std::int64_t* beyond) {
-  std::int64_t some = 0;
-  std::int64_t many = 0;
-  for (std::size_t k = 0; k < changes; ++k) {
+  using base::Four;
+  Four none{};
+  Four large{};
+  Four limit;
+  base::fill(limit, enough);
+  std::size_t k = 0;
+  for (; k + base::kFour <= changes; k += base::kFour) {
+    Four size;
+    Four before;
+    base::load(size, x + k + width);
+    base::load(before, x + k);
+    base::subtract(size, before);
+    base::take_size(size);
+    base::count_not_below(Four{}, size, none);
+    base::count_not_below(size, limit, large);
+  }
+  auto some = static_cast<std::int64_t>(k) - static_cast<std::int64_t>(base::sum_of(none));
+  auto many = static_cast<std::int64_t>(base::sum_of(large));
+  for (; k < changes; ++k) {
     const double size = std::fabs(x[k + width] - x[k]);
     some += size > 0.0 ? 1 : 0;
     many += size >= enough ? 1 : 0;

@@ -77,7 +77,8 @@ class _Initialiser:
 
     def __get__(self, value: object, cls: type[Any]) -> Any:
         self._calls += 1
-        if value is None or self._calls > _OFTEN:
+        # `inspect.signature` of Python 3.13 asks as if the class were one of its values.
+        if value is None or value is self._owner or self._calls > _OFTEN:
             return self._compiled().__get__(value, cls)
         return partial(self._initialise, value)
 
