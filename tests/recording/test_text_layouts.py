@@ -235,6 +235,7 @@ line = st.tuples(st.lists(cell, max_size=6), st.sampled_from([",", ";", "\t", " 
     ending=st.sampled_from([".csv", ".txt"]),
 )
 @example(content=b"Name\tx\nData-Type\ty\n0\t1\n", ending=".csv")
+@example(content=b";;;\n,;;;", ending=".csv")  # a comma of a number among empty columns
 @settings(deadline=None, max_examples=300)
 def test_nothing_but_refusals_leaves_the_readers(
     content: bytes, ending: str, tmp_path_factory: pytest.TempPathFactory

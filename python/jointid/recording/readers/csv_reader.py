@@ -121,6 +121,8 @@ class CsvTable:
         rows, separator, used = self._rows, self._separator, list(columns)
         if separator != "," and any("," in row for row in rows):
             rows, separator, used = self._with_points(columns), _INNER, list(range(len(columns)))
+        if not any(map(str.strip, rows)):
+            raise self._invalid(columns, "all cells are empty")
         try:
             # NOTE: without `comments=None` a '#' would cut a line short.
             table = np.loadtxt(
