@@ -10,6 +10,7 @@ from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid import _core
+from jointid.identification.causes.candidates import way_since_reversal
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds
 from jointid.identification.causes.samples import all_samples
@@ -111,3 +112,19 @@ def test_sums_of_some_samples_at_a_time_are_those_of_all(
             )
     covered = np.concatenate([part.position for part in all_samples(whole)])
     np.testing.assert_array_equal(covered, whole.position)
+
+
+@pytest.mark.parametrize("many", [1, 7, 1 << 20])
+def test_the_way_since_a_reversal_is_counted_across_parts(
+    monkeypatch: pytest.MonkeyPatch, many: int
+) -> None:
+    monkeypatch.setattr("jointid.identification.causes.samples._AT_A_TIME", many)
+    velocity = np.array([0.0, 1.0, 2.0, 1.0, -1.0, -2.0, 0.0, 0.0, -1.0, -1.0, 1.0, 1.0, 1.0])
+    run = jid.Recording(
+        time=0.1 * np.arange(13.0),
+        position=np.array([0.0, 1.0, 3.0, 5.0, 5.0, 3.0, 2.0, 2.0, 1.0, 0.0, 0.0, 1.0, 3.0]),
+        velocity=velocity,
+        torque=velocity,
+    )
+    expected = [0.0, 1.0, 3.0, 5.0, 0.0, 2.0, 0.0, 0.0, 1.0, 2.0, 0.0, 1.0, 3.0]
+    np.testing.assert_array_equal(way_since_reversal(run), expected)

@@ -13,7 +13,9 @@ from plants import Bench, Law, Log, Plant, simulate, sines, thesis
 import jointid as jid
 from jointid.estimate.causes import MEANINGS
 from jointid.estimate.delays import Delay
-from jointid.identification.causes import causes
+from jointid.identification.causes import causes, fitted
+from jointid.identification.causes.candidates import Candidate, listed_candidates
+from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, summed
 from jointid.identification.causes.suspicion import suspicious
 from jointid.identification.follow_up import EstimateSource
@@ -111,18 +113,48 @@ def test_a_torque_constant_is_told_from_a_known_inertia(
     assert found.evidence["coulomb.shift"].value == pytest.approx(0.03, abs=0.005)
 
 
-def test_neighbouring_windows_are_summed_where_there_are_many(
+@pytest.mark.parametrize("name", ["viscous drift", "load friction", "harmonic"])
+def test_stretches_of_a_long_recording_name_what_all_of_it_names(
+    estimates: dict[str, jid.Estimate], monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    estimate, looked_at = estimates[name], _counted(monkeypatch)
+    (every, *_) = estimate.causes().found
+    monkeypatch.setattr(causes, "_MOST", 256)
+    monkeypatch.setattr(fitted, "_STRETCH", 16)
+    (cause, *_) = estimate.causes().found
+    assert looked_at[0] > 800
+    assert looked_at[1] == 256
+    assert cause.name == every.name
+    assert cause.share == pytest.approx(every.share, abs=0.1)
+    assert cause.scale <= 64 * estimate.residuals.window_duration
+
+
+def test_an_event_between_the_stretches_of_a_long_recording_is_found(
     estimates: dict[str, jid.Estimate], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    estimate = estimates["load friction"]
-    (every, *_) = estimate.causes().found
-    monkeypatch.setattr(causes, "_MOST", 250)
+    estimate, looked_at = estimates["bump"], _counted(monkeypatch)
+    monkeypatch.setattr(causes, "_MOST", 256)
+    monkeypatch.setattr(
+        fitted, "_STRETCH", 128
+    )  # the first and the last second: the event is at 4 s
     (cause, *_) = estimate.causes().found
-    assert cause.name == every.name == "load_friction"
-    assert cause.numbers["coefficient"].value == pytest.approx(
-        every.numbers["coefficient"].value, rel=0.05
-    )
-    assert cause.scale >= 4 * estimate.residuals.window_duration
+    assert looked_at[0] <= 256  # sums of neighbours, of all of it
+    assert cause.name == "disturbance"
+    assert "and" not in cause.detail
+    begin, _, end = cause.detail.removesuffix(" s").partition(" to ")
+    assert 3.5 < float(begin) < 4.15 < float(end) < 5.0
+
+
+def _counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many windows each look for causes takes."""
+    counts: list[int] = []
+
+    def listed(fit: Fitted, only: str = "") -> list[Candidate]:
+        counts.append(len(fit.residual))
+        return listed_candidates(fit, only)
+
+    monkeypatch.setattr(causes, "listed_candidates", listed)
+    return counts
 
 
 def test_a_signal_of_the_log_is_named_only_if_given(estimates: dict[str, jid.Estimate]) -> None:

@@ -316,6 +316,7 @@ def test_a_torque_rests_on_its_limit(samples: int, limit: bool, side: float) -> 
 def test_windows_on_a_limit_are_left_out_unless_most_are(resting: int, kept: int) -> None:
     fit = _fit(np.arange(100) < resting)
     fit.problem.joint = None
+    fit.problem.recordings[0].torque = np.zeros(101)
     assert Fitted.trusted.func(fit).sum() == kept  # type: ignore[attr-defined]
 
 

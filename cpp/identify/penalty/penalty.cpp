@@ -270,8 +270,12 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
       ++end;
     const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[w])];
     const auto& r = masked.recording();
-    append_nodes(r, backward ? backward_intervals(r, masked.usable()) : masked.usable(),
-                 std::span(windows_).subspan(w, end - w), all);
+    const auto own = std::span(windows_).subspan(w, end - w);
+    if (backward) {
+      append_nodes(r, backward_intervals(r, masked.usable()), own, all);
+    } else {  // by reference: one of two in an expression is copied, for every part of a recording
+      append_nodes(r, masked.usable(), own, all);
+    }
     w = end;
   }
   const bool general = std::any_of(shaped_.begin(), shaped_.end(), [](const Shaped& shaped) {

@@ -53,13 +53,15 @@ def small_motion(recording: Recording) -> SmallMotion | None:
     lowest, highest = recording.ranges["position"]
     travel = highest - lowest
     changes = np.abs(np.diff(position))
+    largest = float(changes.max(initial=0.0))
     changes = changes[changes > 1e-9 * travel]  # others are rounding errors
     if not len(changes):
         return None
     step = float(changes.min())
     unchanged = 1.0 - len(changes) / (len(position) - 1)
     unit = recording.unit("position")
-    noise = _noise_alone(recording, travel)
+    # The noise's estimate is the median of differences of third and higher order: what neighbours differ by bounds it.
+    noise = 0.0 if travel >= 2.0 * _WIDEST * largest else _noise_alone(recording, travel)
     if noise > 0.0:
         return SmallMotion(
             travel=travel,

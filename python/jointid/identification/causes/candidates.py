@@ -137,7 +137,7 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
             np.exp(-np.abs(run.velocity)[:, None] / speeds) * np.sign(run.velocity)[:, None]
         )
     )
-    gone = [_since_reversal(run) for run in fit.problem.recordings]
+    gone = [way_since_reversal(run) for run in fit.problem.recordings]
     since = fit.integral_of_each(
         lambda number, run: (
             np.exp(-gone[number][run.cut, None] / ways) * np.sign(run.velocity)[:, None]
@@ -328,12 +328,24 @@ def _present(signal: Array | None) -> Array:
     return signal
 
 
-def _since_reversal(run: Recording) -> Array:
-    """Way since the last change of direction."""
-    turned = np.sign(run.velocity)
-    moved = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(run.position)))])
-    change = np.concatenate([[True], turned[1:] * turned[:-1] < 0.0])
-    # A stop between two directions is a reversal, too, and so is one between two of the same.
-    change |= turned == 0.0
-    at_change = np.maximum.accumulate(np.where(change, np.arange(len(turned)), 0))
-    return np.asarray(moved - moved[at_change])
+def way_since_reversal(run: Recording) -> Array:
+    """Way since the last change of direction.
+
+    A stop between two directions is a reversal, too, and so is one between two of the same.
+    """
+    gone = np.empty(len(run))
+    way = reached = 0.0
+    for part in all_samples(run):
+        begin, end = part.cut.start, part.cut.stop
+        first = max(begin - 1, 0)  # the sample before, for the step to the first one
+        turned = np.sign(run.velocity[first:end])
+        steps = np.abs(np.diff(run.position[first:end]))
+        ways = np.cumsum(np.concatenate([[way], steps]))
+        change = turned == 0.0
+        change[1:] |= turned[1:] * turned[:-1] < 0.0
+        change[0] |= begin == 0
+        # Ways grow: the largest of those at a change is that of the last change.
+        last = np.maximum.accumulate(np.where(change, ways, reached))
+        gone[begin:end] = (ways - last)[begin - first :]
+        way, reached = float(ways[-1]), float(last[-1])
+    return gone

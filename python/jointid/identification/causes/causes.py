@@ -24,7 +24,7 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_MOST = 60_000  # windows of an attribution: of a long recording, neighbours are summed
+_MOST = 60_000  # windows of an attribution: ten minutes of motion say what an hour says
 _LATE = 2.0  # standard errors of a delay that is none
 _NOTICED = 0.8  # of that: a first-order shift may be so much too small
 _LEAST_SCALE = 0.02  # of a given inertia: it is seldom known better
@@ -60,9 +60,13 @@ def find_causes(
         Further signals of the first recording, one value a sample.
     """
     from jointid.identification.causes.attribution import attribute  # of a misfit: not of every fit
+    from jointid.identification.causes.events import local_event
 
     late = "velocity" in delays and delays["velocity"].certain
     fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late, _MOST)
+    if fit.group > 1 and local_event(fit, fit.jacobian, fit.residual) is None:
+        # No part of a long recording holds the misfit: some stretches of it show the rest as well.
+        fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late, _MOST, False)
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
@@ -132,12 +136,15 @@ def _fitted(
     prompt: frozenset[str] = frozenset(),
     filtered: bool = False,
     most: int | None = None,
+    everywhere: bool = True,
 ) -> Fitted:
     found = [parameters[name] for name in penalty.names]
     best = np.array([p.value for p in found])
     free = tuple(index for index, p in enumerate(found) if p.vary and p.at_bound is None)
     given = frozenset(p.name for p in found if not p.vary)
-    return Fitted.of(problem, penalty, best, free, signals, prompt, filtered, most, given)
+    return Fitted.of(
+        problem, penalty, best, free, signals, prompt, filtered, most, given, everywhere
+    )
 
 
 def attributed(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ Array = NDArray[np.float64]
 _OFTEN = 0.005  # share of the samples on a limit
 _EQUAL = 1e-9  # of the torque's range
 _MOST_RESTING = 0.5
+_STRETCH = 1024  # windows; a multiple of the largest sum that is looked at
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +46,8 @@ class Fitted:
         says of it, so that its noise counts for nothing.
     start : ndarray, shape (free,)
         What has been added to the parameters in `residual`.
+    chosen : ndarray of int, or None
+        The penalty's windows that are looked at; None: all of them.
     group : int
         Windows of the penalty that one window here is the sum of.
     signals : mapping of str to ndarray
@@ -63,6 +67,7 @@ class Fitted:
     residual: Array
     jacobian: Array
     start: Array
+    chosen: NDArray[np.int64] | None = None
     group: int = 1
     signals: Mapping[str, Array] = field(default_factory=dict)
     prompt: frozenset[str] = frozenset()
@@ -82,18 +87,28 @@ class Fitted:
     @functools.cached_property
     def bounds(self) -> NDArray[np.int64]:
         """First and last sample of each window, shape (windows, 2)."""
-        every = np.asarray(self.penalty.windows, dtype=np.int64)
+        every = self._windows
         last = np.append(self._firsts[1:], len(every)) - 1
         return np.column_stack([every[self._firsts, 0], every[last, 1]])
 
     def summed(self, values: Array) -> Array:
         """Sums of what the penalty's windows have over the windows here."""
-        values = np.asarray(values)
+        return self._grouped(self._of_chosen(np.asarray(values)))
+
+    def _of_chosen(self, values: NDArray[Any]) -> NDArray[Any]:
+        return values if self.chosen is None else values[self.chosen]
+
+    def _grouped(self, values: Array) -> Array:
         return values if self.group == 1 else np.add.reduceat(values, self._firsts, axis=0)
 
     @functools.cached_property
+    def _windows(self) -> NDArray[np.int64]:
+        """First and last sample of the penalty's windows that are looked at."""
+        return self._of_chosen(np.asarray(self.penalty.windows, dtype=np.int64))
+
+    @functools.cached_property
     def _every_run(self) -> NDArray[np.int64]:
-        return np.asarray(self.penalty.recording_of, dtype=np.int64)
+        return self._of_chosen(np.asarray(self.penalty.recording_of, dtype=np.int64))
 
     @functools.cached_property
     def _firsts(self) -> NDArray[np.int64]:
@@ -116,7 +131,11 @@ class Fitted:
         All of them, if most windows would be lost.
         """
         joint = self.problem.joint
-        resting = self.integral(lambda _, run: _on_a_limit(output_torque(run, joint))) > 0.0
+        limited = [_on_a_limit(output_torque(run, joint)) for run in self.problem.recordings]
+        resting = (
+            self.integral_of_each(lambda number, run: limited[number][run.cut].astype(np.float64))
+            > 0.0
+        )
         return ~resting if resting.mean() < _MOST_RESTING else np.ones(len(resting), dtype=bool)
 
     @functools.cached_property
@@ -203,13 +222,17 @@ class Fitted:
         filtered: bool = False,
         most: int | None = None,
         given: frozenset[str] = frozenset(),
+        everywhere: bool = True,
     ) -> Fitted:
         """Return the fit at a minimum, on the torque's side whatever the penalty compares.
 
         Parameters
         ----------
         most : int, optional
-            Windows at most; neighbours are summed where there are more. Default: as many as there are.
+            Windows at most. Default: as many as there are.
+        everywhere : bool
+            Whether neighbours are summed where there are more; else some stretches of time are looked at.
+            Default True.
         """
         _, residual, jacobian = penalty.linearised(best)
         jacobian = np.array(jacobian[:, list(free)])
@@ -218,7 +241,7 @@ class Fitted:
         if gain is not None and penalty.residual == _core.Residual.sensor:
             residual, jacobian = residual * best[gain], jacobian * best[gain]
         count = len(residual)
-        group = 1 if most is None else max(1, -(-count // most))
+        sums = 1 if most is None else -(-count // most)
         fit = cls(
             problem=problem,
             penalty=penalty,
@@ -227,7 +250,8 @@ class Fitted:
             residual=residual,
             jacobian=jacobian,
             start=np.zeros(len(free)),
-            group=group,
+            chosen=None if everywhere or most is None or sums < 2 else _stretches(count, most),
+            group=max(1, sums) if everywhere else 1,
             signals=signals or {},
             prompt=prompt,
             filtered=filtered,
@@ -256,12 +280,12 @@ class Fitted:
                 own = weights[cut.start : cut.stop - 1]
                 each = _core.window_integrals(values, own, bounds[windows] - cut.start, rise=rise)
                 parts.append(each[:, 0] if values.ndim == 1 else each)
-        return self.summed(np.concatenate(parts))
+        return self._grouped(np.concatenate(parts))
 
     def _own_bounds(self, number: int) -> NDArray[np.int64]:
-        """First and last sample of the penalty's windows of one recording."""
+        """First and last sample of the penalty's windows of one recording that are looked at."""
         mine = slice(*np.searchsorted(self._every_run, (number, number + 1)))
-        return np.asarray(self.penalty.windows, dtype=np.int64)[mine]
+        return self._windows[mine]
 
     def _by_window(self, signal: Callable[[int, Recording], Array], *, rise: bool) -> Array:
         parts = []
@@ -270,7 +294,14 @@ class Fitted:
             weights = self.weights[number]
             each = _core.window_integrals(values, weights, self._own_bounds(number), rise=rise)
             parts.append(each[:, 0] if values.ndim == 1 else each)
-        return self.summed(np.concatenate(parts))
+        return self._grouped(np.concatenate(parts))
+
+
+def _stretches(count: int, most: int) -> NDArray[np.int64]:
+    """Indices of `most` of `count` windows: stretches of neighbours, evenly over the whole."""
+    length = min(most, _STRETCH)
+    first = np.linspace(0, count - length, most // length).astype(np.int64)
+    return np.asarray((first[:, None] + np.arange(length)).ravel())
 
 
 def _present(signal: Array | None) -> Array:
@@ -278,13 +309,14 @@ def _present(signal: Array | None) -> Array:
     return signal
 
 
-def _on_a_limit(torque: Array) -> Array:
-    """1 where the torque is its largest or its smallest value, if that is so often; else 0."""
-    resting = np.zeros(len(torque))
-    for limit in (torque.max(), torque.min()):
-        there = np.abs(torque - limit) <= _EQUAL * np.ptp(torque)
+def _on_a_limit(torque: Array) -> NDArray[np.bool_]:
+    """Where the torque is its largest or its smallest value, if that is so often."""
+    resting = np.zeros(len(torque), dtype=bool)
+    lowest, highest = float(torque.min()), float(torque.max())
+    near = _EQUAL * (highest - lowest)
+    for there in (torque >= highest - near, torque <= lowest + near):
         if there.mean() > _OFTEN:
-            resting[there] = 1.0
+            resting |= there
     return resting
 
 
