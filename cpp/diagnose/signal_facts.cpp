@@ -70,14 +70,14 @@ JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
   Four highest;
   Four smallest;
   Four nowhere;
-  base::fill(fine, kFine);
+  base::fill(fine, std::nextafter(kFine, 0.0));
   base::fill(fair, rules.fair);
   base::fill(close, rules.close);
   base::fill(lowest, rules.lowest);
   base::fill(highest, rules.highest);
   base::fill(smallest, rules.smallest);
   base::fill(nowhere, -1.0);  // where the next sample is the same
-  Four many{};
+  Four small{};
   Four slow{};
   Four strange{};
   std::size_t i = 0;
@@ -88,7 +88,7 @@ JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
     base::load(step, x + i + 1);
     base::subtract(step, here);
     base::take_size(step);
-    base::count_not_below(step / smallest, fine, many);
+    base::count_not_below(fine, step / smallest, small);
     Four speed;
     Four next;
     base::load(speed, v + i);
@@ -105,8 +105,9 @@ JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
   const auto number = [](const Four& four) {
     return static_cast<std::int64_t>(base::sum_of(four));
   };
-  std::int64_t large = number(many);
-  std::int64_t moving = static_cast<std::int64_t>(i) - number(slow);
+  const auto looked_at = static_cast<std::int64_t>(i);
+  std::int64_t large = looked_at - number(small);
+  std::int64_t moving = looked_at - number(slow);
   std::int64_t odd = number(strange);
   for (; i < count; ++i) {
     const double step = std::fabs(x[i + 1] - x[i]);

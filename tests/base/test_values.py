@@ -57,6 +57,9 @@ def test_the_arguments_are_the_same(options: dict[str, bool]) -> None:
     assert str(inspect.signature(ours)) == str(inspect.signature(theirs))
     assert typing.get_type_hints(ours.__init__) == typing.get_type_hints(theirs.__init__)
     assert ours.__init__.__qualname__ == theirs.__init__.__qualname__
+    ours, theirs = both(**options)
+    signatures = [inspect.signature(type("Plain", (each,), {})) for each in (ours, theirs)]
+    assert str(signatures[0]) == str(signatures[1])  # of a subclass without fields, asked first
     ours, theirs = both(**options)  # the first call, and not the signature, compiles
     for arguments in ((), (1, "x"), (1, 2, 3, 4, 5)):
         with pytest.raises(TypeError) as error:

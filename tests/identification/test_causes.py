@@ -14,11 +14,14 @@ import jointid as jid
 from jointid.estimate.causes import MEANINGS
 from jointid.estimate.delays import Delay
 from jointid.identification.causes import causes, fitted
+from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import Candidate, listed_candidates
 from jointid.identification.causes.fitted import Fitted
-from jointid.identification.causes.folds import Folds, summed
+from jointid.identification.causes.folds import Folds, first_windows, summed
 from jointid.identification.causes.suspicion import suspicious
+from jointid.identification.causes.whole_recording import WholeRecording
 from jointid.identification.follow_up import EstimateSource
+from jointid.identification.prepared import prepare
 
 _SLOW = {"slow_motion", "presliding", "stribeck_exponent"}
 _BROKEN: Mapping[str, tuple[dict[str, float], set[str]]] = {
@@ -114,35 +117,118 @@ def test_a_torque_constant_is_told_from_a_known_inertia(
 
 
 @pytest.mark.parametrize("name", ["viscous drift", "load friction", "harmonic"])
-def test_stretches_of_a_long_recording_name_what_all_of_it_names(
+def test_stretches_of_a_long_recording_say_what_all_of_it_says(
     estimates: dict[str, jid.Estimate], monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     estimate, looked_at = estimates[name], _counted(monkeypatch)
     (every, *_) = estimate.causes().found
-    monkeypatch.setattr(causes, "_MOST", 256)
-    monkeypatch.setattr(fitted, "_STRETCH", 16)
+    _in_stretches(monkeypatch)
     (cause, *_) = estimate.causes().found
     assert looked_at[0] > 800
     assert looked_at[1] == 256
     assert cause.name == every.name
     assert cause.share == pytest.approx(every.share, abs=0.1)
-    assert cause.scale <= 64 * estimate.residuals.window_duration
+    for key, value in every.numbers.items():
+        assert cause.numbers[key].value == pytest.approx(value.value, rel=0.1)
+    for key, shift in every.shifts.items():
+        error = estimate.parameters[key].uncertainty
+        assert cause.shifts[key] == pytest.approx(shift, abs=2.0 * error + 0.1 * abs(shift))
+
+
+def test_a_cause_that_stretches_show_is_sized_by_all_of_the_recording(
+    runs: dict[str, jid.Recording], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fitted, "_STRETCH", 16)
+    problem = prepare(runs["harmonic"], jid.thesis_joint()).problem
+    penalty = problem.penalty(None)
+    best = np.array([2.5, 25.0, 20.0, 100.0, 20.0, 2.4, 15.0])
+    whole = Fitted.of(problem, penalty, best, (1, 2, 4), most=256)
+    some = Fitted.of(problem, penalty, best, (1, 2, 4), most=256, beside=whole)
+    third = next(each for each in listed_candidates(some, "harmonic") if "3" in each.detail)
+    asked = Attributed(
+        candidate=third, share=0.9, factor=4, coefficients=np.ones(2), shifts=np.full(3, 9.0)
+    )
+    found = WholeRecording(whole, some).attributed(asked)
+    (columns,) = (
+        each.columns for each in listed_candidates(whole, "harmonic") if each.detail == third.detail
+    )
+    expected = whole.solve(np.column_stack([whole.jacobian, columns]), whole.residual)
+    np.testing.assert_array_equal(found.shifts, expected[:3])
+    np.testing.assert_array_equal(found.coefficients, -expected[3:])
+    assert (found.share, found.factor) == (0.9, 4)
+    # Sums of windows show no ripple: of its shifts, what the stretches say by chance is no part.
+    ripple = dataclasses.replace(asked, candidate=Candidate(name="ripple", columns=third.columns))
+    chance = some.solve(some.jacobian, some.residual) - whole.solve(whole.jacobian, whole.residual)
+    assert np.abs(chance).min() > 0.0
+    found = WholeRecording(whole, some).attributed(ripple)
+    np.testing.assert_allclose(found.shifts, 9.0 - chance)
+    np.testing.assert_array_equal(found.coefficients, 1.0)
+
+
+@pytest.mark.parametrize("cut", [0.0, 3.3])
+def test_sums_of_windows_end_with_their_stretch(
+    monkeypatch: pytest.MonkeyPatch, runs: dict[str, jid.Recording], cut: float
+) -> None:
+    whole = runs["clean"]
+    recordings = [whole] if cut == 0.0 else [whole.crop(0.0, cut), whole.crop(cut + 0.1, 9.0)]
+    monkeypatch.setattr(fitted, "_STRETCH", 64)
+    problem = prepare(recordings, jid.thesis_joint()).problem
+    penalty = problem.penalty(None)
+    best = np.array([2.5, 25.0, 20.0, 100.0, 20.0, 2.4, 15.0])[: len(penalty.names)]
+    every = Fitted.of(problem, penalty, best, (1, 2))
+    fit = Fitted.of(problem, penalty, best, (1, 2), most=256, beside=every)
+    assert fit.chosen is not None
+    assert len(fit.residual) == len(fit.bounds) == len(fit.run) == 256
+    windows = np.arange(penalty.window_count)[fit.chosen]
+    for factor in (4, 16, 64):
+        first = first_windows(fit.neighbours, factor)
+        last = np.append(first[1:], 256) - 1
+        assert (windows[last] - windows[first] < factor).all()
+        assert (fit.run[last] == fit.run[first]).all()
+    np.testing.assert_array_equal(fit.bounds, every.bounds[fit.chosen])
+    np.testing.assert_array_equal(fit.residual, every.residual[fit.chosen])
+    square = every.integral_of_each(lambda _, run: run.velocity**2)
+    found = fit.integral_of_each(lambda _, run: run.velocity**2)
+    np.testing.assert_array_equal(found, square[fit.chosen])
 
 
 def test_an_event_between_the_stretches_of_a_long_recording_is_found(
     estimates: dict[str, jid.Estimate], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     estimate, looked_at = estimates["bump"], _counted(monkeypatch)
-    monkeypatch.setattr(causes, "_MOST", 256)
-    monkeypatch.setattr(
-        fitted, "_STRETCH", 128
-    )  # the first and the last second: the event is at 4 s
+    _in_stretches(monkeypatch, 128)  # the first and the last second: the event is at 4 s
     (cause, *_) = estimate.causes().found
-    assert looked_at[0] <= 256  # sums of neighbours, of all of it
+    assert looked_at == [256, looked_at[1]]
+    assert looked_at[1] < 256  # sums of neighbours, of all of it
     assert cause.name == "disturbance"
     assert "and" not in cause.detail
     begin, _, end = cause.detail.removesuffix(" s").partition(" to ")
     assert 3.5 < float(begin) < 4.15 < float(end) < 5.0
+
+
+@pytest.mark.parametrize("stretch", [64, 128])
+def test_an_event_beside_a_cause_of_a_long_recording_is_found(
+    monkeypatch: pytest.MonkeyPatch, stretch: int
+) -> None:
+    bench = Bench(
+        motion=thesis(np.radians([60.0])),
+        law=Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0),
+        plant=Plant(harmonic_torque=1.5, bump=6.0, bump_time=4.0, bump_width=0.3),
+    )
+    (run,) = simulate(bench, duration=9.0, seed=3)
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    every = estimate.causes()
+    _in_stretches(monkeypatch, stretch)
+    some = estimate.causes()
+    names = [cause.name for cause in every.found + every.harmless]
+    assert names == ["harmonic", "disturbance"]
+    assert [cause.name for cause in some.found + some.harmless] == names
+
+
+def _in_stretches(monkeypatch: pytest.MonkeyPatch, length: int = 16) -> None:
+    """Look for causes as in a recording of many windows: in 256 of them, all over the motion."""
+    monkeypatch.setattr(causes, "_MOST", 256)
+    monkeypatch.setattr(fitted, "_STRETCH", length)
 
 
 def _counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:

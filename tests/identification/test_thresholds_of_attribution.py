@@ -143,6 +143,7 @@ def _fit(speed: Any, **given: Any) -> Any:
         "integral": lambda _: np.asarray(speed, dtype=float),
         "integral_of_each": lambda _: np.asarray(speed, dtype=float),
         "run": np.zeros(count, dtype=int),
+        "neighbours": np.zeros(count, dtype=int),
         "bounds": np.column_stack([np.arange(count), np.arange(count) + 1]),
         "problem": SimpleNamespace(recordings=(SimpleNamespace(time=np.arange(count + 1.0)),)),
     }

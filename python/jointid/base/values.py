@@ -78,7 +78,7 @@ class _Initialiser:
     def __get__(self, value: object, cls: type[Any]) -> Any:
         self._calls += 1
         # `inspect.signature` of Python 3.13 asks as if the class were one of its values.
-        if value is None or value is self._owner or self._calls > _OFTEN:
+        if value is None or isinstance(value, type) or self._calls > _OFTEN:
             return self._compiled().__get__(value, cls)
         return partial(self._initialise, value)
 

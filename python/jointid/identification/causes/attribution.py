@@ -15,6 +15,7 @@ from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, summed
 from jointid.identification.causes.slow_passages import SlowRows, slow_rows
+from jointid.identification.causes.whole_recording import WholeRecording
 from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
@@ -43,8 +44,22 @@ class Score:
     sure: bool
 
 
-def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
-    """Return the candidates that explain the misfit, one after the other."""
+def attribute(
+    fit: Fitted, tried: list[Candidate], whole: Fitted | None = None
+) -> tuple[Attributed, ...] | None:
+    """Return the candidates that explain the misfit, one after the other.
+
+    Parameters
+    ----------
+    whole : Fitted, optional
+        All of a recording of which `fit` has stretches. Those tell which candidates explain the misfit; events,
+        sizes and what they move are taken from all of it. Default: `fit` has everything.
+
+    Returns
+    -------
+    tuple of Attributed or None
+        None where windows stand out, of an event or of slow motion, that stretches do not show as they are.
+    """
     count = fit.jacobian.shape[1]
     places, at = [], count
     for each in tried:
@@ -52,23 +67,30 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         at += each.columns.shape[1]
     matrix = np.column_stack([fit.jacobian, *(each.columns for each in tried), fit.residual])
     base, reached = list(range(count)), np.zeros(count)
+    everywhere = None if whole is None else WholeRecording(whole, fit)
     if _of_the_limit(fit, matrix[:, base], matrix[:, -1]):
         return ()
     scaled = at_scales(fit, matrix)
-    whole = {factor: folds.total(base) for factor, folds in scaled}
+    before = {factor: folds.total(base) for factor, folds in scaled}
     found: list[Attributed] = []
     taken: set[str] = set()
     slow_event = False
     while len(found) < _MOST:
         scores = {
-            index: score_of(scaled[:1] if each.finest else scaled, base, places[index], whole)
+            index: score_of(scaled[:1] if each.finest else scaled, base, places[index], before)
             for index, each in enumerate(tried)
             if _family(each) not in taken
         }
         sure = {index: score for index, score in scores.items() if score.sure}
         best = max((score.share for score in sure.values()), default=0.0)
-        event = None if "disturbance" in taken else local_event(fit, matrix[:, base], matrix[:, -1])
+        event = None
+        if everywhere is not None:
+            event = everywhere.event()
+        elif "disturbance" not in taken:
+            event = local_event(fit, matrix[:, base], matrix[:, -1])
         if event is not None and event.stands_out(best):
+            if everywhere is not None:
+                return None
             taken.add("disturbance")
             slow_event = event.slow
             matrix = np.where(event.rows[:, None], 0.0, matrix)
@@ -78,6 +100,8 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
             continue
         if not sure:
             slow = None if found else slow_rows(fit, matrix[:, base], matrix[:, -1])
+            if slow is not None and everywhere is not None:
+                return None
             if slow is not None:
                 found.append(_of_slow_rows(fit, matrix, slow))
             break
@@ -86,6 +110,8 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         taken.add(_family(tried[winner]))
         found.append(_attributed(fit, matrix, base, tried, winner, scores, reached))
         reached = reached + found[-1].shifts
+        if everywhere is not None:
+            found[-1] = everywhere.attributed(found[-1])
     # Where friction at low speed is amiss, what happens while the joint hardly moves is part of it.
     if slow_event and any(_family(each.candidate) == "slow_motion" for each in found):
         found.sort(key=lambda each: each.candidate.name == "disturbance")
@@ -159,7 +185,7 @@ def at_scales(fit: Fitted, matrix: Array) -> list[tuple[int, Folds]]:
     """Return the folds of columns and residual, its last column, for sums of 1, 4, 16 and 64 windows."""
     scaled = []
     for factor in SCALES:
-        rows, _ = summed(matrix, fit.run, factor)
+        rows, _ = summed(matrix, fit.neighbours, factor)
         folds = Folds.of_rows(rows)
         if folds is not None and len(rows) > 3 * fit.jacobian.shape[1] + 20:
             scaled.append((factor, folds))

@@ -293,6 +293,15 @@ FAMILIES: tuple[Callable[[Fitted], Iterator[Candidate]], ...] = (
 )
 
 
+def same_candidate(fit: Fitted, wanted: Candidate) -> Candidate | None:
+    """Return a candidate for another fit of the same recordings; None of a ripple, which sums do not show."""
+    slow = dict.fromkeys(("slow_motion", "presliding", "stribeck_exponent"), _slow)
+    makers = {family.__name__[1:]: family for family in FAMILIES} | slow | {"wrong_scale": _scale}
+    maker = makers["velocity" if wanted.detail == FILTERED else wanted.name]
+    of_its_name = (each for each in maker(fit) if each.name == wanted.name)
+    return next((each for each in of_its_name if each.detail == wanted.detail), None)
+
+
 def _revolute(fit: Fitted) -> bool:
     return fit.problem.recordings[0].kind == "revolute"
 

@@ -24,7 +24,7 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_MOST = 60_000  # windows of an attribution: ten minutes of motion say what an hour says
+_MOST = 60_000  # windows of an attribution: stretches of a long recording say the same
 _LATE = 2.0  # standard errors of a delay that is none
 _NOTICED = 0.8  # of that: a first-order shift may be so much too small
 _LEAST_SCALE = 0.02  # of a given inertia: it is seldom known better
@@ -60,18 +60,21 @@ def find_causes(
         Further signals of the first recording, one value a sample.
     """
     from jointid.identification.causes.attribution import attribute  # of a misfit: not of every fit
-    from jointid.identification.causes.events import local_event
 
     late = "velocity" in delays and delays["velocity"].certain
-    fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late, _MOST)
-    if fit.group > 1 and local_event(fit, fit.jacobian, fit.residual) is None:
-        # No part of a long recording holds the misfit: some stretches of it show the rest as well.
-        fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late, _MOST, False)
+    given = (problem, penalty, parameters, signals, _prompt(delays), late, _MOST)
+    fit = whole = _fitted(*given)
+    if whole.group > 1:
+        fit = _fitted(*given, beside=whole)
     tried = listed_candidates(fit)
+    causes = attribute(fit, tried, None if fit is whole else whole)
+    if causes is None:
+        fit, tried = whole, listed_candidates(whole)
+        causes = attribute(fit, tried) or ()
     found: list[Cause] = []
     harmless: list[Cause] = []
     errors = np.inf if fit.is_faint(_FAINT) else ERRORS
-    for each in attribute(fit, tried):
+    for each in causes:
         if each.candidate.name == "wrong_scale" and abs(off_scale(fit, each)) < _LEAST_SCALE:
             continue
         cause = _cause(fit, each, parameters, torque_level, delays, errors=errors)
@@ -136,15 +139,13 @@ def _fitted(
     prompt: frozenset[str] = frozenset(),
     filtered: bool = False,
     most: int | None = None,
-    everywhere: bool = True,
+    beside: Fitted | None = None,
 ) -> Fitted:
     found = [parameters[name] for name in penalty.names]
     best = np.array([p.value for p in found])
     free = tuple(index for index, p in enumerate(found) if p.vary and p.at_bound is None)
     given = frozenset(p.name for p in found if not p.vary)
-    return Fitted.of(
-        problem, penalty, best, free, signals, prompt, filtered, most, given, everywhere
-    )
+    return Fitted.of(problem, penalty, best, free, signals, prompt, filtered, most, given, beside)
 
 
 def attributed(

@@ -50,6 +50,8 @@ class Fitted:
         The penalty's windows that are looked at; None: all of them.
     group : int
         Windows of the penalty that one window here is the sum of.
+    beside : Fitted, optional
+        Another fit of the same recordings, whose integration times are taken: they have a value a sample.
     signals : mapping of str to ndarray
         Further signals of the first recording, one value a sample.
     prompt : frozenset of str
@@ -69,6 +71,7 @@ class Fitted:
     start: Array
     chosen: NDArray[np.int64] | None = None
     group: int = 1
+    beside: Fitted | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
     prompt: frozenset[str] = frozenset()
     filtered: bool = False
@@ -83,6 +86,14 @@ class Fitted:
     def run(self) -> NDArray[np.int64]:
         """Index of each window's recording."""
         return self._every_run[self._firsts]
+
+    @functools.cached_property
+    def neighbours(self) -> NDArray[np.int64]:
+        """Number of each window's row of neighbours: of its recording, or of its stretch of one."""
+        if self.chosen is None:
+            return self.run
+        ends = (np.diff(self.chosen) != 1) | (np.diff(self.run) != 0)
+        return np.concatenate([[0], np.cumsum(ends)])
 
     @functools.cached_property
     def bounds(self) -> NDArray[np.int64]:
@@ -141,6 +152,8 @@ class Fitted:
     @functools.cached_property
     def weights(self) -> list[Array]:
         """Integration time of each sample interval of each recording, 0 where it is left out [s]."""
+        if self.beside is not None:
+            return self.beside.weights
         problem = self.problem
         return [
             np.diff(recording.time)
@@ -222,17 +235,16 @@ class Fitted:
         filtered: bool = False,
         most: int | None = None,
         given: frozenset[str] = frozenset(),
-        everywhere: bool = True,
+        beside: Fitted | None = None,
     ) -> Fitted:
         """Return the fit at a minimum, on the torque's side whatever the penalty compares.
 
         Parameters
         ----------
         most : int, optional
-            Windows at most. Default: as many as there are.
-        everywhere : bool
-            Whether neighbours are summed where there are more; else some stretches of time are looked at.
-            Default True.
+            Windows at most, of which there are more with `beside`. Default: as many as there are.
+        beside : Fitted, optional
+            A fit of all of the recordings: some stretches of time are looked at. Default: neighbours are summed.
         """
         _, residual, jacobian = penalty.linearised(best)
         jacobian = np.array(jacobian[:, list(free)])
@@ -250,8 +262,9 @@ class Fitted:
             residual=residual,
             jacobian=jacobian,
             start=np.zeros(len(free)),
-            chosen=None if everywhere or most is None or sums < 2 else _stretches(count, most),
-            group=max(1, sums) if everywhere else 1,
+            chosen=_stretches(count, most) if beside is not None and most is not None else None,
+            group=max(1, sums) if beside is None else 1,
+            beside=beside,
             signals=signals or {},
             prompt=prompt,
             filtered=filtered,

@@ -42,7 +42,8 @@ def slow_rows(fit: Fitted, base: Array, residual: Array) -> SlowRows | None:
     steps = fit.solve(base, residual)
     steps[: len(fit.start)] -= fit.start
     power = (residual + base @ steps) ** 2
-    passage = np.cumsum(np.concatenate([[rows[0]], rows[1:] & ~rows[:-1]]))
+    begins = np.concatenate([[True], ~rows[:-1] | (np.diff(fit.neighbours) != 0)])
+    passage = np.cumsum(rows & begins)
     held = np.bincount(passage[rows], weights=power[rows])
     total = float(power.sum())
     share = float(held.sum()) / max(total, 1e-300)
