@@ -5,6 +5,7 @@ import re
 
 import pytest
 from closed_loop import TRUTH, thesis_joint
+from example_recordings import WELL_EXCITED
 
 import jointid as jid
 
@@ -56,3 +57,23 @@ def test_a_wrong_inertia_is(joint: jid.Joint, amplitude: float, law: str, factor
     stated = re.search(r"([\d.]+) times the", wording.message)
     assert stated is not None
     assert float(stated[1]) == pytest.approx(1.0 / factor, rel=0.03)
+
+
+@pytest.mark.parametrize("factor", [1e-3, 0.1, 0.5, 2.0, 10.0, 1e3])
+@pytest.mark.parametrize("sensor", [True, False])
+def test_a_torque_in_another_unit_is_not_usable(factor: float, sensor: bool) -> None:
+    whole = jid.load(WELL_EXCITED)
+    assert whole.torque is not None
+    run = jid.Recording(
+        time=whole.time,
+        position=whole.position,
+        velocity=whole.velocity,
+        torque=factor * whole.torque,
+        sensor=whole.sensor if sensor else None,
+    )
+    # The default model, which says little of this joint: the misfit has a cause with a name, and is blocking all the
+    # same.
+    estimate = jid.identify(run, jid.Joint(rotor_inertia=2.472e-4, gear_ratio=101, sensor=sensor))
+    blocking = {found.code for found in estimate.findings if found.severity == "blocking"}
+    assert blocking & {"wrong_scale", "poor_fit"}
+    assert estimate.verdict.level == "not usable"

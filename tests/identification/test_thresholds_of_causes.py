@@ -58,7 +58,23 @@ def test_a_scale_blocks_where_the_mean_explains_more(
     name: str, r_squared: float, left: float, severity: str
 ) -> None:
     residuals = {"r_squared": r_squared, "relative": left**0.5}
-    (said,) = found("causes", _named(_cause(name), residuals=residuals))
+    cause = _cause(name, numbers={"ratio": Measured(1.1)})
+    (said,) = found("causes", _named(cause, residuals=residuals))
+    assert said.severity == severity
+
+
+@pytest.mark.parametrize(
+    ("ratio", "severity"),
+    [
+        *((1.49, "warning"), (1.51, "blocking"), (0.67, "warning"), (0.66, "blocking")),
+        (-1.0, "blocking"),
+    ],
+)
+def test_a_scale_that_is_grossly_wrong_blocks_whatever_is_explained(
+    ratio: float, severity: str
+) -> None:
+    cause = _cause("wrong_scale", numbers={"ratio": Measured(ratio)})
+    (said,) = found("causes", _named(cause, residuals={"r_squared": 0.9, "relative": 0.01}))
     assert said.severity == severity
 
 

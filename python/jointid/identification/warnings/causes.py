@@ -9,7 +9,7 @@ from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.ripple import RIPPLE
-from jointid.identification.warnings.torque_balance import WRONG_SCALE
+from jointid.identification.warnings.torque_balance import GROSS, WRONG_SCALE
 from jointid.identification.warnings.undetermined import listed, wide, with_partners
 
 _REMEDIES = {
@@ -75,10 +75,18 @@ def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Findi
     measured = _measured(cause, cause.relative)
     beside = [name for name in concerned if name not in cause.relative]
     text = f"{cause}; it also makes {listed(beside)} uncertain" if beside else str(cause)
-    severity: Severity = "blocking" if missed and cause.name == "wrong_scale" else "warning"
+    severity: Severity = "blocking" if _is_gross(cause, missed) else "warning"
     return TYPES[cause.name].finding(
         text, *cause.advice, evidence=measured, parameters=tuple(concerned), severity=severity
     )
+
+
+def _is_gross(cause: Cause, missed: bool) -> bool:
+    """Whether a scale is so wrong that every value is, and no lack of the model explains it."""
+    if cause.name != "wrong_scale":
+        return False
+    ratio = cause.numbers["ratio"].value
+    return missed or not 1.0 / GROSS < ratio < GROSS
 
 
 def _note(cause: Cause) -> Finding:

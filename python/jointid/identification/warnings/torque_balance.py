@@ -18,7 +18,7 @@ WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
     meaning="the recording by itself contradicts the known inertia by more than 5 % (a "
-    "warning from 1 % where that explains the misfit)",
+    "warning from 1 % where that explains the misfit, and blocking again beyond a factor of 1.5)",
     advice="correct gear ratio, torque constant, unit of the torque or inertia; let the inertia vary only if that is "
     "the wrong one",
 )
@@ -26,7 +26,7 @@ WRONG_SCALE = FindingType(
 _AGAINST = -0.1  # correlation of torque and velocity: friction makes it positive
 _SCALE = 0.05
 _HIDDEN = 0.5  # of the gain: noise leaves no more of it, and the link's inertia goes to the joint
-_GROSS = 1.5  # factor of an inertia that is wrong even then
+GROSS = 1.5  # factor of an inertia that is wrong even then
 _DEGREE = np.pi / 180.0
 
 
@@ -80,7 +80,7 @@ def _inertia_ratio(free: Unbounded, given: float) -> float | None:
     if reverse is not None:
         ratios.append(reverse["inertia"] / given)
         hidden = 1.0 - free.values["sensor_gain"] / reverse["sensor_gain"] > _HIDDEN
-        if hidden and 1.0 / _GROSS < ratios[0] < _GROSS:
+        if hidden and 1.0 / GROSS < ratios[0] < GROSS:
             return None
     if min(ratios) < 1.0 < max(ratios):
         return None
