@@ -151,6 +151,7 @@ def test_sweep_prints_writes_draws_and_goes_on(
     assert main([*words, *files, "--trials", "2"]) == 0
     shown = capsys.readouterr().out
     assert shown.splitlines()[0].split()[:2] == ["ga.population", "method"]
+    assert shown.splitlines()[-2:] == [f"table: {table}", f"plot: {plot}"]
     assert len(table.read_text().splitlines()) == 9
     assert plot.read_bytes().startswith(b"\x89PNG")
     assert main([*words, "--output", str(output), "--trials", "3"]) == 2

@@ -393,3 +393,20 @@ def test_a_comparison_as_a_data_frame(comparison: jid.Comparison) -> None:
     assert list(frame.index) == [row.model for row in comparison.rows]
     assert list(frame["score"]) == [row.score for row in comparison.rows]
     assert bool(frame.loc[comparison.winner, "eligible"])
+
+
+def test_a_comparison_of_useless_values_says_so(well_excited: jid.Recording) -> None:
+    degrees = jid.Recording(
+        time=well_excited.time,
+        position=np.degrees(well_excited.position),
+        velocity=well_excited.velocity,
+        torque=well_excited.torque,
+    )
+    comparison = jid.compare_models(
+        degrees, models=["coulomb_viscous"], folds=3, search="separable"
+    )
+    blocking = [found for found in comparison.estimate.findings if found.severity == "blocking"]
+    assert "implausible_units" in {found.code for found in blocking}
+    last = comparison.report().splitlines()[-len(blocking) :]
+    assert last == [f"not usable ({found.code}): {found.cause}" for found in blocking]
+    assert "not usable (implausible_units)" in comparison._repr_html_()

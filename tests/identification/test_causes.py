@@ -301,6 +301,11 @@ def test_a_delay_has_a_side_and_is_no_cause_where_the_signal_excludes_it(
     assert signal not in {each.detail for each in (*known.found, *known.harmless)}
 
 
+def test_signals_have_names(estimates: dict[str, jid.Estimate]) -> None:
+    with pytest.raises(jid.InputError, match="signals is 'int': signals by name are expected"):
+        estimates["clean"].causes(5)  # type: ignore[arg-type]
+
+
 def test_a_read_estimate_has_no_recordings(estimates: dict[str, jid.Estimate]) -> None:
     read = jid.Estimate.from_json(estimates["clean"].to_json())
     with pytest.raises(jid.InputError, match="recordings"):

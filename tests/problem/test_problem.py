@@ -106,3 +106,18 @@ def test_a_missing_sensor_names_the_call_that_maps_it() -> None:
     error = refused(RECORDING, residual="sensor")
     assert (error.argument, error.value) == ("residual", "sensor")
     assert str(error.remedy[0]) == "identify with residual='torque'"
+
+
+def test_milliseconds_that_are_taken_for_seconds_are_no_standstill() -> None:
+    motion = {"position": MOTION["position"], "velocity": 7.0 * np.cos(7.0 * TIME)}
+    slow = jid.Recording(time=500.0 * TIME, torque=RECORDING.torque, **motion)
+    error = refused(slow)
+    assert "milliseconds seem to be taken for seconds" in str(error)
+    # At a usual rate the reason is the motion's.
+    still = jid.Recording(
+        time=TIME,
+        position=1e-9 * TIME,
+        velocity=np.full(len(TIME), 1e-12),
+        torque=RECORDING.torque,
+    )
+    assert "milliseconds" not in str(refused(still))

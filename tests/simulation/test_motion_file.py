@@ -93,5 +93,5 @@ def test_a_file_that_cannot_be_used_is_named_with_its_key(
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"nowhere\.toml: it cannot be read: No such file"):
+    with pytest.raises(InputError, match=r"nowhere\.toml: there is no such file"):
         load_motion(tmp_path / "nowhere.toml")

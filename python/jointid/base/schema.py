@@ -42,6 +42,8 @@ def read_text(path: Path) -> str:
         return read_bytes(path).decode("utf-8")
     except UnicodeDecodeError:
         raise InputError("this is not text in UTF-8", place=place) from None
+    except FileNotFoundError:
+        raise InputError("there is no such file", place=place) from None
     except OSError as error:
         raise InputError(f"it cannot be read: {error.strerror}", place=place) from error
 

@@ -187,7 +187,7 @@ def _identification_arguments(command: CommandParser, *, method: str) -> None:
     command.add_argument(
         "--windows",
         type=windows,
-        help="number of windows (default 400), duration (0.05s) or cumulative",
+        help="number of windows, duration (0.05s) or cumulative; default: as short as the noise allows",
     )
     refinement_arguments(command)
     term_argument(command)

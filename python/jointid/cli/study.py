@@ -79,7 +79,7 @@ def add_sweep(sweep: CommandParser) -> None:
     sweep.add_argument(
         "--windows",
         type=windows,
-        help="number of windows (default 400), duration (0.05s) or cumulative",
+        help="number of windows, duration (0.05s) or cumulative; default: as short as the noise allows",
     )
     refinement_arguments(sweep)
     sweep.add_argument(
@@ -226,8 +226,10 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
         save_report(study, arguments.report)
     summary = study.summary()
     print(json.dumps(summary.asdict(), indent=1, ensure_ascii=False) if arguments.json else summary)
-    if arguments.report is not None and not arguments.json:
-        print(f"\nreport: {arguments.report}")
+    written = {name: getattr(arguments, name) for name in ("table", "plot", "report")}
+    files = [f"{name}: {path}" for name, path in written.items() if path is not None]
+    if files and not arguments.json:
+        print("", *files, sep="\n")
 
 
 def _workers(count: int | None) -> Executor | nullcontext[None]:

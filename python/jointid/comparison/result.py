@@ -113,7 +113,9 @@ class Comparison:
             f"not compared: {model}: {reason}"
             for model, reason in self.settings["left_out"].items()
         ]
-        return printable("\n".join([*lines, f"winner: {self.winner}", self.reason]))
+        return printable(
+            "\n".join([*lines, f"winner: {self.winner}", self.reason, *self._blocking()])
+        )
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -127,7 +129,8 @@ class Comparison:
         table = (
             f"<table class='jointid'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         )
-        text = f"<p>{escape(self.setting())}</p><p>{escape(self.reason)}</p>"
+        said = (self.setting(), self.reason, *self._blocking())
+        text = "".join(f"<p>{escape(each)}</p>" for each in said)
         return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{text}</div>"
 
     def to_pandas(self) -> pd.DataFrame:
@@ -163,6 +166,14 @@ class Comparison:
             "estimate": json.loads(self.estimate.to_json()),
         }
         return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+
+    def _blocking(self) -> list[str]:
+        """What makes the winner's values useless, and with them the comparison, a sentence each."""
+        return [
+            f"not usable ({found.code}): {found.cause}"
+            for found in self.estimate.findings
+            if found.severity == "blocking"
+        ]
 
     def _title(self) -> str:
         return self.estimate.joint.name or "joint"

@@ -127,6 +127,10 @@ class Questions:
         >>> [cause.name for cause in estimate.causes().found]
         []
         """
+        if signals is not None and not isinstance(signals, Mapping):
+            raise InputError(
+                "signals by name are expected", argument="signals", value=type(signals).__name__
+            )
         return self._with_recordings("causes").causes(cast("Estimate", self), signals or {})
 
     def next_motion(

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.problem.own_integrals import known_torque, own_series
-from jointid.problem.recordings import output_torque
+from jointid.problem.recordings import output_torque, raise_if_slowly_sampled
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import WindowTable
 from jointid.problem.windows import Windows, window_options
@@ -86,16 +87,20 @@ class Problem:
     def _cut(self, made: type[Made], windows: Windows, residual: str | None = None) -> Made:
         options = self.window_options(windows)
         recordings = self.in_core  # its errors are values already
-        return made(
-            recordings=recordings,
-            terms=list(self.choice.terms),
-            windows=options,
-            residual=_core.Residual[residual or self.choice.residual],
-            mask_standstill=self.mask_standstill,
-            gear_ratio=self.choice.gear_ratio,
-            per_recording=list(self.choice.per_recording),
-            threads=self.threads,
-        )
+        try:
+            return made(
+                recordings=recordings,
+                terms=list(self.choice.terms),
+                windows=options,
+                residual=_core.Residual[residual or self.choice.residual],
+                mask_standstill=self.mask_standstill,
+                gear_ratio=self.choice.gear_ratio,
+                per_recording=list(self.choice.per_recording),
+                threads=self.threads,
+            )
+        except InputError:
+            raise_if_slowly_sampled(self.recordings)
+            raise
 
     @property
     def peak_speed(self) -> float:

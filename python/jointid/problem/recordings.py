@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
-from jointid.recording.plausibility import TIME_UNITS, time_unit
+from jointid.recording.plausibility import TIME_UNITS, slow_stamps, time_unit
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -64,13 +64,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         if not isinstance(run, Recording):
             raise InputError(_RECORDING_EXPECTED, argument="recordings", value=run, place=place)
         if run.sample_period >= _SLOWEST:
-            unit = time_unit(run.sample_period)
-            raise InputError(
-                f"the samples are {run.sample_period:.3g} s apart: {TIME_UNITS[unit]} seem to be taken for seconds",
-                argument="time",
-                place=place,
-                remedy=Action("call", {"units": {"time": unit}}, function="load"),
-            )
+            raise _of_stamps(run, number)
         lowest, highest = run.ranges["position"]
         travel = highest - lowest
         if not run.velocity_derived and run.ranges["velocity"] == (0.0, 0.0) and travel > 0.0:
@@ -142,6 +136,23 @@ def _conversions(recording: Recording, signal: str) -> tuple[Action, ...]:
     if not isinstance(header, str):
         return ()
     return (Action("call", {"columns": {"torque": header}}, "a commanded torque", "load"),)
+
+
+def raise_if_slowly_sampled(recordings: Sequence[Recording]) -> None:
+    """Raise `InputError` for stamps that hardly are seconds: what else is wrong with them follows from it."""
+    for number, run in enumerate(recordings):
+        if slow_stamps(run.sample_period) is not None:
+            raise _of_stamps(run, number)
+
+
+def _of_stamps(run: Recording, number: int) -> InputError:
+    unit = time_unit(run.sample_period)
+    return InputError(
+        f"the samples are {run.sample_period:.3g} s apart: {TIME_UNITS[unit]} seem to be taken for seconds",
+        argument="time",
+        place=f"recording {number}",
+        remedy=Action("call", {"units": {"time": unit}}, function="load"),
+    )
 
 
 def output_torque(recording: Recording, joint: Joint | None) -> Array:
