@@ -229,7 +229,7 @@ def test_a_file_is_read_and_named(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xfe")
     with pytest.raises(jid.InputError, match="not text in UTF-8"):
         jid.Estimate.load(path)
-    with pytest.raises(jid.InputError, match="No such file"):
+    with pytest.raises(jid.InputError, match="there is no such file"):
         jid.Estimate.load(tmp_path / "none.json")
 
 

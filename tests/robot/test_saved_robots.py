@@ -111,7 +111,7 @@ def test_the_place_is_named(tmp_path: Path) -> None:
     path.write_text(damaged(("joints", "elbow", "parameters", "coulomb", "value"), "null"))
     with pytest.raises(jid.InputError, match=r"bad\.json: joints\.elbow\.parameters\.coulomb\.val"):
         jid.RobotEstimate.load(path)
-    with pytest.raises(jid.InputError, match="No such file"):
+    with pytest.raises(jid.InputError, match="there is no such file"):
         jid.RobotEstimate.load(tmp_path / "none.json")
 
 
