@@ -49,7 +49,7 @@ found["`Estimate.from_json`"] = least(lambda: Estimate.from_json(text), 10)
 found["`identify` with `auto`"] = least(lambda: identify(recording, model="auto"), 5)
 found["`bootstrap(1000)`"] = least(lambda: estimate.bootstrap(1000), 2)
 two = ["coulomb_viscous", "stribeck"]
-found["`compare_models` of two"] = least(lambda: compare_models(recording, joint, models=two), 3)
+found["`compare_models` of two"] = least(lambda: compare_models(recording, joint, models=two), 8)
 five = [*two, "coulomb_viscous:gravity=free", "stribeck:gravity=free", "stribeck_general"]
 found["`compare_models` of five"] = least(lambda: compare_models(recording, joint, models=five), 1)
 def general(**more):
@@ -59,7 +59,7 @@ wide = {"stribeck_velocity": {"min": 1e-5, "max": 10.0}, "stribeck_exponent": {"
 found["`stribeck_general`"] = least(general(), 5)
 found["`stribeck_general`, wide bounds"] = least(general(parameters=wide), 3)
 found["`stribeck_general`, separable"] = least(general(search="separable"), 5)
-found["`stribeck_general`, exponent 2"] = least(general(parameters={"stribeck_exponent": 2.0}), 5)
+found["`stribeck_general`, exponent 2"] = least(general(parameters={"stribeck_exponent": 2.0}), 20)
 found["others"] = sorted({name for name in ("scipy", "matplotlib") if name in sys.modules})
 import pandas
 for file in (path, path.with_suffix(".csv.gz")):

@@ -129,6 +129,22 @@ CHECK_CASE("terms: friction of each direction is that of both, and odd in the ve
   }
 }
 
+CHECK_CASE("terms: a general decay with the exponent 2 is the Gaussian one") {
+  const Eigen::VectorXd velocity = Eigen::VectorXd::LinSpaced(41, -2.0, 2.0);
+  for (const std::string side : {"", "_positive", "_negative"}) {
+    const auto general = identify::find_term("static_general" + side);
+    const auto gaussian = identify::find_term("static" + side);
+    const Eigen::VectorXd expected =
+        identify::friction_basis(gaussian, velocity, Eigen::VectorXd::Constant(1, 1.0 / 0.49));
+    const Eigen::VectorXd found =
+        identify::friction_basis(general, velocity, Eigen::Vector2d(0.7, 2.0));
+    CHECK_WITH((found - expected).cwiseAbs().maxCoeff() < 1e-15, side);
+    const Eigen::VectorXd near =
+        identify::friction_basis(general, velocity, Eigen::Vector2d(0.7, 2.0 + 1e-12));
+    CHECK_WITH((near - found).cwiseAbs().maxCoeff() < 1e-11, side);
+  }
+}
+
 CHECK_CASE("terms: load friction grows with the load, whatever its sign") {
   const auto term = identify::find_term("load_friction");
   const Eigen::Vector3d velocity(-2.0, 0.0, 0.5);

@@ -4,6 +4,7 @@ import io
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +13,13 @@ from example_recordings import WELL_EXCITED
 import jointid as jid
 from jointid.base.errors import InputError
 from jointid.cli.progress import ComparisonProgress
-from jointid.comparison.comparison import ComparisonStep
+from jointid.comparison.fitter import ComparisonStep
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import judge
 from jointid.comparison.result import ComparedModel
+from jointid.estimate.causes import Causes
+from jointid.identification.causes import causes
+from jointid.problem.problem import Problem
 
 
 def simulated(seed: int, *, seconds: float = 10.0, static: float = 0.0) -> jid.Recording:
@@ -393,6 +397,29 @@ def test_a_comparison_as_a_data_frame(comparison: jid.Comparison) -> None:
     assert list(frame.index) == [row.model for row in comparison.rows]
     assert list(frame["score"]) == [row.score for row in comparison.rows]
     assert bool(frame.loc[comparison.winner, "eligible"])
+
+
+@pytest.mark.parametrize("models", [("coulomb_viscous",), ("coulomb_viscous", "stribeck")])
+def test_causes_are_looked_for_of_the_winner_alone(
+    models: tuple[str, ...], well_excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+    find = causes.find_causes
+
+    def found(problem: Problem, *arguments: Any, **options: Any) -> Causes:
+        asked.append(problem.choice.model.name)
+        return find(problem, *arguments, **options)
+
+    monkeypatch.setattr(causes, "find_causes", found)
+    compared = jid.compare_models(well_excited, jid.thesis_joint(), models=models)
+    winner = compared.winner
+    assert winner == models[-1]
+    # Stribeck friction is the truth: it leaves nothing to explain.
+    assert asked == (["coulomb_viscous"] if winner == "coulomb_viscous" else [])
+    spec = row(compared, winner).spec
+    alone = jid.identify(well_excited, jid.thesis_joint(), model=spec, search="separable")
+    assert compared.estimate.findings == alone.findings
+    assert compared.estimate.parameters == alone.parameters
 
 
 def test_a_comparison_of_useless_values_says_so(well_excited: jid.Recording) -> None:

@@ -1,12 +1,16 @@
 """Friction that drifts: named, and taken away before the other values are estimated."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
+from jointid.identification.drift import may_drift
+from jointid.identification.follow_up import EstimateSource
+from jointid.identification.gain import penalty_as_fitted
 
 DRIFTS = np.array([-0.3, -0.2, 0.0])
 
@@ -45,6 +49,28 @@ def test_a_drift_does_not_move_what_is_steady(found: list[jid.Estimate]) -> None
 def test_steady_friction_is_left_as_it_is(found: list[jid.Estimate]) -> None:
     assert not found[2].warnings
     assert "drift_removed" not in found[2].settings
+
+
+def test_models_are_compared_without_a_drift(found: list[jid.Estimate]) -> None:
+    for estimate, removed in ((found[0], "viscous"), (found[2], None)):
+        source = estimate.follow_up
+        assert isinstance(source, EstimateSource)
+        joint = jid.Joint(inertia=1.8, sensor=True)
+        models = ("coulomb_viscous", "stribeck")
+        compared = jid.compare_models(source.given, joint, models=models)
+        assert compared.winner == "stribeck"
+        assert compared.estimate.findings == estimate.findings
+        assert compared.estimate.settings.get("drift_removed") == removed
+
+
+def test_drifts_alone_tell_whether_one_may_be_taken_away(found: list[jid.Estimate]) -> None:
+    for estimate, may in ((found[0], True), (found[2], False)):
+        source = estimate.follow_up
+        assert isinstance(source, EstimateSource)
+        problem = replace(source.problem, recordings=source.given)
+        penalty = penalty_as_fitted(problem, source.windows, source.domain)
+        fitted = jid.identify(source.given, problem.joint, search="separable")
+        assert may_drift(problem, penalty, fitted.parameters) is may
 
 
 def test_what_is_asked_later_knows_of_the_drift(found: list[jid.Estimate]) -> None:

@@ -5,9 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from example_recordings import WELL_EXCITED
+from hypothesis import given
+from hypothesis import strategies as st
 from simulated_joint import INERTIA, LINK_INERTIA, TRUTH, simulate
 
 import jointid as jid
+from jointid.recording import motion
 from jointid.recording.motion import small_motion
 
 
@@ -115,6 +118,30 @@ def test_a_motion_of_few_samples_a_period_is_no_noise(samples: float) -> None:
     assert found is None or not found.noise
 
 
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from(["alternating", "noise", "bursts", "steps"]),
+    st.floats(1e-6, 1.0),
+)
+def test_a_motion_far_beyond_what_neighbours_differ_by_is_no_noise(
+    seed: int, kind: str, drift: float
+) -> None:
+    # The short cut of small_motion: with it the noise is not looked at.
+    generator = np.random.default_rng(seed)
+    count = int(generator.integers(300, 4000))
+    changes = {
+        "alternating": np.where(np.arange(count) % 2, 1.0, -1.0),
+        "noise": generator.uniform(-1.0, 1.0, count),
+        "bursts": generator.choice([-1.0, 0.0, 1.0], count, p=[0.1, 0.8, 0.1]),
+        "steps": generator.choice([-1.0, 1.0], count),
+    }[kind] + drift
+    position = np.cumsum(changes)
+    travel, largest = float(np.ptp(position)), float(np.abs(changes[1:]).max())
+    recording = jid.Recording(time=np.arange(count) * 1e-3, position=position, torque=position)
+    if travel >= 2.0 * motion._WIDEST * largest:
+        assert motion._noise_alone(recording, travel) == 0.0
+
+
 @pytest.mark.parametrize(("factor", "unit"), [(1e9, "nanoseconds"), (1e6, "microseconds")])
 def test_stamps_in_another_unit_are_told(well: jid.Recording, factor: float, unit: str) -> None:
     wrong = jid.Recording(time=well.time * factor, position=well.position, torque=well.torque)
@@ -128,6 +155,15 @@ def test_stamps_in_milliseconds_are_told(well: jid.Recording) -> None:
     finding = next(each for each in estimate.findings if each.code == "implausible_units")
     assert "milliseconds" in finding.cause
     assert dict(finding.advice[0].arguments) == {"units": {"time": "ms"}}
+
+
+def test_counts_of_an_encoder_are_told(well: jid.Recording) -> None:
+    counts = np.rint(well.position * 4096 / (2.0 * np.pi))
+    wrong = jid.Recording(time=well.time, position=counts, torque=well.torque)
+    estimate = jid.identify(wrong, model="coulomb_viscous", search="separable")
+    finding = next(each for each in estimate.findings if each.code == "implausible_units")
+    assert "in counts of the encoder" in finding.cause
+    assert {"scale": {"position": ...}} in [dict(each.arguments) for each in finding.advice]
 
 
 def test_one_wild_sample_is_told_as_one(well: jid.Recording) -> None:

@@ -358,3 +358,22 @@ def test_a_change_of_a_value_near_zero_is_said_from_and_to(
     assert words == ({"a": "from 1 to 1.5 N·m"} if said else {})
     after = changes.from_to({"a": p}, {"a": 0.5}, {"a": share}, {"a": error}, before=True)
     assert after == ({"a": "from 0.5 to 1 N·m"} if said else {})
+
+
+@pytest.mark.parametrize(
+    ("count", "most", "length"), [(200_000, 60_000, 1024), (1025, 1024, 1024), (300, 256, 256)]
+)
+def test_stretches_lie_evenly_over_the_whole_from_its_first_window_to_its_last(
+    count: int, most: int, length: int
+) -> None:
+    chosen = fitted._stretches(count, most)
+    stretches = chosen.reshape(-1, length)
+    assert len(stretches) == most // length
+    np.testing.assert_array_equal(np.diff(stretches, axis=1), 1)
+    first = stretches[:, 0]
+    assert first[0] == 0
+    if len(stretches) > 1:
+        assert chosen[-1] == count - 1
+        between = np.diff(first)
+        assert between.min() >= length  # no window twice
+        assert between.max() - between.min() <= 1

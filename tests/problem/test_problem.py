@@ -54,6 +54,15 @@ def test_what_is_no_recording(recordings: Any) -> None:
     assert (error.argument, error.value) == ("recordings", recordings)
 
 
+def test_a_recording_is_not_counted_twice() -> None:
+    copy = jid.Recording(**MOTION, torque=np.cos(7.0 * TIME), name="under another name")
+    error = refused([RECORDING, copy])
+    assert (error.place, error.reason[:26]) == ("recording 1", "it is recording 0 once more"[:26])
+    first, second = RECORDING[:1.0], RECORDING[1.0:]
+    error = refused([first, second, RECORDING[1.0:]])
+    assert (error.place, error.reason[:26]) == ("recording 2", "it is recording 1 once more"[:26])
+
+
 def test_one_of_several_is_no_recording() -> None:
     error = refused([RECORDING, "run.csv"])
     assert (error.argument, error.value, error.place) == ("recordings", "run.csv", "recording 1")

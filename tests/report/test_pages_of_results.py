@@ -162,6 +162,13 @@ def test_a_page_is_written_whole(tmp_path: Path) -> None:
         save_report({}, tmp_path / "page.html")  # type: ignore[arg-type]
 
 
+def test_a_page_is_no_pdf(tmp_path: Path) -> None:
+    design = designed()
+    with pytest.raises(jid.InputError, match=r"a report is an HTML page \(\.html\)"):
+        save_report(design, tmp_path / "page.pdf")
+    assert not list(tmp_path.iterdir())
+
+
 def test_names_of_own_terms_are_keys_of_toml() -> None:
     estimate = jid.identify(report_pages.good(), jid.thesis_joint())
     named = dict(estimate.parameters)

@@ -94,8 +94,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     robot = data_folder() / "kr300_joint1.toml"
     shipped = jid.identify(jid.load(robot.with_suffix(".csv.gz")), jid.Joint.load(robot))
     shipped.save(folder / "kr300.toml")
-    for name in ("run", "monday", "tuesday"):
-        recording.save(folder / f"{name}.csv")
+    for name, part in {"run": recording, "monday": recording, "tuesday": recording[2.0:]}.items():
+        part.save(folder / f"{name}.csv")
     motion = sines(2, 1, duration=8.0)
     ratios = [50.0, -30.0]
     torque = torques(motion, 1) / ratios

@@ -139,10 +139,12 @@ Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity
                                 " shape parameters, got " + std::to_string(shapes.size()));
   }
   if (term.integral == Integral::displacement) return velocity;
-  if (term.basis == model::SpeedBasis::stribeck && !needs_load(term)) {
+  const bool gaussian = is_gaussian(term, shapes.data());
+  if ((gaussian || term.basis == model::SpeedBasis::stribeck) && !needs_load(term)) {
+    const double rate = gaussian ? gaussian_rate(shapes.data()) : shapes[0];
     Eigen::VectorXd result(velocity.size());
-    signed_decays(velocity.data(), static_cast<std::size_t>(velocity.size()), shapes[0],
-                  term.direction, result.data());
+    signed_decays(velocity.data(), static_cast<std::size_t>(velocity.size()), rate, term.direction,
+                  result.data());
     return result;
   }
   const auto value = [&](double speed) {

@@ -63,7 +63,8 @@ def identify(report: Report, call: Call) -> tuple[Estimate, str]:
 
 def compare(report: Report, call: Call, models: Sequence[str]) -> Comparison:
     """The comparison of some models; the default ones where none is named."""
-    from jointid.comparison.comparison import ComparisonStep, compare_models
+    from jointid.comparison.comparison import compare_models
+    from jointid.comparison.fitter import ComparisonStep
 
     def shown(step: ComparisonStep) -> None:
         report(step.number / step.total, f"fit {step.number} of {step.total}: {step.model}")

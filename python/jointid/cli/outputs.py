@@ -7,6 +7,7 @@ import errno
 import os
 from pathlib import Path
 
+from jointid.base.argument_checks import require_page
 from jointid.base.errors import InputError
 from jointid.base.files import new_beside
 
@@ -74,8 +75,8 @@ def check_page(argument: str, path: Path | None) -> None:
     InputError
         Another extension, or no such folder.
     """
-    if path is not None and path.suffix.lower() not in (".html", ".htm"):
-        raise InputError("a report is an HTML page (.html)", argument=argument, value=path)
+    if path is not None:
+        require_page(argument, path)
     check_folder(argument, path)
 
 

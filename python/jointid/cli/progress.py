@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self, TextIO
 from jointid._core import GaOptions, Generation
 
 if TYPE_CHECKING:
-    from jointid.comparison.comparison import ComparisonStep
+    from jointid.comparison.fitter import ComparisonStep
     from jointid.design.design_search import DesignProgress
     from jointid.study.sweeping import StudyStep
 

@@ -9,17 +9,13 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.base.values import dataclass
 from jointid.comparison.contenders import compared_models, default_models, shown_gravity, text_of
-from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
+from jointid.comparison.fitter import ComparisonStep, Fitter
+from jointid.comparison.held_out import folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.prediction import FittedModel, TorquePredictor
 from jointid.estimate.settings import model_of
-from jointid.identification.identification import identify
-from jointid.identification.prepared import prepare
-from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
@@ -32,23 +28,6 @@ from jointid.recording.signals import TorqueHold
 
 if TYPE_CHECKING:
     from jointid.servo.comparing import ServoComparison
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ComparisonStep:
-    """One fit of a comparison, as the callback sees it.
-
-    Attributes
-    ----------
-    number, total : int
-        Number of fits done so far, and of all fits.
-    model : str
-        Text of the fitted model.
-    """
-
-    number: int
-    total: int
-    model: str
 
 
 @overload
@@ -188,7 +167,7 @@ def compare_models(
     if residual is None and any(spec.load_friction for spec in specs):
         residual = "torque"  # the one that all of them have: fits by different residuals are not comparable
     chosen = Search.of(search, method="separable")
-    fitter = _Fitter(
+    fitter = Fitter(
         joint=joint,
         common={
             "parameters": parameters,
@@ -203,6 +182,7 @@ def compare_models(
         callback=callback,
     )
     whole: dict[Model, Estimate] = {}
+    options = dict.fromkeys(specs, fitter.options(windows))
     left_out: dict[str, str] = {}
     for spec in specs:
         try:
@@ -223,7 +203,7 @@ def compare_models(
     for spec, estimate in whole.items():
         if not np.isclose(estimate.settings["windows"], duration, rtol=1e-9, atol=0.0):
             fitter.total += 1
-            whole[spec] = fitter.fit(spec, runs, cut)
+            whole[spec], options[spec] = fitter.fit(spec, runs, cut), fitter.options(cut)
     first = next(iter(whole.values()))
     splits = (
         folds_by_block(runs[0], first.windows, parts)
@@ -235,12 +215,13 @@ def compare_models(
         for spec, estimate in whole.items()
     ]
     judged, winner, reason = judge(rows)
+    best = judged[winner].spec
     kind = "block" if len(runs) == 1 else "recording" if parts == len(runs) else "recordings"
     return Comparison(
         rows=judged,
         winner=judged[winner].model,
         reason=reason,
-        estimate=whole[judged[winner].spec],
+        estimate=fitter.with_causes(best, whole[best], runs, options[best]),
         settings={
             "folds": parts,
             "held_out": kind,
@@ -264,92 +245,6 @@ def _servo(joint: Joint | None) -> Joint:
 
 def _listed(models: Model | str | Sequence[Any] | None) -> Sequence[Any] | None:
     return (models,) if isinstance(models, str | Model | Mapping) else models
-
-
-class _Fitter:
-    """Fits models to parts of the data, names the model in errors, and reports progress to the callback."""
-
-    def __init__(
-        self,
-        *,
-        joint: Joint | None,
-        common: Mapping[str, Any],
-        total: int,
-        callback: Callable[[ComparisonStep], object] | None,
-    ) -> None:
-        self._joint, self._common, self._callback = joint, common, callback
-        self.total = total
-        self._done = 0
-
-    def shift(self, delays: Mapping[str, float]) -> None:
-        self._common = {**self._common, "shift": delays}
-
-    def fit(
-        self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
-    ) -> Estimate:
-        try:
-            estimate = identify(training, self._joint, model=spec, windows=windows, **self._common)
-        except InputError as error:
-            raise error.at(f"model '{text_of(spec)}'{where}") from error
-        self._step(spec)
-        return estimate
-
-    def _step(self, spec: Model) -> None:
-        self._done += 1
-        if self._callback is not None:
-            self._callback(ComparisonStep(number=self._done, total=self.total, model=text_of(spec)))
-
-    def _values(
-        self,
-        spec: Model,
-        training: Sequence[Recording],
-        windows: Windows,
-        where: str,
-        whole: Estimate,
-    ) -> FittedModel:
-        """The values alone: a score needs neither intervals nor causes.
-
-        What all data show of their signals holds for their parts: delays, and that a reading is not taken before the
-        torque steps. How much it lacks each part measures.
-        """
-        search = self._common["search"]
-        stated = {name: value for name, value in self._common.items() if name != "search"}
-        try:
-            prepared = prepare(
-                training,
-                self._joint,
-                model=spec,
-                windows=windows,
-                threads=search.threads,
-                measure=False,
-                instant="sensor_before_step" in whole.settings,
-                **stated,
-            )
-            outcome = run_search(search, prepared.penalty, prepared.domain)
-        except InputError as error:
-            raise error.at(f"model '{text_of(spec)}'{where}") from error
-        self._step(spec)
-        return prepared.fitted(search, outcome)
-
-    def scores(
-        self, spec: Model, splits: Sequence[Fold], windows: Windows, whole: Estimate
-    ) -> list[float]:
-        # A drift that all data show is looked for in their parts, too.
-        inferred = not spec.named or any(key.endswith("_removed") for key in whole.settings)
-        found = []
-        predictor = TorquePredictor()  # of one recording's blocks, all in the same windows
-        for number, split in enumerate(splits, start=1):
-            where = f", fold {number} of {len(splits)}"
-            fitted = (
-                FittedModel.of(self.fit(spec, split.training, windows, where))
-                if inferred
-                else self._values(spec, split.training, windows, where, whole)
-            )
-            try:
-                found.append(split.residual(fitted, predictor))
-            except InputError as error:
-                raise error.at(f"model '{text_of(spec)}'{where}") from error
-        return found
 
 
 def _as_found(spec: Model, estimate: Estimate) -> Model:

@@ -14,8 +14,9 @@ from jointid import _core
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.statistics import Convergence
+from jointid.estimate.statistics import Convergence, ResidualStatistics
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
+from jointid.identification.drift import may_drift
 from jointid.identification.inference.covariance import Triangle, parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
@@ -67,6 +68,7 @@ def infer(
     seconds: float,
     refinements: Refinements,
     known: tuple[Cause, ...] = (),
+    attribute: bool = True,
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -82,6 +84,9 @@ def infer(
         Change of each parameter by causes that the intervals do not contain.
     known : tuple of Cause
         Causes that were taken away from the data before.
+    attribute : bool
+        Whether the causes of a misfit are looked for; else they are only where one may be a drift, which is
+        taken away. Default True.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -150,14 +155,12 @@ def infer(
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
     causes = None
     run = table.recording
-    # Noise alone may be most of what was measured: it is no misfit, and the errors contain it.
-    structured = suspicious(table.residual, run, table.duration, table.velocity) or (
-        statistics.r_squared < POORLY_EXPLAINED and not testable(run)
-    )
+    structured = is_misfit(table, statistics)
     # Running integrals of white noise are correlated by themselves.
     noise = not structured and testable(run) and not penalty.cumulative
     # A misfit of a gain whose sign is a guess is not the model's.
-    if structured and not domain.guessed_sign and not (penalty.cumulative or not free):
+    sought = structured and not domain.guessed_sign and not (penalty.cumulative or not free)
+    if sought and (attribute or may_drift(problem, penalty, parameters)):
         from jointid.identification.causes.causes import find_causes
 
         causes = find_causes(
@@ -238,6 +241,17 @@ def infer(
         seconds=seconds,
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
+    )
+
+
+def is_misfit(table: WindowTable, statistics: ResidualStatistics) -> bool:
+    """Whether residuals are more than noise, so that their causes are looked for.
+
+    Noise alone may be most of what was measured: it is no misfit, and the errors contain it.
+    """
+    run = table.recording
+    return suspicious(table.residual, run, table.duration, table.velocity) or (
+        statistics.r_squared < POORLY_EXPLAINED and not testable(run)
     )
 
 

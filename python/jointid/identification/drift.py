@@ -6,6 +6,7 @@ With the drift taken away they are what they are, and the coefficient is its val
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,15 +15,36 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.estimate.causes import Cause
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.statistics import ParameterEstimate
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
 _SHARE = 0.8  # of the misfit
+_ROUNDED = 1.0 - 1e-6  # the same share, of other sums
 _LARGE = 0.05  # change over the recording
 _LINEAR = 1e-6  # of the torque: a signal of the drive is a multiple of it
 _DRIVE = ("torque", "motor_torque", "current")
+
+
+def may_drift(
+    problem: Problem, penalty: _core.Penalty, parameters: Mapping[str, ParameterEstimate]
+) -> bool:
+    """Whether a coefficient that drifts explains so much of the misfit that it may be taken away.
+
+    That is a look at the drifts alone: other causes may explain it, too, and then nothing is taken away.
+
+    Parameters
+    ----------
+    problem : Problem
+    penalty : Penalty
+        As it was fitted.
+    parameters : mapping of str to ParameterEstimate
+    """
+    from jointid.identification.causes.causes import share_of
+
+    return share_of("drift", problem, penalty, parameters) >= _ROUNDED * _SHARE
 
 
 def without_drift(

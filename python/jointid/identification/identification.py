@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -108,29 +107,53 @@ def identify(
     >>> windows = jid.WindowOptions(duration=0.02)
     >>> estimate = jid.identify(recording, joint, windows=windows, parameters={"viscous": {"min": 0.0, "max": 40.0}})
     """
-    started = time.perf_counter()
-    chosen = Search.of(search)
     stated = Model.of(model)
     if terms is not None:
         stated = stated.replace(terms=terms)
-    merged = stated.over(joint.model) if isinstance(joint, Joint) else stated
+    options = {
+        "parameters": parameters,
+        "residual": residual,
+        "windows": windows,
+        "torque_hold": torque_hold,
+        "mask_standstill": mask_standstill,
+        "shift": shift,
+        "min_speed": min_speed,
+    }
+    return identified(recordings, joint, stated, Search.of(search), options)
+
+
+def identified(
+    recordings: Recording | Sequence[Recording],
+    joint: Joint | None,
+    model: Model,
+    search: Search,
+    options: Mapping[str, Any],
+    *,
+    attribute: bool = True,
+) -> Estimate:
+    """Identify with options that are checked; see `identify`.
+
+    Parameters
+    ----------
+    options : mapping of str to object
+        Further arguments of `prepare`.
+    attribute : bool
+        Whether the causes of a misfit are looked for: what compares models needs those of one of them. A drift that
+        is taken away is looked for in any case. Default True.
+    """
+    started = time.perf_counter()
+    merged = model.over(joint.model) if isinstance(joint, Joint) else model
     if merged.load_friction is True:
-        either = [
-            functools.partial(identify, recordings, joint, model=stated.replace(load_friction=load))
-            for load in loads(merged, listed(recordings), joint)
-        ]
         found = [
-            each(
-                parameters=parameters,
-                search=chosen,
-                residual=residual,
-                windows=windows,
-                torque_hold=torque_hold,
-                mask_standstill=mask_standstill,
-                shift=shift,
-                min_speed=min_speed,
+            identified(
+                recordings,
+                joint,
+                model.replace(load_friction=load),
+                search,
+                options,
+                attribute=attribute,
             )
-            for each in either
+            for load in loads(merged, listed(recordings), joint)
         ]
         # A load that scales all values fits anything.
         return min(found, key=lambda each: (_blocked(each), each.residuals.relative))
@@ -139,20 +162,14 @@ def identify(
         prepared = prepare(
             recordings,
             joint,
-            model=stated,
-            parameters=parameters,
-            residual=residual,
-            windows=windows,
-            torque_hold=torque_hold,
-            mask_standstill=mask_standstill,
-            shift=shift,
-            min_speed=min_speed,
-            threads=chosen.threads,
+            model=model,
+            threads=search.threads,
             choose=True,
             unfit=unfit,
+            **options,
         )
-        outcome = run_search(chosen, prepared.penalty, prepared.domain)
-        estimate = prepared.estimate(chosen, outcome, started)
+        outcome = run_search(search, prepared.penalty, prepared.domain)
+        estimate = prepared.estimate(search, outcome, started, attribute)
         reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
         if not reason or fitted in unfit:
             return estimate

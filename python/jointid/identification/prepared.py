@@ -88,7 +88,9 @@ class Prepared:
     refinements: Refinements
     selection: Selection | None = None
 
-    def estimate(self, search: Search, outcome: Outcome, started: float) -> Estimate:
+    def estimate(
+        self, search: Search, outcome: Outcome, started: float, attribute: bool = True
+    ) -> Estimate:
         """Return the estimate of a search's outcome: intervals, checks, warnings.
 
         Parameters
@@ -97,8 +99,10 @@ class Prepared:
         outcome : Outcome
         started : float
             Reading of `time.perf_counter` at the start of the identification.
+        attribute : bool
+            Whether the causes of a misfit are looked for. Default True.
         """
-        estimate = self._inferred(search, outcome, started)
+        estimate = self._inferred(search, outcome, started, attribute=attribute)
         steady = without_drift(self.problem, self.penalty, estimate)
         fitted = self
         known: tuple[Cause, ...] = ()
@@ -107,7 +111,7 @@ class Prepared:
             penalty = penalty_as_fitted(problem, self.windows, self.domain)
             other = replace(self, problem=problem, penalty=penalty)
             found = run_search(search, other.penalty, other.domain)
-            again = other._inferred(search, found, started, (drift,))
+            again = other._inferred(search, found, started, (drift,), attribute)
             if again.residuals.rms < _STEADIER * estimate.residuals.rms:
                 estimate, fitted, known = again, other, (drift,)
         source = EstimateSource(
@@ -135,7 +139,12 @@ class Prepared:
         return FittedModel(settings=self._choices(search), joint=self.problem.joint, values=values)
 
     def _inferred(
-        self, search: Search, outcome: Outcome, started: float, known: tuple[Cause, ...] = ()
+        self,
+        search: Search,
+        outcome: Outcome,
+        started: float,
+        known: tuple[Cause, ...] = (),
+        attribute: bool = True,
     ) -> Estimate:
         """Return the estimate at one minimum; `known` are causes that were taken away before it."""
         domain = self.domain
@@ -160,6 +169,7 @@ class Prepared:
             seconds=time.perf_counter() - started,
             refinements=self.refinements,
             known=known,
+            attribute=attribute,
         )
 
     def _again(self, search: Search, recordings: tuple[Recording, ...]) -> Estimate:

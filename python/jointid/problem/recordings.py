@@ -35,8 +35,8 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
     Raises
     ------
     InputError
-        No recording, something else, too many gaps, a signal whose square no float can hold, or revolute
-        and prismatic recordings mixed.
+        No recording, something else, one of them twice, too many gaps, a signal whose square no float can hold, or
+        revolute and prismatic recordings mixed.
     """
     if isinstance(recordings, Recording):
         recordings = (recordings,)
@@ -97,7 +97,25 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
                 remedy="identify them separately",
             )
         _check_magnitudes(run, place)
+        for earlier in range(number):
+            if _same(runs[earlier], run):
+                raise InputError(
+                    f"it is recording {earlier} once more, whose noise would count as that of two",
+                    argument="recordings",
+                    place=place,
+                    remedy="give each recording once",
+                )
     return runs
+
+
+def _same(one: Recording, other: Recording) -> bool:
+    """Whether all signals are the same, whatever the file is called."""
+    if one is other:
+        return True
+    # The ranges are known: arrays are compared only of what looks the same.
+    return one.ranges == other.ranges and all(
+        np.array_equal(getattr(one, name), getattr(other, name)) for name in one.ranges
+    )
 
 
 def _check_magnitudes(run: Recording, place: str) -> None:

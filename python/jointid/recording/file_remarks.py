@@ -33,7 +33,8 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
             found.append(f"{count} messages {what}")
     dropped = metadata.get("dropped_rows")
     if isinstance(dropped, int) and dropped:
-        found.append(f"{dropped} damaged rows are left out")
+        rows = "1 damaged row is" if dropped == 1 else f"{dropped} damaged rows are"
+        found.append(f"{rows} left out")
     cut = metadata.get("cut_samples")
     if isinstance(cut, int) and cut:
         found.append(f"{cut} samples at the ends are left out, where a channel has none")

@@ -1,5 +1,7 @@
 """A recording: the signals of one joint over time, measured or simulated."""
 
+from __future__ import annotations  # so that `help` shows array_like by its name
+
 import functools
 import os
 from collections.abc import Collection, Mapping
@@ -292,7 +294,7 @@ class Recording(Parts):
         metadata = {**self.metadata, "resampled_from": self.sample_period}
         return type(self)(**{**self._fields(), **signals, "metadata": metadata})
 
-    def to_pandas(self) -> "pd.DataFrame":
+    def to_pandas(self) -> pd.DataFrame:
         """Return the recording as a data frame, one row a sample, in SI units.
 
         `Recording.from_dataframe` returns an equal recording, bit for bit.

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_path
+from jointid.base.argument_checks import require_page
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.problem.recordings import listed
@@ -111,7 +111,7 @@ def save_report(
         What `identify`, `identify_joints`, `identify_robot`, `identify_servo`, `compare_models`,
         `compare_robot_models`, `sweep`, `design_excitation` and `commission` return.
     path : path
-        Replaced when it exists.
+        Ends in .html; replaced when it exists.
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
     recordings : Recording or sequence of Recording, optional
@@ -125,7 +125,7 @@ def save_report(
     Raises
     ------
     InputError
-        Of this there is no report; the estimate was made from other recordings; the path is no file name, or its
+        Of this there is no report; the estimate was made from other recordings; the path is no name of a page, or its
         folder does not exist.
     OSError
         The file cannot be written; an existing one is untouched.
@@ -135,6 +135,6 @@ def save_report(
     >>> jid.save_report(jid.identify(recording, joint), "report.html", recordings=recording).name
     'report.html'
     """
-    target = require_path("path", path)
+    target = require_page("path", path)
     write_whole(target, report_page(result, action, recordings).encode())
     return target

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_path
+from jointid.base.argument_checks import require_page
 from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
 from jointid.report.answering import verdict_lines
@@ -67,7 +67,7 @@ def save_servo_report(
     action: Callable[[Action], str] = str,
 ) -> Path:
     """Write the report, whole or not at all; see `save_report`."""
-    target = require_path("path", path)
+    target = require_page("path", path)
     write_whole(target, servo_report(estimate, action, rollout).encode())
     return target
 

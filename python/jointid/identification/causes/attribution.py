@@ -118,6 +118,19 @@ def attribute(
     return tuple(found)
 
 
+def shares(fit: Fitted, tried: list[Candidate]) -> list[float]:
+    """Return the shares of the misfit that candidates explain, each by itself, of those that surely do."""
+    base = list(range(fit.jacobian.shape[1]))
+    found = []
+    for each in tried:
+        scaled = at_scales(fit, np.column_stack([fit.jacobian, each.columns, fit.residual]))
+        before = {factor: folds.total(base) for factor, folds in scaled}
+        own = list(range(len(base), len(base) + each.columns.shape[1]))
+        score = score_of(scaled, base, own, before)
+        found += [score.share] if score.sure else []
+    return found
+
+
 def _of_the_limit(fit: Fitted, base: Array, residual: Array) -> bool:
     """Whether the misfit is gone from the other windows once those on the torque's limit are left out."""
     kept = fit.trusted

@@ -83,6 +83,27 @@ def find_causes(
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
 
 
+def share_of(
+    name: str,
+    problem: Problem,
+    penalty: _core.Penalty,
+    parameters: Mapping[str, ParameterEstimate],
+) -> float:
+    """Return the largest share of the misfit that one candidate of a family explains by itself; 0 where none does.
+
+    Of a recording so long that stretches tell its causes it is 1: what they tell is known after a look at all.
+
+    Parameters
+    ----------
+    name : str
+        Of the family, e.g. "drift".
+    """
+    from jointid.identification.causes.attribution import shares
+
+    fit = _fitted(problem, penalty, parameters, most=_MOST)
+    return 1.0 if fit.group > 1 else max(shares(fit, listed_candidates(fit, name)), default=0.0)
+
+
 def cause_of(
     problem: Problem,
     penalty: _core.Penalty,

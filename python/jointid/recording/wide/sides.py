@@ -24,7 +24,8 @@ def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
     number = isinstance(gear_ratio, int | float | np.number) and not isinstance(gear_ratio, bool)
     if not number or not np.isfinite(gear_ratio) or gear_ratio == 0:  # type: ignore[call-overload]
         raise InputError(
-            "the motor's angle per angle of the joint is expected, negative if they turn in opposite directions",
+            "the motor's angle per angle of the joint is expected: a number other than 0, negative if they turn in "
+            "opposite directions",
             argument=argument,
             value=gear_ratio,
         )

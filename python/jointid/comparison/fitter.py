@@ -1,0 +1,183 @@
+"""The fits of a comparison: each model to all data and to the parts that a fold leaves, with progress."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.base.values import dataclass
+from jointid.comparison.contenders import text_of
+from jointid.comparison.held_out import Fold
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.prediction import FittedModel, TorquePredictor
+from jointid.identification.conclusion import is_misfit
+from jointid.identification.identification import identified
+from jointid.identification.prepared import prepare
+from jointid.identification.search.run import run_search
+from jointid.joint.joint import Joint
+from jointid.joint.model import Model
+from jointid.problem.windows import Windows
+from jointid.recording.recording import Recording
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparisonStep:
+    """One fit of a comparison, as the callback sees it.
+
+    Attributes
+    ----------
+    number, total : int
+        Number of fits done so far, and of all fits.
+    model : str
+        Text of the fitted model.
+    """
+
+    number: int
+    total: int
+    model: str
+
+
+class Fitter:
+    """Fits models to parts of the data, names the model in errors, and reports progress to the callback."""
+
+    def __init__(
+        self,
+        *,
+        joint: Joint | None,
+        common: Mapping[str, Any],
+        total: int,
+        callback: Callable[[ComparisonStep], object] | None,
+    ) -> None:
+        self._joint, self._common, self._callback = joint, common, callback
+        self.total = total
+        self._done = 0
+
+    def shift(self, delays: Mapping[str, float]) -> None:
+        """Take these delays away from now on [s]."""
+        self._common = {**self._common, "shift": delays}
+
+    def fit(
+        self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
+    ) -> Estimate:
+        """Return the estimate of a model without the causes of its misfit.
+
+        Raises
+        ------
+        InputError
+            As `identify` says it, with the model's name and `where`.
+        """
+        try:
+            estimate = self._identified(spec, training, self.options(windows))
+        except InputError as error:
+            raise error.at(f"model '{text_of(spec)}'{where}") from error
+        self._step(spec)
+        return estimate
+
+    def options(self, windows: Windows) -> dict[str, Any]:
+        """Arguments of a fit now."""
+        return {**self._common, "windows": windows}
+
+    def _identified(
+        self,
+        spec: Model,
+        training: Sequence[Recording],
+        options: Mapping[str, Any],
+        attribute: bool = False,
+    ) -> Estimate:
+        others = {name: value for name, value in options.items() if name != "search"}
+        return identified(
+            training, self._joint, spec, options["search"], others, attribute=attribute
+        )
+
+    def with_causes(
+        self,
+        spec: Model,
+        estimate: Estimate,
+        runs: Sequence[Recording],
+        options: Mapping[str, Any],
+    ) -> Estimate:
+        """Return the estimate of a fit with the causes of its misfit: to find them takes as long as the fit itself.
+
+        Parameters
+        ----------
+        estimate : Estimate
+            Without them.
+        options : mapping of str to object
+            What `options` was when it was fitted.
+        """
+        if not is_misfit(estimate.windows, estimate.residuals):
+            return estimate
+        return self._identified(spec, runs, options, attribute=True)
+
+    def _step(self, spec: Model) -> None:
+        self._done += 1
+        if self._callback is not None:
+            self._callback(ComparisonStep(number=self._done, total=self.total, model=text_of(spec)))
+
+    def _values(
+        self,
+        spec: Model,
+        training: Sequence[Recording],
+        windows: Windows,
+        where: str,
+        whole: Estimate,
+    ) -> FittedModel:
+        """The values alone: a score needs neither intervals nor causes.
+
+        What all data show of their signals holds for their parts: delays, and that a reading is not taken before the
+        torque steps. How much it lacks each part measures.
+        """
+        search = self._common["search"]
+        stated = {name: value for name, value in self._common.items() if name != "search"}
+        try:
+            prepared = prepare(
+                training,
+                self._joint,
+                model=spec,
+                windows=windows,
+                threads=search.threads,
+                measure=False,
+                instant="sensor_before_step" in whole.settings,
+                **stated,
+            )
+            outcome = run_search(search, prepared.penalty, prepared.domain)
+        except InputError as error:
+            raise error.at(f"model '{text_of(spec)}'{where}") from error
+        self._step(spec)
+        return prepared.fitted(search, outcome)
+
+    def scores(
+        self, spec: Model, splits: Sequence[Fold], windows: Windows, whole: Estimate
+    ) -> list[float]:
+        """Return the relative residual of each fold's held-out part, fitted to the others.
+
+        Parameters
+        ----------
+        splits : sequence of Fold
+        windows : WindowOptions
+            The same for all models.
+        whole : Estimate
+            Of the model, from all data.
+
+        Raises
+        ------
+        InputError
+            A fold cannot be fitted or judged.
+        """
+        # A drift that all data show is looked for in their parts, too.
+        inferred = not spec.named or any(key.endswith("_removed") for key in whole.settings)
+        found = []
+        predictor = TorquePredictor()  # of one recording's blocks, all in the same windows
+        for number, split in enumerate(splits, start=1):
+            where = f", fold {number} of {len(splits)}"
+            fitted = (
+                FittedModel.of(self.fit(spec, split.training, windows, where))
+                if inferred
+                else self._values(spec, split.training, windows, where, whole)
+            )
+            try:
+                found.append(split.residual(fitted, predictor))
+            except InputError as error:
+                raise error.at(f"model '{text_of(spec)}'{where}") from error
+        return found
