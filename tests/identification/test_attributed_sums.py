@@ -10,9 +10,9 @@ from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid import _core
-from jointid.identification.causes.candidates import way_since_reversal
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds
+from jointid.identification.causes.reversals import WaySinceReversal
 from jointid.identification.causes.samples import all_samples
 from jointid.identification.prepared import prepare
 from jointid.identification.search.domain import domain_for
@@ -98,7 +98,7 @@ def test_sums_of_some_samples_at_a_time_are_those_of_all(
     domain = domain_for(penalty, joint, None, problem.peak_speed)
     best = 0.5 * (domain.lower + domain.upper)
     fit = Fitted.of(problem, penalty, best, (0,))
-    monkeypatch.setattr("jointid.identification.causes.samples._AT_A_TIME", many)
+    monkeypatch.setattr("jointid.identification.causes.samples.AT_A_TIME", many)
     for of_each, of_all in (
         (fit.integral_of_each, fit.integral),
         (fit.rise_of_each, fit.rise),
@@ -118,7 +118,7 @@ def test_sums_of_some_samples_at_a_time_are_those_of_all(
 def test_the_way_since_a_reversal_is_counted_across_parts(
     monkeypatch: pytest.MonkeyPatch, many: int
 ) -> None:
-    monkeypatch.setattr("jointid.identification.causes.samples._AT_A_TIME", many)
+    monkeypatch.setattr("jointid.identification.causes.samples.AT_A_TIME", many)
     velocity = np.array([0.0, 1.0, 2.0, 1.0, -1.0, -2.0, 0.0, 0.0, -1.0, -1.0, 1.0, 1.0, 1.0])
     run = jid.Recording(
         time=0.1 * np.arange(13.0),
@@ -127,4 +127,7 @@ def test_the_way_since_a_reversal_is_counted_across_parts(
         torque=velocity,
     )
     expected = [0.0, 1.0, 3.0, 5.0, 0.0, 2.0, 0.0, 0.0, 1.0, 2.0, 0.0, 1.0, 3.0]
-    np.testing.assert_array_equal(way_since_reversal(run), expected)
+    np.testing.assert_array_equal(WaySinceReversal(run).of(slice(0, 13)), expected)
+    asked = WaySinceReversal(run)
+    for begin, end in ((5, 9), (0, 3), (2, 13), (12, 13), (6, 7)):  # in any order
+        np.testing.assert_array_equal(asked.of(slice(begin, end)), expected[begin:end])

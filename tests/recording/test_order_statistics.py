@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from jointid.recording.order_statistics import distinct, median, quantile
+from jointid.recording.order_statistics import (
+    distinct,
+    median,
+    quantile,
+    quantile_of_sizes,
+)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 7, 8, 100, 1001, 12_000])
@@ -18,6 +23,9 @@ def test_the_bits_are_those_of_numpy(count: int) -> None:
         assert median(values) == np.median(values)
         for share in (0.0, 0.1, 0.25, 0.5, 0.9, 0.95, 0.975, 1.0, float(draws.uniform())):
             assert quantile(values, share) == np.quantile(values, share)
+            before = np.array(values)
+            assert quantile_of_sizes(values, share) == np.quantile(np.abs(values), share)
+            np.testing.assert_array_equal(values, before)  # only a copy is put into order
 
 
 def test_what_is_no_number_is_kept() -> None:

@@ -122,6 +122,7 @@ def infer(
     unknown = 1.0 if instant is None else instant.unknown
     counted = admissible_shifts(penalty, shifts)
     parts = systematic_errors(kept, len(best), triangle, lacking, counted, unknown)
+    del lacking
     lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
     if any(lags.values()):
         from jointid.identification.inference.lag import of_lags
@@ -131,6 +132,7 @@ def infer(
     effect = velocity_systematic(
         problem, penalty, best, domain.lower, domain.upper, counted, kept, segments
     )
+    del motion, segments
     if effect is not None:
         parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
     own_noise = own_systematic(problem, penalty, best, domain.lower, domain.upper, counted)

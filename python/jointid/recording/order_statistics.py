@@ -46,11 +46,33 @@ def quantile(values: ArrayLike, share: float) -> float:
     float
         NaN if there is a NaN.
     """
-    flat = np.asarray(values, dtype=np.float64).ravel()
-    place = (len(flat) - 1) * share
-    low = min(int(place), len(flat) - 1)
-    high = min(low + 1, len(flat) - 1)
-    parted = np.partition(flat, (low, high, len(flat) - 1))
+    return _quantile(np.array(values, dtype=np.float64).ravel(), share)
+
+
+def quantile_of_sizes(values: ArrayLike, share: float) -> float:
+    """Return the number below which a share of the magnitudes of an array are; it needs one copy of the array.
+
+    Parameters
+    ----------
+    values : array_like
+        Any shape; at least one number.
+    share : float
+        As of `quantile`.
+
+    Returns
+    -------
+    float
+        NaN if there is a NaN.
+    """
+    return _quantile(np.abs(np.asarray(values, dtype=np.float64)).ravel(), share)
+
+
+def _quantile(parted: NDArray[np.float64], share: float) -> float:
+    """The quantile of an array that is put into another order."""
+    place = (len(parted) - 1) * share
+    low = min(int(place), len(parted) - 1)
+    high = min(low + 1, len(parted) - 1)
+    parted.partition((low, high, len(parted) - 1))  # NaN come last
     if np.isnan(parted[-1]):
         return float("nan")
     below, above, part = float(parted[low]), float(parted[high]), place - low

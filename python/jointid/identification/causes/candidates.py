@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.reversals import WaySinceReversal
 from jointid.identification.causes.samples import Samples, all_samples
-from jointid.recording.order_statistics import quantile
+from jointid.recording.order_statistics import quantile_of_sizes
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -137,10 +138,10 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
             np.exp(-np.abs(run.velocity)[:, None] / speeds) * np.sign(run.velocity)[:, None]
         )
     )
-    gone = [way_since_reversal(run) for run in fit.problem.recordings]
+    ways_gone = [WaySinceReversal(run) for run in fit.problem.recordings]
     since = fit.integral_of_each(
         lambda number, run: (
-            np.exp(-gone[number][run.cut, None] / ways) * np.sign(run.velocity)[:, None]
+            np.exp(-ways_gone[number].of(run.cut)[:, None] / ways) * np.sign(run.velocity)[:, None]
         )
     )
     family = "slow_motion"
@@ -329,32 +330,9 @@ def _angle(fit: Fitted, order: float) -> Array:
 
 
 def _typical_speed(fit: Fitted) -> float:
-    return max(quantile(np.abs(run.velocity), 0.9) for run in fit.problem.recordings)
+    return max(quantile_of_sizes(run.velocity, 0.9) for run in fit.problem.recordings)
 
 
 def _present(signal: Array | None) -> Array:
     assert signal is not None
     return signal
-
-
-def way_since_reversal(run: Recording) -> Array:
-    """Way since the last change of direction.
-
-    A stop between two directions is a reversal, too, and so is one between two of the same.
-    """
-    gone = np.empty(len(run))
-    way = reached = 0.0
-    for part in all_samples(run):
-        begin, end = part.cut.start, part.cut.stop
-        first = max(begin - 1, 0)  # the sample before, for the step to the first one
-        turned = np.sign(run.velocity[first:end])
-        steps = np.abs(np.diff(run.position[first:end]))
-        ways = np.cumsum(np.concatenate([[way], steps]))
-        change = turned == 0.0
-        change[1:] |= turned[1:] * turned[:-1] < 0.0
-        change[0] |= begin == 0
-        # Ways grow: the largest of those at a change is that of the last change.
-        last = np.maximum.accumulate(np.where(change, ways, reached))
-        gone[begin:end] = (ways - last)[begin - first :]
-        way, reached = float(ways[-1]), float(last[-1])
-    return gone

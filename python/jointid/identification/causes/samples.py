@@ -13,7 +13,7 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 # Samples at a time: their arrays stay in the processor's cache, and Ctrl-C is answered between two parts.
-_AT_A_TIME = 1 << 15
+AT_A_TIME = 1 << 15
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,8 +46,8 @@ class Samples:
 
 def all_samples(recording: Recording) -> Iterator[Samples]:
     """Yield all samples of a recording, so many at a time."""
-    for first in range(0, len(recording), _AT_A_TIME):
-        yield Samples.of(recording, slice(first, min(len(recording), first + _AT_A_TIME)))
+    for first in range(0, len(recording), AT_A_TIME):
+        yield Samples.of(recording, slice(first, min(len(recording), first + AT_A_TIME)))
 
 
 def window_blocks(bounds: NDArray[np.int64]) -> Iterator[tuple[slice, slice]]:
@@ -61,7 +61,7 @@ def window_blocks(bounds: NDArray[np.int64]) -> Iterator[tuple[slice, slice]]:
     begin = 0
     while begin < len(bounds):
         first = int(bounds[begin, 0])
-        end = int(np.searchsorted(bounds[:, 1], first + _AT_A_TIME, side="right"))
+        end = int(np.searchsorted(bounds[:, 1], first + AT_A_TIME, side="right"))
         end = max(end, begin + 1)  # one window may be longer
         yield slice(begin, end), slice(first, int(bounds[end - 1, 1]) + 1)
         begin = end

@@ -10,7 +10,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.warnings.evidence import Evidence
 from jointid.joint.joint import Joint
-from jointid.recording.order_statistics import quantile
+from jointid.recording.order_statistics import quantile, quantile_of_sizes
 
 DESIGNED = "; `estimate.next_motion` (`jointid design --after`) designs it, and the finding has the arguments"
 """What the list of findings says of such advice."""
@@ -53,7 +53,7 @@ def other_motion(
         high = max(float(run.position.max()) for run in runs)
         limits["position"] = ... if wider else [_short(low), _short(high)]
     if stated.velocity is None:
-        peak = max(quantile(np.abs(run.velocity), _PEAK) for run in runs)
+        peak = max(quantile_of_sizes(run.velocity, _PEAK) for run in runs)
         limits["velocity"] = ... if faster or wider else _short(peak)
     by_current = None not in (stated.current, (joint or Joint()).torque_constant)
     if gentler or not (by_current or stated.torque is not None):

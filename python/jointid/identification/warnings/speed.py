@@ -12,7 +12,7 @@ from jointid.identification.warnings.check import Check
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import MISMATCH
-from jointid.recording.order_statistics import quantile
+from jointid.recording.order_statistics import quantile_of_sizes
 from jointid.recording.plausibility import slow_stamps
 from jointid.recording.recording import Recording
 
@@ -34,7 +34,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         ):
             continue  # what contradicts itself has no speed, and that is reported already
         if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is not a speed
-            peak = quantile(np.abs(recording.velocity), 0.99)
+            peak = quantile_of_sizes(recording.velocity, 0.99)
         swing = inspected.found.swing
         travel = abs(float(recording.position[-1] - recording.position[0]))
         if gear > 1.0 and peak * gear > _MOTOR_SPEED:
