@@ -142,6 +142,9 @@ CHECK_CASE("terms: a general decay with the exponent 2 is the Gaussian one") {
     const Eigen::VectorXd near =
         identify::friction_basis(general, velocity, Eigen::Vector2d(0.7, 2.0 + 1e-12));
     CHECK_WITH((near - found).cwiseAbs().maxCoeff() < 1e-11, side);
+    const Eigen::VectorXd slow = identify::friction_basis(general, Eigen::Vector3d(-1.0, 0.0, 1.0),
+                                                          Eigen::Vector2d(1e-160, 2.0));
+    CHECK_WITH(slow.isZero(0.0), side);
   }
 }
 

@@ -113,6 +113,7 @@ def test_one_for_the_other(run: jid.Recording, estimate: jid.Estimate) -> None:
         lambda: jid.plot.sweep(wrong),
         lambda: estimate.predict(swapped),
         lambda: jid.compare_models(run, JOINT, models=5),  # type: ignore[call-overload]
+        lambda: jid.compare_models(run, "joint.toml"),  # type: ignore[call-overload]
         lambda: jid.Estimate.from_json(5),  # type: ignore[arg-type]
     ):
         assert "expected" in message_of(call)

@@ -1,5 +1,6 @@
 """`compare_models` prefers the model that predicts held-out motion, and the simpler one when it makes no difference."""
 
+import html
 import io
 import json
 from collections.abc import Callable
@@ -18,8 +19,11 @@ from jointid.comparison.held_out import folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import judge
 from jointid.comparison.result import ComparedModel
 from jointid.estimate.causes import Causes
+from jointid.identification import identification
 from jointid.identification.causes import causes
+from jointid.identification.search.run import run_search
 from jointid.problem.problem import Problem
+from jointid.report.saving import report_page
 
 
 def simulated(seed: int, *, seconds: float = 10.0, static: float = 0.0) -> jid.Recording:
@@ -399,27 +403,52 @@ def test_a_comparison_as_a_data_frame(comparison: jid.Comparison) -> None:
     assert bool(frame.loc[comparison.winner, "eligible"])
 
 
-@pytest.mark.parametrize("models", [("coulomb_viscous",), ("coulomb_viscous", "stribeck")])
+@pytest.mark.parametrize(
+    ("models", "winner", "misfits"),
+    [
+        (("coulomb_viscous",), "coulomb_viscous", True),
+        (("coulomb_viscous:asymmetric", "coulomb_viscous"), "coulomb_viscous", True),
+        (("coulomb_viscous", "stribeck"), "stribeck", False),  # the truth
+    ],
+)
+@pytest.mark.parametrize("windows", [None, 0.05])
 def test_causes_are_looked_for_of_the_winner_alone(
-    models: tuple[str, ...], well_excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+    models: tuple[str, ...],
+    winner: str,
+    misfits: bool,
+    windows: float | None,
+    well_excited: jid.Recording,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    asked = []
+    asked, searched = [], []
     find = causes.find_causes
 
     def found(problem: Problem, *arguments: Any, **options: Any) -> Causes:
-        asked.append(problem.choice.model.name)
+        model = problem.choice.model.resolved
+        asked.append((model.name, model.asymmetric))
         return find(problem, *arguments, **options)
 
+    def minimum(*arguments: Any) -> Any:
+        searched.append(arguments)
+        return run_search(*arguments)
+
     monkeypatch.setattr(causes, "find_causes", found)
-    compared = jid.compare_models(well_excited, jid.thesis_joint(), models=models)
-    winner = compared.winner
-    assert winner == models[-1]
-    # Stribeck friction is the truth: it leaves nothing to explain.
-    assert asked == (["coulomb_viscous"] if winner == "coulomb_viscous" else [])
-    spec = row(compared, winner).spec
-    alone = jid.identify(well_excited, jid.thesis_joint(), model=spec, search="separable")
+    monkeypatch.setattr(identification, "run_search", minimum)
+    joint = jid.thesis_joint()
+    compared = jid.compare_models(well_excited, joint, models=models, windows=windows)
+    assert compared.winner == winner
+    best = row(compared, winner)
+    assert asked == ([(winner, False)] if misfits else [])
+    assert len(searched) == len(models)  # a search whose callback stops it is not done again
+    duration = compared.settings["windows"]
+    alone = jid.identify(well_excited, joint, model=best.spec, search="separable", windows=duration)
+    assert best.penalty == compared.estimate.penalty == alone.penalty
     assert compared.estimate.findings == alone.findings
     assert compared.estimate.parameters == alone.parameters
+    for finding in alone.warnings:
+        assert f"{finding.severity} ({finding.code}): {finding.cause}" in compared.report()
+    for line in alone.verdict.lines():
+        assert line in compared.report()
 
 
 def test_a_comparison_of_useless_values_says_so(well_excited: jid.Recording) -> None:
@@ -434,6 +463,9 @@ def test_a_comparison_of_useless_values_says_so(well_excited: jid.Recording) -> 
     )
     blocking = [found for found in comparison.estimate.findings if found.severity == "blocking"]
     assert "implausible_units" in {found.code for found in blocking}
-    last = comparison.report().splitlines()[-len(blocking) :]
-    assert last == [f"not usable ({found.code}): {found.cause}" for found in blocking]
+    lines = comparison.report().splitlines()
+    for found in blocking:
+        assert f"not usable ({found.code}): {found.cause}" in lines
+    first = f"Use none: {blocking[0].cause}."
+    assert first in html.unescape(report_page(comparison)).partition("<h2")[0]
     assert "not usable (implausible_units)" in comparison._repr_html_()

@@ -59,6 +59,9 @@ def test_models_are_compared_without_a_drift(found: list[jid.Estimate]) -> None:
         models = ("coulomb_viscous", "stribeck")
         compared = jid.compare_models(source.given, joint, models=models)
         assert compared.winner == "stribeck"
+        for row in compared.rows:
+            alone = jid.identify(source.given, joint, model=row.spec, search="separable")
+            assert row.penalty == alone.penalty
         assert compared.estimate.findings == estimate.findings
         assert compared.estimate.settings.get("drift_removed") == removed
 

@@ -157,13 +157,18 @@ def test_stamps_in_milliseconds_are_told(well: jid.Recording) -> None:
     assert dict(finding.advice[0].arguments) == {"units": {"time": "ms"}}
 
 
-def test_counts_of_an_encoder_are_told(well: jid.Recording) -> None:
-    counts = np.rint(well.position * 4096 / (2.0 * np.pi))
-    wrong = jid.Recording(time=well.time, position=counts, torque=well.torque)
+@pytest.mark.parametrize("recorded", [False, True])
+def test_counts_of_an_encoder_are_told(well: jid.Recording, recorded: bool) -> None:
+    turn = 4096 / (2.0 * np.pi)
+    counts = np.rint(well.position * turn)
+    velocity = well.velocity * turn if recorded else None
+    wrong = jid.Recording(time=well.time, position=counts, velocity=velocity, torque=well.torque)
     estimate = jid.identify(wrong, model="coulomb_viscous", search="separable")
     finding = next(each for each in estimate.findings if each.code == "implausible_units")
     assert "in counts of the encoder" in finding.cause
-    assert {"scale": {"position": ...}} in [dict(each.arguments) for each in finding.advice]
+    scaled = ("position", "velocity") if recorded else ("position",)
+    advised = [dict(each.arguments) for each in finding.advice]
+    assert {"scale": dict.fromkeys(scaled, ...)} in advised
 
 
 def test_one_wild_sample_is_told_as_one(well: jid.Recording) -> None:

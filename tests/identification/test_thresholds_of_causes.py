@@ -188,3 +188,20 @@ def test_values_that_cannot_be_used_are_not_fitted_again(
     first, second = diagnosis.diagnose(_Given())  # type: ignore[arg-type]
     assert first.advice == advice
     assert len(second.advice) == kept
+
+
+@pytest.mark.parametrize(
+    ("ratio", "signal", "said"),
+    [
+        *((1.0, "current", True), (1.0, "motor_torque", True), (1.0, "torque", False)),
+        *((50.0, "current", False), (-1.0, "motor_torque", False), (None, "current", False)),
+    ],
+)
+def test_a_torque_of_the_motor_without_a_gear_is_told(
+    ratio: float | None, signal: str, said: bool
+) -> None:
+    time = np.arange(200) * 1e-3
+    run = jid.Recording(time=time, position=np.sin(time), **{signal: np.cos(time)})
+    joint = None if ratio is None else jid.Joint(gear_ratio=ratio, torque_constant=0.1)
+    findings = found("motor_side", evidence(recordings=(run,), joint=joint))
+    assert [each.severity for each in findings] == ["info"] * said

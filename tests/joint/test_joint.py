@@ -525,8 +525,8 @@ BAD = [
         "[drive]: rotor_inertia is 1e+300: gear_ratio² · rotor_inertia is inf kg·m², which cannot",
     ),
     ("[drive]\ntorque_hold = 'zero'", "[drive]: torque_hold is 'zero': it is unknown; known are"),
-    ("[model]\nfriction = 'stribek'", "[model]: friction is 'stribek': it is unknown; did you"),
-    ("[model]\nfriction = 'xyz'", "[model]: friction is 'xyz': it is unknown; known are coulomb"),
+    ("[model]\nfriction = 'stribek'", "[model]: name is 'stribek': it is unknown; did you"),
+    ("[model]\nfriction = 'xyz'", "[model]: name is 'xyz': it is unknown; known are coulomb"),
     ("[model]\ngravity = 'known'", "[model]: gravity is 'known': there is no link"),
     ("[model]\ngravity = true", "[model]: gravity is True: it is unknown; known are none, known"),
     (

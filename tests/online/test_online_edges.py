@@ -111,7 +111,7 @@ with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
 @pytest.mark.parametrize(
     ("changes", "wording"),
     [
-        ({"model": "foo"}, "model is 'foo': it is unknown"),
+        ({"model": "foo"}, "name is 'foo': it is unknown"),
         ({"residual": "foo"}, "residual is 'foo': it is unknown"),
         ({"model": {"ripple": "x"}}, "ripple is 'x'"),
         ({"model": {"load_friction": "yes"}}, "load_friction is 'yes'"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.problem.recordings import listed
 
 TIME = np.arange(0.0, 2.0, 0.002)
 MOTION: dict[str, Any] = {"time": TIME, "position": np.sin(7.0 * TIME)}
@@ -61,6 +62,8 @@ def test_a_recording_is_not_counted_twice() -> None:
     first, second = RECORDING[:1.0], RECORDING[1.0:]
     error = refused([first, second, RECORDING[1.0:]])
     assert (error.place, error.reason[:26]) == ("recording 2", "it is recording 1 once more"[:26])
+    for other in ({"torque_hold": "zoh"}, {"extra": {"q6_rate": np.cos(TIME)}}):
+        listed([RECORDING, jid.Recording(**MOTION, torque=RECORDING.torque, **other)])
 
 
 def test_one_of_several_is_no_recording() -> None:

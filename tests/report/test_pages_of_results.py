@@ -164,7 +164,9 @@ def test_a_page_is_written_whole(tmp_path: Path) -> None:
 
 def test_a_page_is_no_pdf(tmp_path: Path) -> None:
     design = designed()
-    with pytest.raises(jid.InputError, match=r"a report is an HTML page \(\.html\)"):
+    with pytest.raises(
+        jid.InputError, match=r"path is .*page\.pdf.: a report is an HTML page \(\.html\)"
+    ):
         save_report(design, tmp_path / "page.pdf")
     assert not list(tmp_path.iterdir())
 

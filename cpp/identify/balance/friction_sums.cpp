@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -124,7 +125,8 @@ bool is_gaussian(const Term& term, const double* shapes) {
 }
 
 double gaussian_rate(const double* shapes) {
-  return 1.0 / (shapes[0] * shapes[0]);
+  const double rate = 1.0 / (shapes[0] * shapes[0]);
+  return std::min(rate, std::numeric_limits<double>::max());  // times the speed 0 it is 0
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import PurePath
 from typing import Any
 
 from jointid.base.advice import Action
@@ -113,7 +114,9 @@ class InputError(ValueError):
 
 
 def shown(value: object) -> str:
-    """Return a value for a message: a short plain one as Python writes it, of others their type."""
+    """Return a value for a message: a short plain one as Python writes it, a path whole, of others their type."""
+    if isinstance(value, PurePath):
+        return repr(str(value))
     if value is None or isinstance(value, str | bool | int | float | list | tuple | dict):
         try:
             text = repr(value)

@@ -10,12 +10,13 @@ import numpy as np
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.comparison.contenders import compared_models, default_models, shown_gravity, text_of
-from jointid.comparison.fitter import ComparisonStep, Fitter
+from jointid.comparison.fitter import ComparisonStep, Fitter, with_causes
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_of
+from jointid.identification.prepared import require_joint
 from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
@@ -147,6 +148,7 @@ def compare_models(
     if score != "windows":
         raise InputError("windows or rollout is expected", argument="score", value=score)
     runs = listed(recordings)
+    require_joint(joint)
     specs = compared_models(models) if models is not None else default_models()
     if models is None:
         gravity = shown_gravity(
@@ -182,11 +184,10 @@ def compare_models(
         callback=callback,
     )
     whole: dict[Model, Estimate] = {}
-    options = dict.fromkeys(specs, fitter.options(windows))
     left_out: dict[str, str] = {}
     for spec in specs:
         try:
-            whole[spec] = fitter.fit(spec, runs, windows)
+            whole[spec] = fitter.fit(spec, runs, windows, attribute=len(specs) == 1)
         except InputError as error:
             if models is not None or spec == specs[0]:
                 raise
@@ -203,7 +204,7 @@ def compare_models(
     for spec, estimate in whole.items():
         if not np.isclose(estimate.settings["windows"], duration, rtol=1e-9, atol=0.0):
             fitter.total += 1
-            whole[spec], options[spec] = fitter.fit(spec, runs, cut), fitter.options(cut)
+            whole[spec] = fitter.fit(spec, runs, cut)
     first = next(iter(whole.values()))
     splits = (
         folds_by_block(runs[0], first.windows, parts)
@@ -215,13 +216,12 @@ def compare_models(
         for spec, estimate in whole.items()
     ]
     judged, winner, reason = judge(rows)
-    best = judged[winner].spec
     kind = "block" if len(runs) == 1 else "recording" if parts == len(runs) else "recordings"
     return Comparison(
         rows=judged,
         winner=judged[winner].model,
         reason=reason,
-        estimate=fitter.with_causes(best, whole[best], runs, options[best]),
+        estimate=with_causes(whole[judged[winner].spec]),
         settings={
             "folds": parts,
             "held_out": kind,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from jointid.base.errors import InputError
@@ -11,7 +12,7 @@ from jointid.comparison.contenders import text_of
 from jointid.comparison.held_out import Fold
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.prediction import FittedModel, TorquePredictor
-from jointid.identification.conclusion import is_misfit
+from jointid.identification.follow_up import EstimateSource
 from jointid.identification.identification import identified
 from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
@@ -38,6 +39,19 @@ class ComparisonStep:
     model: str
 
 
+def with_causes(estimate: Estimate) -> Estimate:
+    """Return an estimate of `Fitter.fit` with the causes of its misfit, which take as long as the fit.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    """
+    source = estimate.follow_up
+    if not isinstance(source, EstimateSource) or source.attributed is None:
+        return estimate
+    return replace(source.attributed(), seconds=estimate.seconds)
+
+
 class Fitter:
     """Fits models to parts of the data, names the model in errors, and reports progress to the callback."""
 
@@ -58,9 +72,21 @@ class Fitter:
         self._common = {**self._common, "shift": delays}
 
     def fit(
-        self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
+        self,
+        spec: Model,
+        training: Sequence[Recording],
+        windows: Windows,
+        where: str = "",
+        attribute: bool = False,
     ) -> Estimate:
-        """Return the estimate of a model without the causes of its misfit.
+        """Return the estimate of a model.
+
+        Parameters
+        ----------
+        where : str
+            Which part of the data, for the error. Default: all.
+        attribute : bool
+            Whether the causes of its misfit are looked for; see `with_causes`. Default False.
 
         Raises
         ------
@@ -68,47 +94,13 @@ class Fitter:
             As `identify` says it, with the model's name and `where`.
         """
         try:
-            estimate = self._identified(spec, training, self.options(windows))
+            options = {**self._common, "windows": windows}
+            search = options.pop("search")
+            estimate = identified(training, self._joint, spec, search, options, attribute=attribute)
         except InputError as error:
             raise error.at(f"model '{text_of(spec)}'{where}") from error
         self._step(spec)
         return estimate
-
-    def options(self, windows: Windows) -> dict[str, Any]:
-        """Arguments of a fit now."""
-        return {**self._common, "windows": windows}
-
-    def _identified(
-        self,
-        spec: Model,
-        training: Sequence[Recording],
-        options: Mapping[str, Any],
-        attribute: bool = False,
-    ) -> Estimate:
-        others = {name: value for name, value in options.items() if name != "search"}
-        return identified(
-            training, self._joint, spec, options["search"], others, attribute=attribute
-        )
-
-    def with_causes(
-        self,
-        spec: Model,
-        estimate: Estimate,
-        runs: Sequence[Recording],
-        options: Mapping[str, Any],
-    ) -> Estimate:
-        """Return the estimate of a fit with the causes of its misfit: to find them takes as long as the fit itself.
-
-        Parameters
-        ----------
-        estimate : Estimate
-            Without them.
-        options : mapping of str to object
-            What `options` was when it was fitted.
-        """
-        if not is_misfit(estimate.windows, estimate.residuals):
-            return estimate
-        return self._identified(spec, runs, options, attribute=True)
 
     def _step(self, spec: Model) -> None:
         self._done += 1

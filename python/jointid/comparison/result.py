@@ -113,9 +113,7 @@ class Comparison:
             f"not compared: {model}: {reason}"
             for model, reason in self.settings["left_out"].items()
         ]
-        return printable(
-            "\n".join([*lines, f"winner: {self.winner}", self.reason, *self._blocking()])
-        )
+        return printable("\n".join([*lines, f"winner: {self.winner}", self.reason, *self._said()]))
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -129,7 +127,7 @@ class Comparison:
         table = (
             f"<table class='jointid'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         )
-        said = (self.setting(), self.reason, *self._blocking())
+        said = (self.setting(), self.reason, *self._said())
         text = "".join(f"<p>{escape(each)}</p>" for each in said)
         return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{text}</div>"
 
@@ -167,12 +165,14 @@ class Comparison:
         }
         return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
-    def _blocking(self) -> list[str]:
-        """What makes the winner's values useless, and with them the comparison, a sentence each."""
+    def _said(self) -> list[str]:
+        """What to know of the winner's values, a line each: whether they are usable, and its warnings."""
         return [
-            f"not usable ({found.code}): {found.cause}"
-            for found in self.estimate.findings
-            if found.severity == "blocking"
+            *self.estimate.verdict.lines(),
+            *(
+                f"{'not usable' if found.severity == 'blocking' else found.severity} ({found.code}): {found.cause}"
+                for found in self.estimate.warnings
+            ),
         ]
 
     def _title(self) -> str:

@@ -16,7 +16,6 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence, ResidualStatistics
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
-from jointid.identification.drift import may_drift
 from jointid.identification.inference.covariance import Triangle, parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
@@ -85,8 +84,7 @@ def infer(
     known : tuple of Cause
         Causes that were taken away from the data before.
     attribute : bool
-        Whether the causes of a misfit are looked for; else they are only where one may be a drift, which is
-        taken away. Default True.
+        Whether the causes of a misfit are looked for. Default True.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -162,7 +160,7 @@ def infer(
     noise = not structured and testable(run) and not penalty.cumulative
     # A misfit of a gain whose sign is a guess is not the model's.
     sought = structured and not domain.guessed_sign and not (penalty.cumulative or not free)
-    if sought and (attribute or may_drift(problem, penalty, parameters)):
+    if sought and attribute:
         from jointid.identification.causes.causes import find_causes
 
         causes = find_causes(

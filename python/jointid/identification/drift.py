@@ -99,6 +99,7 @@ def without_drift(
         relative=relative,
         shares={name: share for name, share in cause.shares.items() if name in moved},
     )
+    removed = replace(removed, effect=f"that changed {removed.moves}")
     return replace(problem, recordings=tuple(steady)), removed
 
 

@@ -41,6 +41,8 @@ class EstimateSource:
     search : Search
     again : callable
         Returns the estimate from other recordings, with the same settings.
+    attributed : callable or None
+        Returns the same estimate with the causes of its misfit; None where they were looked for.
     """
 
     problem: Problem
@@ -50,6 +52,7 @@ class EstimateSource:
     windows: Windows
     search: Search
     again: Callable[[tuple[Recording, ...]], Estimate]
+    attributed: Callable[[], Estimate] | None = None
 
     def selftest(self, estimate: Estimate, trials: int, seed: int) -> SelfTest:
         """Inject known parameters into the recorded motion, and identify them again."""

@@ -21,8 +21,8 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.prediction import FittedModel
 from jointid.estimate.selection import Selection
 from jointid.identification.chosen_model import chosen_without_delays
-from jointid.identification.conclusion import infer
-from jointid.identification.drift import without_drift
+from jointid.identification.conclusion import infer, is_misfit
+from jointid.identification.drift import may_drift, without_drift
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
@@ -100,9 +100,13 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         attribute : bool
-            Whether the causes of a misfit are looked for. Default True.
+            Whether the causes of a misfit are looked for. Where they are not, the estimate's source finds them
+            later; but where a drift may have to be taken away they are looked for in any case. Default True.
         """
-        estimate = self._inferred(search, outcome, started, attribute=attribute)
+        estimate = self._inferred(search, outcome, started, attribute)
+        left = not attribute and is_misfit(estimate.windows, estimate.residuals)
+        if left and may_drift(self.problem, self.penalty, estimate.parameters):
+            return self.estimate(search, outcome, started)
         steady = without_drift(self.problem, self.penalty, estimate)
         fitted = self
         known: tuple[Cause, ...] = ()
@@ -111,7 +115,7 @@ class Prepared:
             penalty = penalty_as_fitted(problem, self.windows, self.domain)
             other = replace(self, problem=problem, penalty=penalty)
             found = run_search(search, other.penalty, other.domain)
-            again = other._inferred(search, found, started, (drift,), attribute)
+            again = other._inferred(search, found, started, known=(drift,))
             if again.residuals.rms < _STEADIER * estimate.residuals.rms:
                 estimate, fitted, known = again, other, (drift,)
         source = EstimateSource(
@@ -122,6 +126,7 @@ class Prepared:
             windows=self.windows,
             search=search,
             again=functools.partial(self._again, search),
+            attributed=functools.partial(self.estimate, search, outcome, started) if left else None,
         )
         return replace(estimate, follow_up=source, selection=self.selection)
 
@@ -143,8 +148,8 @@ class Prepared:
         search: Search,
         outcome: Outcome,
         started: float,
-        known: tuple[Cause, ...] = (),
         attribute: bool = True,
+        known: tuple[Cause, ...] = (),
     ) -> Estimate:
         """Return the estimate at one minimum; `known` are causes that were taken away before it."""
         domain = self.domain

@@ -176,8 +176,6 @@ def _model(table: dict[str, Any], source: str) -> dict[str, Any]:
     try:
         return arguments | {"model": Model.of(table)}
     except InputError as error:
-        if error.argument == "model":  # its name has a key here
-            error.argument = "name" if name is None else _NAME
         _refuse(source, "model", error)
 
 

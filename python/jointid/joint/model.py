@@ -93,7 +93,7 @@ class Model:
 
     def __post_init__(self) -> None:
         if self.name is not None:
-            check_choice("", "model", self.name, (*_core.model_names(), AUTO))
+            check_choice("", "name", self.name, (*_core.model_names(), AUTO))
         if self.gravity is not None:
             check_choice("", "gravity", self.gravity, get_args(Gravity))
         if self.asymmetric is not None:

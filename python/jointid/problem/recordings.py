@@ -59,6 +59,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
     runs = tuple(recordings)
     if not runs:
         raise InputError("at least one recording is expected", argument="recordings", value=[])
+    known: dict[object, list[int]] = {}  # recordings by the ranges of their signals
     for number, run in enumerate(runs):
         place = f"recording {number}"
         if not isinstance(run, Recording):
@@ -97,25 +98,27 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
                 remedy="identify them separately",
             )
         _check_magnitudes(run, place)
-        for earlier in range(number):
+        alike = known.setdefault(tuple(run.ranges.items()), [])
+        for earlier in alike:
             if _same(runs[earlier], run):
                 raise InputError(
                     f"it is recording {earlier} once more, whose noise would count as that of two",
-                    argument="recordings",
                     place=place,
                     remedy="give each recording once",
                 )
+        alike.append(number)
     return runs
 
 
 def _same(one: Recording, other: Recording) -> bool:
-    """Whether all signals are the same, whatever the file is called."""
+    """Whether two recordings of the same signals have the same values, whatever they are called."""
     if one is other:
         return True
-    # The ranges are known: arrays are compared only of what looks the same.
-    return one.ranges == other.ranges and all(
+    if one.extra.keys() != other.extra.keys() or one.torque_hold != other.torque_hold:
+        return False
+    return all(
         np.array_equal(getattr(one, name), getattr(other, name)) for name in one.ranges
-    )
+    ) and all(np.array_equal(one.extra[name], other.extra[name]) for name in one.extra)
 
 
 def _check_magnitudes(run: Recording, place: str) -> None:

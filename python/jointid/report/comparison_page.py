@@ -31,7 +31,7 @@ def comparison_report(comparison: Comparison, action: Callable[[Action], str] = 
         title,
         STYLE,
         element("h1", title),
-        answer(f"Use {comparison.winner}."),
+        answer(_first(comparison)),
         element("p", comparison.reason),
         element("h2", "How well each model predicts", id="models"),
         _picture(comparison),
@@ -43,6 +43,11 @@ def comparison_report(comparison: Comparison, action: Callable[[Action], str] = 
         *sections(estimate, action),
         footer(estimate),
     )
+
+
+def _first(comparison: Comparison) -> str:
+    blocking = [each for each in comparison.estimate.findings if each.severity == "blocking"]
+    return f"Use {comparison.winner}." if not blocking else f"Use none: {blocking[0].cause}."
 
 
 def _picture(comparison: Comparison) -> Html:

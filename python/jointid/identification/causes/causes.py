@@ -100,8 +100,10 @@ def share_of(
     """
     from jointid.identification.causes.attribution import shares
 
-    fit = _fitted(problem, penalty, parameters, most=_MOST)
-    return 1.0 if fit.group > 1 else max(shares(fit, listed_candidates(fit, name)), default=0.0)
+    if penalty.window_count > _MOST:
+        return 1.0
+    fit = _fitted(problem, penalty, parameters)
+    return max(shares(fit, listed_candidates(fit, name)), default=0.0)
 
 
 def cause_of(

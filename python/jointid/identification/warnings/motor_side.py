@@ -10,18 +10,34 @@ from jointid.identification.warnings.evidence import Evidence
 MOTOR_SIDE = FindingType(
     code="motor_side",
     severity="info",
-    meaning="the columns are the motor's and no gear ratio is known: all values are on the motor's side of the gear",
-    advice="nothing, if that side is meant; else give the gear ratio when loading",
+    meaning="the columns are the motor's and no gear ratio is known: all values are on the motor's side of the gear; "
+    "or the torque is made from the motor's with a gear ratio of 1, which is what a joint has that states none",
+    advice="nothing, if that side is meant, or if the motor has no gear; else give the gear ratio",
 )
+_RATIO = "the motor's angle per angle of the joint"
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if any(recording.metadata.get("side") == "motor" for recording in evidence.recordings):
-        ratio = "the motor's angle per angle of the joint"
         yield MOTOR_SIDE.finding(
             "no gear ratio is known: the values are on the motor's side",
-            Action("call", {"gear_ratio": ...}, ratio, "load"),
+            Action("call", {"gear_ratio": ...}, _RATIO, "load"),
         )
+    elif _without_gear(evidence):
+        yield MOTOR_SIDE.finding(
+            "the torque is made from the motor's with a gear ratio of 1, as without a gear",
+            Action("call", {"gear_ratio": ...}, _RATIO, "Joint"),
+        )
+
+
+def _without_gear(evidence: Evidence) -> bool:
+    joint = evidence.joint
+    if joint is None or joint.gear_ratio != 1.0:
+        return False
+    return any(
+        run.torque is None and (run.motor_torque is not None or run.current is not None)
+        for run in evidence.recordings
+    )
 
 
 CHECK = Check(_find, (MOTOR_SIDE,))

@@ -18,7 +18,6 @@ from jointid.recording.recording import Recording
 
 _MOTOR_SPEED = 2000.0  # [rad/s]: beyond any geared servo motor
 _SWING = 25.0  # [rad] back and forth: four turns
-_OF_COUNTS = Action("call", {"scale": {"position": ...}}, "2π over the counts of a turn", "load")
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -48,14 +47,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         else:
             continue
         signals = ("position",) if recording.velocity_derived else ("position", "velocity")
-        counted = bool(np.all(recording.position == np.rint(recording.position)))
-        units = "in degrees, or in counts of the encoder, as all of them are whole numbers"
+        advice = [degrees_advice(recording, signals)]
+        units = "in degrees"
+        if np.all(recording.position == np.rint(recording.position)):
+            units += ", or in counts of the encoder, as all positions are whole numbers"
+            scale = dict.fromkeys(signals, ...)
+            advice.append(Action("call", {"scale": scale}, "2π over the counts of a turn", "load"))
         yield IMPLAUSIBLE_UNITS.finding(
-            f"{seen}: the positions may be {units}; or the gear ratio is wrong"
-            if counted
-            else f"{seen}: position and velocity may be in degrees, or the gear ratio is wrong",
-            degrees_advice(recording, signals),
-            *([_OF_COUNTS] if counted else []),
+            f"{seen}: position and velocity may be {units}, or the gear ratio is wrong",
+            *advice,
             Action("inspect", text="the gear ratio"),
             evidence=measured,
         )
