@@ -12,8 +12,7 @@ import jointid as jid
 from jointid import _core
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds
-from jointid.identification.causes.reversals import WaySinceReversal
-from jointid.identification.causes.samples import all_samples
+from jointid.identification.causes.samples import WaySinceReversal, all_samples
 from jointid.identification.prepared import prepare
 from jointid.identification.search.domain import domain_for
 

@@ -23,7 +23,7 @@ def require_path(argument: str, value: object) -> Path:
 
 
 def require_page(argument: str, value: object) -> Path:
-    """Return the file name of a page as a path.
+    """Return the file name of a page as a path; what writes it refuses a folder.
 
     Raises
     ------
@@ -31,7 +31,7 @@ def require_page(argument: str, value: object) -> Path:
         It is no file name, or does not end in .html.
     """
     path = require_path(argument, value)
-    if path.suffix.lower() not in (".html", ".htm"):
+    if path.suffix.lower() not in (".html", ".htm") and not path.is_dir():
         raise InputError("a report is an HTML page (.html)", argument=argument, value=path)
     return path
 

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
-from jointid.identification.causes.reversals import WaySinceReversal
-from jointid.identification.causes.samples import Samples, all_samples
+from jointid.identification.causes.samples import Samples, WaySinceReversal, all_samples
 from jointid.recording.order_statistics import quantile_of_sizes
 from jointid.recording.recording import Recording
 
