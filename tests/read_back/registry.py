@@ -333,6 +333,7 @@ OTHERS: dict[str, str] = {
     "cli.session": "a copy of the joint file, which was read before",
     "comparison.result": "an estimate of this run",
     "exports.exporting": "an XML file to edit; tests/exports",
+    "hardware.can.blf_file": "tests/hardware/test_frame_log.py",
     "hardware.can.bus": "of the kernel",
     "hardware.session.realtime": "of the kernel",
     "identification.search.run": "a checkpoint, of bytes: tests/base/test_read_back_bytes.py",

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.recording import unpacking
+from jointid.base import unpacking
 
 _HELD = 800_000_000  # bytes, of nothing but zeros
 _PEAK = 500_000_000  # bytes of the whole program

@@ -1,5 +1,6 @@
 """Faults of logged joint states: signals that come and go, zeros for what nobody measures, two publishers."""
 
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
@@ -64,3 +65,16 @@ def test_noise_dither_and_motion_are_one_publisher() -> None:
     )
     for position in positions:
         assert jump_between_publishers(position) is None
+
+
+def test_a_damaged_length_reserves_no_memory(tmp_path: Path) -> None:
+    path = log(tmp_path, motion(20))
+    jid.load(path, joint="elbow")  # what is imported takes memory, too
+    content = bytearray(path.read_bytes()[:-8])  # without an end it is read from the beginning
+    content[17:21] = (1_000_000_000).to_bytes(4, "little")  # characters of the profile's name
+    path.write_bytes(content)
+    tracemalloc.start()
+    refusal(path, joint="elbow")
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 10_000_000

@@ -18,7 +18,7 @@ from jointid.base.values import dataclass
 
 LARGEST = 500_000_000  # bytes of a file, characters of a text; an estimate of an hour's recording has 20 million
 DEEPEST = 32  # lists and tables inside each other; an estimate has 5
-_CHUNK = 1 << 20  # bytes
+_CHUNK = 1 << 16  # bytes; most files have fewer
 _NOT_FINITE = ("inf", "-inf", "nan")
 
 

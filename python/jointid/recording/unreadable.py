@@ -9,11 +9,11 @@ import numpy as np
 
 from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
+from jointid.base.unpacking import TooLargeError
 from jointid.recording.contents import Contents
 from jointid.recording.damaged_rows import DROP, few
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
-from jointid.recording.unpacking import TooLargeError
 
 
 def read_leniently(

@@ -12,6 +12,8 @@ import can
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.base.unpacking import TooLargeError
+from jointid.hardware.can.blf_file import unpacked
 
 _HIGHEST = 0x7FF  # identifier of 11 bits
 _LONGEST = 64  # bytes: a drive of another make may use long frames
@@ -36,7 +38,7 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     ------
     InputError
         The file cannot be read, or a frame is none that a bus can carry: an identifier above 7FFh, more than 64 bytes,
-        a stamp that is not finite.
+        a stamp that is not finite; or it is much larger when it is unpacked.
     """
     if path.suffix.lower() not in ENDINGS:
         raise InputError(
@@ -59,6 +61,8 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
                 sent.add(message.arbitration_id)
             if not message.is_rx or message.arbitration_id not in sent:
                 yield message.timestamp, message.arbitration_id, bytes(message.data)
+    except TooLargeError as error:  # its remedy is one of `load`, and it names the file
+        raise InputError(error.reason) from None
     except InputError:
         raise
     except FileNotFoundError:
@@ -84,7 +88,9 @@ def _messages(path: Path) -> Iterator[can.Message]:
     if path.suffix.lower() == ".log":
         text = path.read_text(encoding="ascii", errors="replace")
         reader: Any = can.CanutilsLogReader(StringIO(text[: text.rfind("\n") + 1]))
+    elif path.suffix.lower() == ".asc":
+        reader = can.ASCReader(path)
     else:
-        reader = can.LogReader(str(path))
+        reader = can.BLFReader(unpacked(path))
     with reader:
         yield from reader

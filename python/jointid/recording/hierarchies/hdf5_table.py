@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.base.unpacking import Room
 from jointid.recording.headers import parsed
 from jointid.recording.hierarchies.datasets import Vector, values_of, vectors_of
 from jointid.recording.hierarchies.groups import chosen_vectors
 from jointid.recording.signals import FloatArray, signal_array
-from jointid.recording.unpacking import Room
 
 
 class Hdf5Table:

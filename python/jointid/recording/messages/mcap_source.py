@@ -3,21 +3,35 @@
 import struct
 import zlib
 from collections.abc import Collection, Iterator
-from io import BytesIO
+from io import BufferedReader, BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.base.unpacking import Room
 from jointid.recording.messages.definitions import normal_kind
 from jointid.recording.messages.packed import of_lz4, of_zstandard
 from jointid.recording.messages.topic import DamageError, Message, Topic
-from jointid.recording.unpacking import Room
 
 _SCHEMA, _CHANNEL, _MESSAGE = 3, 4, 5  # kinds of record
 _UNPACKING = {"zstd": of_zstandard, "lz4": of_lz4}
 _RECORD = struct.Struct("<BQ")
 _HEADER = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
+_LARGE = 1 << 16  # bytes that may be asked for
+
+
+class _Stream(BufferedReader):
+    """A file of which no more is asked than it holds: memory is reserved for what a damaged length says."""
+
+    def __init__(self, path: Path, size: int) -> None:
+        super().__init__(path.open("rb", buffering=0))
+        self._size = size
+
+    def read(self, size: int | None = -1) -> bytes:
+        if size is not None and size > _LARGE:
+            size = min(size, max(self._size - self.tell(), 0))
+        return super().read(size)
 
 
 class McapSource:
@@ -44,7 +58,7 @@ class McapSource:
         self._schemas: dict[int, Any] = {}
         self._counts: dict[int, int] | None = None
         self._chunks: list[Any] = []
-        with path.open("rb") as stream:
+        with _Stream(path, self._size) as stream:
             self._open(stream)
         self.topics = self._topics()
 
@@ -56,7 +70,7 @@ class McapSource:
             if self._name(channel) == _key(topic)
         }
         self._room.again()
-        with self._path.open("rb") as stream:
+        with _Stream(self._path, self._size) as stream:
             if self._chunks:
                 yield from self._from_chunks(stream, wanted)
             else:

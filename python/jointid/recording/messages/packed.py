@@ -1,6 +1,6 @@
 """What robots' logs pack with Zstandard and LZ4, as far as the file has room for it."""
 
-from jointid.recording.unpacking import Room
+from jointid.base.unpacking import Room
 
 _PART = 1 << 20  # bytes
 _WINDOW = 1 << 27  # bytes that Zstandard looks back at most

@@ -7,10 +7,10 @@ from typing import BinaryIO
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.base.unpacking import Room
 from jointid.recording.messages.definitions import normal_kind
 from jointid.recording.messages.packed import of_lz4
 from jointid.recording.messages.topic import DamageError, Message, Topic
-from jointid.recording.unpacking import Room
 
 _MAGIC = b"#ROSBAG V2.0\n"
 _MESSAGE, _BAG, _CHUNK, _CONNECTION = b"\x02", b"\x03", b"\x05", b"\x07"  # kinds of record

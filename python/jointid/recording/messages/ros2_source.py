@@ -9,11 +9,11 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 from jointid.base.error_text import reason_of
+from jointid.base.unpacking import Room
 from jointid.recording.messages.definitions import normal_kind
 from jointid.recording.messages.mcap_source import McapSource
 from jointid.recording.messages.packed import of_zstandard
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
-from jointid.recording.unpacking import Room
 
 _ENDING = re.compile(r"\.(db3|mcap)(\.zstd)?$", re.IGNORECASE)
 _ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0

@@ -7,7 +7,7 @@ from pathlib import Path
 from jointid import _core
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
-from jointid.recording.unpacking import Room
+from jointid.base.unpacking import Room
 
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"

@@ -10,6 +10,7 @@ from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
+from jointid.base.unpacking import allowing
 from jointid.recording.attributes import check_kind
 from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import Contents, read_contents
@@ -21,7 +22,6 @@ from jointid.recording.readers.registry import reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.signals import Kind, TorqueHold
 from jointid.recording.table import Table
-from jointid.recording.unpacking import allowing
 from jointid.recording.unreadable import read_leniently
 from jointid.recording.wide.one_joint import OneJoint, joint_of_table
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.unpacking import Room
 from jointid.base.values import dataclass
-from jointid.recording.unpacking import Room
 
 Array = npt.NDArray[Any]
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
+from jointid.base.unpacking import Room
 from jointid.recording.hierarchies.hdf5_table import Hdf5Table
 from jointid.recording.readers.mat_elements import Array, DamageError, Variable, variables_of
 from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.table import Table
-from jointid.recording.unpacking import Room
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEADER = 128  # bytes before the first variable

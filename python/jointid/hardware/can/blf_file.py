@@ -1,0 +1,73 @@
+"""Frame logs in BLF: their packed parts are unpacked here, because python-can does so without a limit."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from io import BytesIO
+from pathlib import Path
+
+from jointid.base.unpacking import Room
+
+_FILE = struct.Struct("<4sL")  # signature, size of the header
+_FILE_HEAD = 72  # bytes, without what fills it up
+_OBJECT = struct.Struct("<4sHHLL")  # signature, size and version of the header, size, kind
+_CONTAINER = struct.Struct("<H6xL4x")  # method, size when unpacked
+_HEAD = _OBJECT.size + _CONTAINER.size
+_CONTAINER_KIND = 10
+_STORED, _ZLIB = 0, 2  # methods
+
+
+def unpacked(path: Path) -> BytesIO:
+    """Return a BLF file whose packed parts are plain; what is damaged, and all behind it, stays as it is.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    TooLargeError
+        It holds more than it may.
+    OSError
+        It cannot be read.
+    """
+    content = path.read_bytes()
+    room = Room(path, len(content))
+    if len(content) < _FILE_HEAD or content[:4] != b"LOGG":
+        return BytesIO(content)
+    place = _FILE.unpack_from(content)[1]
+    parts = [content[:place]]
+    if (
+        place < _FILE_HEAD
+    ):  # a negative length is an error of a file, and all that is left of a BytesIO: cut
+        return BytesIO(*parts)
+    while place + _OBJECT.size <= len(content):
+        signature, _, _, size, kind = _OBJECT.unpack_from(content, place)
+        if signature != b"LOBJ":
+            break
+        if size < _OBJECT.size:  # as above
+            return BytesIO(b"".join([*parts, signature]))
+        beyond = place + size + size % 4
+        part = content[place:beyond]
+        if kind == _CONTAINER_KIND:
+            try:
+                part = _plain(part, size, room)
+            except (struct.error, zlib.error):
+                break
+        parts.append(part)
+        place = beyond
+    return BytesIO(b"".join([*parts, content[place:]]))
+
+
+def _plain(part: bytes, size: int, room: Room) -> bytes:
+    """Return a container with what it holds as it is."""
+    signature, length, version, _, kind = _OBJECT.unpack_from(part)
+    method, _ = _CONTAINER.unpack_from(part[:size], _OBJECT.size)
+    if method != _ZLIB:
+        return part
+    plain = zlib.decompressobj().decompress(part[_HEAD:size], room.left + 1)
+    room.take(len(plain))
+    size = _HEAD + len(plain)
+    head = _OBJECT.pack(signature, length, version, size, kind)
+    return b"".join([head, _CONTAINER.pack(_STORED, len(plain)), plain, bytes(size % 4)])
