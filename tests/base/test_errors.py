@@ -54,3 +54,8 @@ def test_the_fields_are_shown() -> None:
         "InputError('known are a, b', argument='x', place='f', remedy=('look',), value='c')"
     )
     assert repr(InputError("no")) == "InputError('no')"
+
+
+def test_a_name_out_of_a_file_stays_on_the_line() -> None:
+    error = InputError("it is not read", place="topic /a\nb\x1b[2J", remedy="load `c\r`")
+    assert str(error) == r"topic /a\nb\x1b[2J: it is not read; load `c\r`"

@@ -93,7 +93,7 @@ class InputError(ValueError):
             subject = f"{subject or 'this'} is {shown(self.value)}"
         sentence = f"{subject}: {self.reason}" if subject else self.reason
         remedies = " or ".join(str(each) for each in self.remedy)
-        return f"{place}{sentence}" + (f"; {remedies}" if remedies else "")
+        return _on_one_line(f"{place}{sentence}" + (f"; {remedies}" if remedies else ""))
 
     def __repr__(self) -> str:
         """The fields that are not their defaults."""
@@ -111,6 +111,13 @@ class InputError(ValueError):
         except Exception:  # whatever the value's own methods raise
             state["value"] = shown(self.value)
         return type(self), (self.reason,), state
+
+
+def _on_one_line(text: str) -> str:
+    """Escape control characters and line ends, which a file's names may hold."""
+    if text.isprintable():
+        return text
+    return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
 def shown(value: object) -> str:

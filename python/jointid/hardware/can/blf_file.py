@@ -7,6 +7,7 @@ import zlib
 from io import BytesIO
 from pathlib import Path
 
+from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 
 _FILE = struct.Struct("<4sL")  # signature, size of the header
@@ -29,6 +30,9 @@ def unpacked(path: Path) -> BytesIO:
     ------
     TooLargeError
         It holds more than it may.
+    InputError
+        An object says that it is smaller than its header: python-can would read it again and again. Or a part is packed
+        in another way: python-can would leave it out.
     OSError
         It cannot be read.
     """
@@ -38,10 +42,9 @@ def unpacked(path: Path) -> BytesIO:
         return BytesIO(content)
     place = _FILE.unpack_from(content)[1]
     parts = [content[:place]]
-    if (
-        place < _FILE_HEAD
-    ):  # a negative length is an error of a file, and all that is left of a BytesIO: cut
+    if place < _FILE_HEAD:  # python-can reads a negative length: all that is left, of a BytesIO
         return BytesIO(*parts)
+    unfinished = b""  # an object may go on in the next container
     while place + _OBJECT.size <= len(content):
         signature, _, _, size, kind = _OBJECT.unpack_from(content, place)
         if signature != b"LOBJ":
@@ -55,6 +58,7 @@ def unpacked(path: Path) -> BytesIO:
                 part = _plain(part, size, room)
             except (struct.error, zlib.error):
                 break
+            unfinished = _behind_objects(unfinished + part[_HEAD:])
         parts.append(part)
         place = beyond
     return BytesIO(b"".join([*parts, content[place:]]))
@@ -64,10 +68,27 @@ def _plain(part: bytes, size: int, room: Room) -> bytes:
     """Return a container with what it holds as it is."""
     signature, length, version, _, kind = _OBJECT.unpack_from(part)
     method, _ = _CONTAINER.unpack_from(part[:size], _OBJECT.size)
-    if method != _ZLIB:
+    if method not in (_STORED, _ZLIB):
+        raise InputError(f"a part is packed by the method {method}, which is not read")
+    if method == _STORED:
         return part
     plain = zlib.decompressobj().decompress(part[_HEAD:size], room.left + 1)
     room.take(len(plain))
     size = _HEAD + len(plain)
     head = _OBJECT.pack(signature, length, version, size, kind)
     return b"".join([head, _CONTAINER.pack(_STORED, len(plain)), plain, bytes(size % 4)])
+
+
+def _behind_objects(content: bytes) -> bytes:
+    """Return what is behind the last whole object."""
+    place = 0
+    while (found := content.find(b"LOBJ", place, place + 8)) >= 0:
+        if found + _OBJECT.size > len(content):
+            break
+        size = _OBJECT.unpack_from(content, found)[3]
+        if size < _OBJECT.size:
+            raise InputError(f"an object has {size} bytes, less than its header")
+        if found + size > len(content):
+            break
+        place = found + size
+    return content[place:]
