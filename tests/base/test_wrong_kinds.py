@@ -146,3 +146,14 @@ def test_friction_at_what_is_no_number(estimate: jid.Estimate) -> None:
     assert message_of(lambda: estimate.friction(1.0, load=wrong)) == (
         "load is 'a': a number is expected"
     )
+
+
+@pytest.mark.parametrize("wrong", [10**400, [0.0, 10**400], "fast", [None, [1]]])
+def test_numbers_that_no_array_holds(estimate: jid.Estimate, wrong: Any) -> None:
+    for call in (
+        lambda: estimate.friction(wrong),
+        lambda: jid.Trajectory.thesis().sample(wrong),
+        lambda: jid.Trajectory.from_samples(time=wrong, position=[0.0, 1.0]),
+        lambda: jid.load(PATH, gear_ratio=wrong),
+    ):
+        message_of(call)

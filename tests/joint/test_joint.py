@@ -54,7 +54,8 @@ LIMITS = st.builds(
 def parameters(draw: st.DrawFn) -> dict[str, Parameter]:
     table = {}
     for name in draw(st.sets(st.sampled_from(_core.parameter_names()))):
-        low, value, high = sorted(draw(st.tuples(FINITE, FINITE, FINITE)))
+        numbers = POSITIVE if name in ("stribeck_velocity", "stribeck_exponent") else FINITE
+        low, value, high = sorted(draw(st.tuples(numbers, numbers, numbers)))
         known = draw(st.booleans())
         table[name] = Parameter(
             name=name,

@@ -15,11 +15,13 @@ from jointid.joint.parameters import Parameter, merge, parameter_table
 
 NAMES = st.sampled_from(_core.parameter_names())
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
+POSITIVE = st.floats(min_value=0.0, exclude_min=True, allow_infinity=False)
 
 
 @st.composite
 def parameters(draw: st.DrawFn, name: str) -> Parameter:
-    low, value, high = sorted(draw(st.tuples(FINITE, FINITE, FINITE)))
+    numbers = POSITIVE if name in ("stribeck_velocity", "stribeck_exponent") else FINITE
+    low, value, high = sorted(draw(st.tuples(numbers, numbers, numbers)))
     given_value = draw(st.booleans())
     return Parameter(
         name=name,
@@ -66,6 +68,8 @@ def test_bounds_belong_to_the_range() -> None:
         ({"min": 3.0, "max": 2.0}, "min is 3.0: it is above max 2.0"),
         ({"value": 1.0, "min": 2.0}, "value is 1.0: it is below min 2.0"),
         ({"value": 3.0, "max": 2.0}, "value is 3.0: it is above max 2.0"),
+        ({"name": "stribeck_velocity", "value": -1.0}, "value is -1.0: more than 0"),
+        ({"name": "stribeck_exponent[1]", "min": 0.0}, "min is 0.0: more than 0"),
         ({"vary": False}, "vary is False: there is no value"),
         ({"value": 1.0, "vary": 0}, "vary is 0: true or false"),
         ({"vary": None}, "vary is None: true or false"),

@@ -44,6 +44,20 @@ def test_a_file_that_is_no_urdf(
         ('joints = "elbow"', r"^facts\.toml: joints is .elbow.: a list of names"),
         ("joints = 5", r"^facts\.toml: joints is 5: a list of names"),
         ('joints = ["wrist"]', r"^facts\.toml: joints is .wrist.: .*shoulder, elbow"),
+        (
+            f"gear_ratios = [{10**400}, 1]",
+            r"^facts\.toml: gear_ratios\[0\]: the number is too large",
+        ),
+        (
+            f"rotor_inertias = [{10**400}, 1]",
+            r"^facts\.toml: rotor_inertias\[0\]: the number is too large",
+        ),
+        (f"couplings = [[1, {10**400}], [0, 1]]", r"^facts\.toml: couplings"),
+        (f"[couplings.elbow]\nshoulder = {10**400}", r"^facts\.toml: couplings\.elbow\.shoulder"),
+        (
+            f"zero_offsets_deg = [{10**400}, 1]",
+            r"^facts\.toml: zero_offsets_deg\[0\]: the number is too large",
+        ),
         ("[couplings]\nelbow = 3", r"^facts\.toml: couplings\.elbow is 3"),
         ('side = "link"', r"^facts\.toml: side is .link.: joint or motor"),
     ],
@@ -194,3 +208,14 @@ def test_an_offset_in_radians_and_degrees_is_refused(path: Path, tmp_path: Path)
     file.write_text("zero_offsets = [0, 0]\nzero_offsets_deg = [0, 0]", encoding="utf-8")
     with pytest.raises(jid.InputError, match=r"^facts\.toml: zero_offsets_deg .*in radians"):
         jid.Robot.from_urdf(path, facts=file)
+
+
+@pytest.mark.parametrize(("number", "reason"), [(10**80, "singular"), (10**400, "large")])
+def test_integers_that_numpy_has_not(number: int, reason: str, tmp_path: Path) -> None:
+    path, file = urdf(tmp_path), tmp_path / "facts.toml"
+    file.write_text(f"[couplings.elbow]\nshoulder = {number}", encoding="utf-8")
+    with pytest.raises(jid.InputError, match=reason):
+        jid.Robot.from_urdf(path, facts=file)
+    for wrong in ({"rotor_inertias": [10**400, 1]}, {"couplings": [[1, 10**400], [0, 1]]}):
+        with pytest.raises(jid.InputError, match="expected"):
+            jid.Robot.from_urdf(path, gear_ratios=[1, 1], **wrong)  # type: ignore[arg-type]

@@ -1,5 +1,6 @@
 """Checks that an argument is of the expected kind."""
 
+import math
 import numbers
 import os
 from collections.abc import Mapping
@@ -76,6 +77,16 @@ def whole_number(name: str, value: object, lowest: int, highest: int) -> int:
     if not lowest <= number <= highest:
         raise InputError(f"{lowest} to {highest} is expected", argument=name, value=number)
     return number
+
+
+def is_finite(value: object) -> bool:
+    """Whether it is a finite number: no integer beyond all floats, which `math` and NumPy refuse in other ways."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def _article(noun: str) -> str:

@@ -206,7 +206,7 @@ class Estimate(Questions):
 
         try:
             velocities = np.atleast_1d(np.asarray(velocity, dtype=np.float64))
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             raise InputError("numbers are expected", argument="velocity", value=velocity) from None
         return friction_curve(self, velocities, finite_number("", "load", load))
 

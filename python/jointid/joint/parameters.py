@@ -14,9 +14,12 @@ from jointid.joint.checks import (
     check_parameter_name,
     finite_number,
     is_number,
+    positive_number,
     set_numbers,
     suggestion,
 )
+
+_ABOVE_ZERO = ("stribeck_velocity", "stribeck_exponent")  # else static friction does not decay
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +42,7 @@ class Parameter:
     ------
     InputError
         An unknown name, a number that is not finite, min above max, a value outside the bounds,
-        or a fixed parameter without a value.
+        a fixed parameter without a value, or a Stribeck velocity or exponent that is not above 0.
 
     Examples
     --------
@@ -59,6 +62,10 @@ class Parameter:
         owner = f"parameter '{self.name}'"
         set_numbers(self, owner, ("value", "min", "max"), finite_number)
         check_flag(owner, "vary", self.vary)
+        if self.name.partition("[")[0] in _ABOVE_ZERO:
+            for field in ("value", "min", "max"):
+                if getattr(self, field) is not None:
+                    positive_number(owner, field, getattr(self, field))
         if self.min is not None and self.max is not None and self.min > self.max:
             raise InputError(
                 f"it is above max {self.max!r}",

@@ -106,7 +106,7 @@ def _array(name: str, value: ArrayLike | None) -> Array:
     """Return a signal's samples as an array, or refuse them."""
     try:
         return np.atleast_1d(np.asarray(value, dtype=np.float64))
-    except (TypeError, ValueError) as error:  # from NumPy, about the caller's value
+    except (OverflowError, TypeError, ValueError) as error:  # from NumPy, about the caller's value
         raise InputError(
             "a number or an array of numbers is expected",
             argument=name,

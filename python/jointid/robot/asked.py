@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.base.argument_checks import require_kind
+from jointid.base.argument_checks import is_finite, require_kind
 from jointid.base.errors import InputError
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.motion import Motion
@@ -44,11 +44,12 @@ def least_speeds(
         for name in min_speed:
             if name not in robot.names:
                 raise InputError("the robot has no such joint", argument="min_speed", value=name)
-        given = np.array([float(min_speed.get(name, 0.0)) for name in robot.names])
+        stated = [min_speed.get(name, 0.0) for name in robot.names]
+        given = np.array([float(each) if is_finite(each) else np.nan for each in stated])
     else:
         try:
             given = np.asarray(min_speed, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             given = np.full((0,), np.nan)
         given = np.full(robot.n, float(given)) if given.ndim == 0 else given
     if given.shape != (robot.n,) or not np.all((given >= 0.0) & np.isfinite(given)):

@@ -54,7 +54,7 @@ def read_facts(path: Path) -> dict[str, Any]:
         degrees = found.pop("zero_offsets_deg")
         try:
             found["zero_offsets"] = [float(each) * 0.017453292519943295 for each in degrees]
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             raise InputError(
                 "numbers are expected", argument="zero_offsets_deg", value=degrees, place=path.name
             ) from None

@@ -153,7 +153,7 @@ class RobotEstimate:
 
         try:
             speeds = np.asarray(velocity, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             speeds = np.zeros(0)
         if not np.all(np.isfinite(speeds)):
             raise InputError("finite speeds are expected", argument="velocity", value=velocity)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import NDArray
 
-from jointid.base.argument_checks import require_path
+from jointid.base.argument_checks import is_finite, require_path
 from jointid.base.errors import InputError
 from jointid.joint.model import Model
 from jointid.recording.wide.joint_names import joint_named
@@ -265,7 +265,7 @@ def _number(name: str) -> int:
 def _numbers(argument: str, values: Sequence[float], count: int) -> list[float]:
     try:
         array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (OverflowError, TypeError, ValueError):
         array = np.full(0, np.nan)
     if array.shape != (count,) or not np.all(np.isfinite(array)):
         raise InputError(f"{count} numbers are expected", argument=argument, value=values)
@@ -293,7 +293,7 @@ def _couplings(
     elif couplings is not None:
         try:
             matrix = np.array(couplings, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             matrix = np.full((0, 0), np.nan)
         if matrix.shape != (n, n) or not np.all(np.isfinite(matrix)):
             raise InputError(
@@ -329,8 +329,7 @@ def _named_couplings(couplings: Mapping[str, Mapping[str, float]], names: list[s
                         argument="couplings",
                         value=name,
                     )
-            number = isinstance(share, int | float) and not isinstance(share, bool)
-            if not number or not np.isfinite(share):
+            if not is_finite(share):
                 raise InputError(
                     "a number is expected", argument=f"couplings.{motor}.{joint}", value=share
                 )
@@ -345,8 +344,7 @@ def _rotors(values: Sequence[float | None] | None, n: int) -> tuple[float | None
         raise InputError(f"{n} values are expected", argument="rotor_inertias", value=values)
     found: list[float | None] = []
     for each in values:
-        number = isinstance(each, int | float | np.number) and not isinstance(each, bool)
-        if each is not None and not (number and np.isfinite(each) and each >= 0.0):
+        if each is not None and not (is_finite(each) and each >= 0.0):
             raise InputError("0 or more is expected", argument="rotor_inertias", value=each)
         found.append(None if each is None else float(each))
     return tuple(found)

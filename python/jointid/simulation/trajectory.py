@@ -298,7 +298,7 @@ class Trajectory:
         """
         try:
             times = np.asarray(time, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             times = np.empty((0, 0))
         if times.ndim > 1 or not np.isfinite(times).all():
             raise InputError(
@@ -379,7 +379,7 @@ def _positive(name: str, value: object) -> float:
 def _samples(name: str, values: npt.ArrayLike, largest: float = math.inf) -> tuple[float, ...]:
     try:
         array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (OverflowError, TypeError, ValueError):
         raise InputError(
             "an array of numbers is expected", argument=f"Trajectory.{name}", value=values
         ) from None

@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
 from jointid.base.advice import Action
+from jointid.base.argument_checks import is_finite
 from jointid.base.errors import InputError
 from jointid.recording.wide.words import JOINT, MOTOR
 
@@ -21,8 +20,7 @@ def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
     InputError
         It is no finite number, or 0.
     """
-    number = isinstance(gear_ratio, int | float | np.number) and not isinstance(gear_ratio, bool)
-    if not number or not np.isfinite(gear_ratio) or gear_ratio == 0:  # type: ignore[call-overload]
+    if not is_finite(gear_ratio) or gear_ratio == 0:
         raise InputError(
             "the motor's angle per angle of the joint is expected: a number other than 0, negative if they turn in "
             "opposite directions",
