@@ -10,6 +10,7 @@ import pytest
 
 from jointid.base.advice import Action
 from jointid.base.errors import NOT_GIVEN, InputError
+from jointid.cli.wording import Wording
 
 FIELDS: dict[str, Any] = {
     "argument": "columns",
@@ -59,3 +60,11 @@ def test_the_fields_are_shown() -> None:
 def test_a_name_out_of_a_file_stays_on_the_line() -> None:
     error = InputError("it is not read", place="topic /a\nb\x1b[2J", remedy="load `c\r`")
     assert str(error) == r"topic /a\nb\x1b[2J: it is not read; load `c\r`"
+    assert Wording("identify").of_error(error).isprintable()
+
+
+@pytest.mark.parametrize(
+    "name", ["測定\u3000結果", "9.41\u202fAM", "👨\u200d👩", "é ❤️", "C:\\new\\table"]
+)
+def test_a_name_that_can_be_read_stays_as_it_is(name: str) -> None:
+    assert str(InputError("it is not read", place=name)) == f"{name}: it is not read"

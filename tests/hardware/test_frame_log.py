@@ -101,17 +101,39 @@ def _container(objects: bytes, method: int = 0) -> bytes:
     return head + objects + bytes(size % 4)
 
 
-def test_an_object_of_no_size_is_refused_wherever_it_stands(tmp_path: Path) -> None:
+def _object(size: int, kind: int = 99) -> bytes:
+    return struct.pack("<4sHHLL32x", b"LOBJ", 16, 1, size, kind)
+
+
+@pytest.mark.parametrize(
+    "first", range(41, 97)
+)  # the rest of an object, or its header, is in the next container
+@pytest.mark.parametrize("size", [0, 15, 2_000_000])
+def test_an_object_of_an_impossible_size_is_refused(size: int, first: int, tmp_path: Path) -> None:
     path, start = tmp_path / "run.blf", seed_of("blf")[1][:144]
-    sound = struct.pack("<4sHHLL32x", b"LOBJ", 16, 1, 48, 99)
-    endless = struct.pack("<4sHHLL32x", b"LOBJ", 16, 1, 0, 99)
-    split = (sound + endless)[:60], (sound + endless)[60:]
-    path.write_bytes(start + _container(sound) + _container(sound))
-    assert list(logged_frames(path)) == []
-    for content in (_container(endless), _container(split[0]) + _container(split[1])):
-        path.write_bytes(start + content)
-        with pytest.raises(jid.InputError, match=r"^an object has 0 bytes, less than its header"):
-            list(logged_frames(path))
+    sound, wrong = _object(48) + bytes(3), _object(size)
+    content = sound + sound + wrong + sound
+    path.write_bytes(start + _container(content[:first]) + _container(content[first:]))
+    with pytest.raises(jid.InputError, match=f"^an object has {size} bytes"):
+        list(logged_frames(path))
+
+
+@pytest.mark.parametrize("largest", [97, 1001, 1002, 1003, 131_072])
+@pytest.mark.parametrize("level", [-1, 0])
+def test_containers_of_every_length_hold_the_same_frames(
+    largest: int, level: int, tmp_path: Path
+) -> None:
+    path = tmp_path / "run.blf"
+    for append in (False, True):  # also behind what another program has added
+        with can.BLFWriter(path, append=append, compression_level=level) as log:
+            log.max_container_size = largest
+            log.log_event("xx")
+            for number in range(100):
+                data = bytes(number % 9)
+                log(can.Message(timestamp=float(number), arbitration_id=0x181, data=data))
+    expected = _frames(lambda: path)
+    assert len(expected) == 200
+    assert _frames(lambda: unpacked(path)) == expected
 
 
 def test_a_part_that_is_packed_in_another_way_is_not_left_out(tmp_path: Path) -> None:

@@ -218,4 +218,4 @@ def test_integers_that_numpy_has_not(number: int, reason: str, tmp_path: Path) -
         jid.Robot.from_urdf(path, facts=file)
     for wrong in ({"rotor_inertias": [10**400, 1]}, {"couplings": [[1, 10**400], [0, 1]]}):
         with pytest.raises(jid.InputError, match="expected"):
-            jid.Robot.from_urdf(path, gear_ratios=[1, 1], **wrong)  # type: ignore[arg-type]
+            jid.Robot.from_urdf(path, gear_ratios=[1, 1], **wrong)

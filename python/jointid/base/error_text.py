@@ -1,6 +1,10 @@
 """Parts of messages: another library's reason in brief, names as alternatives, text for a terminal."""
 
+import re
 from collections.abc import Sequence
+
+# Control characters, ends of lines and paragraphs, what turns the direction of text, halves of characters.
+_UNFIT = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
 def reason_of(error: BaseException) -> str:
@@ -24,3 +28,14 @@ def alternatives(names: Sequence[str]) -> str:
 def printable(text: str) -> str:
     """Return text without control characters, which a file's labels could send to a terminal."""
     return "".join(c if c == "\n" or c.isprintable() else "\ufffd" for c in text)
+
+
+def on_one_line(text: str) -> str:
+    r"""Return text whose control characters and line ends, which a file's names may hold, are escaped.
+
+    Examples
+    --------
+    >>> on_one_line("topic /a\nb")
+    'topic /a\\nb'
+    """
+    return _UNFIT.sub(lambda found: repr(found[0])[1:-1], text)

@@ -7,6 +7,7 @@ from pathlib import PurePath
 from typing import Any
 
 from jointid.base.advice import Action
+from jointid.base.error_text import on_one_line
 
 
 class _NotGiven:
@@ -93,7 +94,7 @@ class InputError(ValueError):
             subject = f"{subject or 'this'} is {shown(self.value)}"
         sentence = f"{subject}: {self.reason}" if subject else self.reason
         remedies = " or ".join(str(each) for each in self.remedy)
-        return _on_one_line(f"{place}{sentence}" + (f"; {remedies}" if remedies else ""))
+        return on_one_line(f"{place}{sentence}" + (f"; {remedies}" if remedies else ""))
 
     def __repr__(self) -> str:
         """The fields that are not their defaults."""
@@ -111,13 +112,6 @@ class InputError(ValueError):
         except Exception:  # whatever the value's own methods raise
             state["value"] = shown(self.value)
         return type(self), (self.reason,), state
-
-
-def _on_one_line(text: str) -> str:
-    """Escape control characters and line ends, which a file's names may hold."""
-    if text.isprintable():
-        return text
-    return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
 def shown(value: object) -> str:

@@ -7,6 +7,7 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
+from jointid.base.error_text import on_one_line
 from jointid.base.errors import NOT_GIVEN, InputError
 from jointid.base.values import dataclass
 from jointid.cli.advice import option_with_value, words_of_action
@@ -67,7 +68,7 @@ class Wording:
         subject = self._subject(place, name, error.value)
         sentence = ": ".join(filter(None, (place, subject, error.reason)))
         remedies = self._alternatives(error.remedy)
-        return " ".join(f"{sentence}{f'; {remedies}' if remedies else ''}".split())
+        return on_one_line(" ".join(f"{sentence}{f'; {remedies}' if remedies else ''}".split()))
 
     def of_action(self, action: Action) -> str:
         """What to do, with the command's options; empty if the command line cannot do it."""

@@ -17,6 +17,8 @@ _CONTAINER = struct.Struct("<H6xL4x")  # method, size when unpacked
 _HEAD = _OBJECT.size + _CONTAINER.size
 _CONTAINER_KIND = 10
 _STORED, _ZLIB = 0, 2  # methods
+_LARGEST = 1 << 20  # bytes of an object; a frame has some hundred
+_MOST = (1 << 32) - 1 - _HEAD  # bytes that a container may state
 
 
 def unpacked(path: Path) -> BytesIO:
@@ -31,8 +33,8 @@ def unpacked(path: Path) -> BytesIO:
     TooLargeError
         It holds more than it may.
     InputError
-        An object says that it is smaller than its header: python-can would read it again and again. Or a part is packed
-        in another way: python-can would leave it out.
+        An object says that it is smaller than its header, which python-can would read again and again, or that it is
+        very large. Or a part is packed in another way, which python-can would leave out.
     OSError
         It cannot be read.
     """
@@ -44,8 +46,8 @@ def unpacked(path: Path) -> BytesIO:
     parts = [content[:place]]
     if place < _FILE_HEAD:  # python-can reads a negative length: all that is left, of a BytesIO
         return BytesIO(*parts)
-    unfinished = b""  # an object may go on in the next container
-    while place + _OBJECT.size <= len(content):
+    unfinished: bytes | None = b""  # an object may go on in the next container
+    while unfinished is not None and place + _OBJECT.size <= len(content):
         signature, _, _, size, kind = _OBJECT.unpack_from(content, place)
         if signature != b"LOBJ":
             break
@@ -54,33 +56,43 @@ def unpacked(path: Path) -> BytesIO:
         beyond = place + size + size % 4
         part = content[place:beyond]
         if kind == _CONTAINER_KIND:
-            try:
-                part = _plain(part, size, room)
-            except (struct.error, zlib.error):
+            if min(size, len(part)) < _HEAD:
                 break
-            unfinished = _behind_objects(unfinished + part[_HEAD:])
+            try:
+                plain = _plain(part[:size], room)
+            except zlib.error:
+                break
+            unfinished = _behind_objects(unfinished + plain)
+            part = _container(part, plain)
         parts.append(part)
         place = beyond
     return BytesIO(b"".join([*parts, content[place:]]))
 
 
-def _plain(part: bytes, size: int, room: Room) -> bytes:
-    """Return a container with what it holds as it is."""
-    signature, length, version, _, kind = _OBJECT.unpack_from(part)
-    method, _ = _CONTAINER.unpack_from(part[:size], _OBJECT.size)
-    if method not in (_STORED, _ZLIB):
-        raise InputError(f"a part is packed by the method {method}, which is not read")
+def _plain(part: bytes, room: Room) -> bytes:
+    """Return what a container holds."""
+    method, _ = _CONTAINER.unpack_from(part, _OBJECT.size)
     if method == _STORED:
-        return part
-    plain = zlib.decompressobj().decompress(part[_HEAD:size], room.left + 1)
+        return part[_HEAD:]
+    if method != _ZLIB:
+        raise InputError(f"a part is packed by the method {method}, which is not read")
+    plain = zlib.decompressobj().decompress(part[_HEAD:], room.left + 1)
     room.take(len(plain))
+    if len(plain) > _MOST:
+        raise InputError(f"a part is larger than {_MOST} bytes when it is unpacked")
+    return plain
+
+
+def _container(part: bytes, plain: bytes) -> bytes:
+    """Return a container that holds the same as it is."""
+    signature, length, version, _, kind = _OBJECT.unpack_from(part)
     size = _HEAD + len(plain)
     head = _OBJECT.pack(signature, length, version, size, kind)
     return b"".join([head, _CONTAINER.pack(_STORED, len(plain)), plain, bytes(size % 4)])
 
 
-def _behind_objects(content: bytes) -> bytes:
-    """Return what is behind the last whole object."""
+def _behind_objects(content: bytes) -> bytes | None:
+    """Return what is behind the last whole object; None where no object follows, and python-can reads no further."""
     place = 0
     while (found := content.find(b"LOBJ", place, place + 8)) >= 0:
         if found + _OBJECT.size > len(content):
@@ -88,7 +100,11 @@ def _behind_objects(content: bytes) -> bytes:
         size = _OBJECT.unpack_from(content, found)[3]
         if size < _OBJECT.size:
             raise InputError(f"an object has {size} bytes, less than its header")
+        if size > _LARGEST:  # it would be joined anew from each container
+            raise InputError(f"an object has {size} bytes, more than {_LARGEST}")
         if found + size > len(content):
             break
         place = found + size
+    if found < 0 and place + 8 <= len(content):
+        return None
     return content[place:]
