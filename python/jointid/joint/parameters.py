@@ -19,8 +19,6 @@ from jointid.joint.checks import (
     suggestion,
 )
 
-_ABOVE_ZERO = ("stribeck_velocity", "stribeck_exponent")  # else static friction does not decay
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
@@ -62,7 +60,7 @@ class Parameter:
         owner = f"parameter '{self.name}'"
         set_numbers(self, owner, ("value", "min", "max"), finite_number)
         check_flag(owner, "vary", self.vary)
-        if self.name.partition("[")[0] in _ABOVE_ZERO:
+        if self.name.partition("[")[0] in _above_zero():
             for field in ("value", "min", "max"):
                 if getattr(self, field) is not None:
                     positive_number(owner, field, getattr(self, field))
@@ -94,6 +92,13 @@ class Parameter:
                 place=owner,
                 remedy="give a value too",
             )
+
+
+@functools.cache
+def _above_zero() -> frozenset[str]:
+    """Return the shapes of a decay that is a power of the speed: else friction does not decay."""
+    rows = (row for row in _core.terms() if row.decay == "general")
+    return frozenset(shape for row in rows for shape in row.shapes)
 
 
 def parameter_table(
