@@ -37,7 +37,7 @@ for library in libasan.so libubsan.so libstdc++.so; do
   preloaded="$preloaded $(readlink -f "$(g++ -print-file-name="$library")")"
 done
 # Leaks: Python keeps what it allocates. What is too large to allocate is an ordinary MemoryError.
-# What was freed is kept back for some cases, not for 256 MB of them: fresh pages take a sixth of the time.
+# What was freed is kept back for some cases, not for 256 MB of them: fresh pages take a tenth to a fifth of the time.
 export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:strict_string_checks=1:quarantine_size_mb=16
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 export PYTHONPATH="$site"

@@ -1,4 +1,4 @@
-"""Frame logs: what no bus can carry is refused, with the frame's number."""
+"""Frame logs: what no bus can carry is refused, with the frame's number; BLF holds what python-can reads of it."""
 
 import random
 import struct
@@ -95,7 +95,7 @@ def test_unpacked_files_hold_the_same_frames_and_faults(
 
 
 def _container(objects: bytes, method: int = 0) -> bytes:
-    """The beginning of a file, and a part that is not packed."""
+    """A part of a file that says by which method it is packed; 0: it is not."""
     size = 32 + len(objects)
     head = struct.pack("<4sHHLLH6xL4x", b"LOBJ", 16, 1, size, 10, method, len(objects))
     return head + objects + bytes(size % 4)
@@ -105,9 +105,8 @@ def _object(size: int, kind: int = 99) -> bytes:
     return struct.pack("<4sHHLL32x", b"LOBJ", 16, 1, size, kind)
 
 
-@pytest.mark.parametrize(
-    "first", range(41, 97)
-)  # the rest of an object, or its header, is in the next container
+# The rest of an object, or of its header, is in the next container.
+@pytest.mark.parametrize("first", range(41, 97))
 @pytest.mark.parametrize("size", [0, 15, 2_000_000])
 def test_an_object_of_an_impossible_size_is_refused(size: int, first: int, tmp_path: Path) -> None:
     path, start = tmp_path / "run.blf", seed_of("blf")[1][:144]
