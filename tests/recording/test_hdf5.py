@@ -9,6 +9,7 @@ import pytest
 from recording_files import ROWS, N, assert_one_sentence, column, refusal
 
 from jointid.base.errors import InputError
+from jointid.recording.hierarchies.hdf5_table import Hdf5Table
 from jointid.recording.readers.loading import load
 from jointid.recording.readers.loading import table_of as _table
 from jointid.recording.readers.loading_robot import load_robot
@@ -297,7 +298,7 @@ def test_nothing_but_text(tmp_path: Path) -> None:
 
 
 def test_another_file_is_not_read(tmp_path: Path) -> None:
-    """Neither a link nor the storage of a dataset leads out of the file."""
+    """Neither a link, nor the storage of a dataset, nor a virtual one leads out of the file."""
     other = tmp_path / "secret.bin"
     other.write_bytes(SPEED.tobytes())
     path = hdf5(tmp_path / "a.h5", {"t": TIME, "q": ANGLE})
@@ -305,8 +306,14 @@ def test_another_file_is_not_read(tmp_path: Path) -> None:
         file.create_dataset(
             "torque", shape=(N,), dtype="f8", external=[(str(other), 0, h5py.h5f.UNLIMITED)]
         )
-        file["velocity"] = h5py.ExternalLink(str(hdf5(tmp_path / "b.h5", {"v": SPEED})), "v")
-    assert _table(path).headers == ("q", "t")
+        beside = str(hdf5(tmp_path / "b.h5", {"v": SPEED}))
+        file["velocity"] = h5py.ExternalLink(beside, "v")
+        layout = h5py.VirtualLayout(shape=(N,), dtype="f8")
+        layout[:] = h5py.VirtualSource(beside, "v", shape=(N,))
+        file.create_virtual_dataset("current", layout)
+    table = Hdf5Table(path, None)
+    assert table.headers == ("q", "t")
+    assert table.notes == {"not_read": ["current (in another file)", "torque (in another file)"]}
 
 
 def test_a_nan_is_named(tmp_path: Path) -> None:

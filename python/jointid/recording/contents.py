@@ -146,11 +146,13 @@ class Contents:
     def rows_of(self, by: str | int) -> dict[str, Rows]:
         """Return value → rows that have it in a column, by the first appearance of each value."""
         column = column_index(self.table, by, "by")
-        cells = np.array(self.table.text(column), dtype=np.str_)
+        cells = self.table.text(column)
         self._check_length(self.table.headers[column], len(cells))
-        values, first, inverse = np.unique(cells, return_index=True, return_inverse=True)
+        # Not as an array of NumPy: each of its cells would be as long as the longest.
+        numbers = {cell: number for number, cell in enumerate(dict.fromkeys(cells))}
+        inverse = np.array([numbers[cell] for cell in cells], dtype=np.int64)
         grouped = np.split(np.argsort(inverse, kind="stable"), np.cumsum(np.bincount(inverse))[:-1])
-        return {str(values[k]): grouped[k] for k in np.argsort(first)}
+        return dict(zip(numbers, grouped, strict=True))
 
     def rows_where(self, where: Mapping[str, float | str]) -> Rows:
         """Return the rows that have a value in each of some columns."""

@@ -76,7 +76,9 @@ def vectors_of(file: Any) -> tuple[list[Vector], list[str]]:
             if kind and kind not in _MATLAB_NUMBERS:
                 if kind not in ("char", "cell", "string"):
                     left_out.append(f"{path} ({kind})")
-            elif not thing.external:
+            elif thing.external or thing.is_virtual:
+                left_out.append(f"{path} (in another file)")
+            else:
                 found.extend(_vectors(path, thing))
         elif "MATLAB_sparse" in thing.attrs or (kind and kind != "struct"):
             left_out.append(f"{path} ({kind or 'object'})")

@@ -11,6 +11,7 @@ from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 from jointid.recording.headers import parsed
+from jointid.recording.hierarchies import hdf5_chunks
 from jointid.recording.hierarchies.datasets import Vector, values_of, vectors_of
 from jointid.recording.hierarchies.groups import chosen_vectors
 from jointid.recording.signals import FloatArray, signal_array
@@ -111,8 +112,8 @@ class Hdf5Table:
         try:
             with h5py.File(self._path, "r", locking=False) as file:
                 for dataset in {self._vectors[column].path for column in columns} - self._taken:
+                    hdf5_chunks.take(file[dataset], self._room)
                     self._taken.add(dataset)
-                    self._room.take(file[dataset].nbytes)
                 return [values_of(file, self._vectors[column]) for column in columns]
         except InputError:
             raise

@@ -63,7 +63,13 @@ class NpzTable:
                 f"the archive is damaged ({reason_of(error)})", place=str(path)
             ) from None
         self._archive: Mapping[str, Any] = archive
-        # Of a member at most as much is unpacked as the archive's index says.
+        # Of a member at most as much is unpacked as the archive's index says; by other methods, all of a piece.
+        for each in archive.zip.infolist():
+            if each.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise InputError(
+                    "it is packed by a method that numpy.savez_compressed does not use",
+                    place=self._place(each.filename.removesuffix(".npy")),
+                )
         self._sizes = {
             each.filename.removesuffix(".npy"): each.file_size for each in archive.zip.infolist()
         }

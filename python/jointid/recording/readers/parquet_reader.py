@@ -1,6 +1,6 @@
 """Reading .parquet files with pyarrow, which the extra `parquet` installs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
+from jointid.recording.readers.parquet_pages import unpacked_size
 from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 
@@ -38,13 +39,19 @@ class ParquetTable:
         self.header_place = self.source
         self._room = Room(path)
         self._taken: set[int] = set()
-        content = path.read_bytes()
+        self._content = content = path.read_bytes()
         import pyarrow
         from pyarrow import parquet
 
         try:
             self._file: Any = parquet.ParquetFile(pyarrow.BufferReader(content))
             names = self._file.schema_arrow.names
+            _raise_if_rows_differ(self._file.metadata)
+            texts = _texts(self._file)
+            if texts:  # one that is repeated a million times is kept once
+                self._file = parquet.ParquetFile(
+                    pyarrow.BufferReader(content), read_dictionary=texts
+                )
         except _damage() as error:
             raise InputError(
                 f"the file is not a .parquet file, or is damaged ({reason_of(error)})",
@@ -65,6 +72,8 @@ class ParquetTable:
         import pyarrow
 
         values, types = self._values(column), pyarrow.types
+        if types.is_dictionary(values.type):
+            return None
         dates = types.is_timestamp(values.type) or types.is_duration(values.type)
         if not dates and (values.null_count or not types.is_integer(values.type)):
             return None
@@ -75,7 +84,16 @@ class ParquetTable:
 
     def text(self, column: int) -> list[str]:
         """Return the values of a column as text."""
-        return [str(value) for value in self._values(column).to_pylist()]
+        import pyarrow
+
+        values = self._values(column)
+        if not pyarrow.types.is_dictionary(values.type):
+            return list(map(str, values.to_pylist()))
+        cells = []
+        for chunk in values.chunks:  # a text that is repeated stays one object
+            words = [*map(str, chunk.dictionary.to_pylist()), "None"]  # -1: an empty cell
+            cells += [words[place] for place in chunk.indices.fill_null(-1).to_pylist()]
+        return cells
 
     def place(self, column: int, row: int) -> str:
         """Return file, 0-based row and column of a value."""
@@ -99,21 +117,48 @@ class ParquetTable:
         try:
             if pyarrow.types.is_decimal(values.type):
                 values = values.cast(pyarrow.float64())
-            array = values.to_numpy()
+            text = pyarrow.types.is_dictionary(values.type)
+            array = np.array(self.text(column), object) if text else values.to_numpy()
         except _damage() as error:
             raise self._unreadable(column, error) from None
         return signal_array("", array, self._place(column))
 
     def _values(self, column: int) -> Any:
-        name = self._file.schema_arrow.names[column]
-        if column not in self._taken:  # a column may be asked for more than once
-            self._taken.add(column)
-            self._room.take(8 * self._file.metadata.num_rows)
+        import pyarrow
+
+        kind = self._file.schema_arrow.field(column)
+        name = kind.name
+        if not _is_number(kind.type) and not pyarrow.types.is_dictionary(kind.type):
+            raise InputError(
+                f"the column holds {kind.type!s:.60}; numbers are expected",
+                place=self._place(column),
+            )
         try:
+            if column not in self._taken:  # a column may be asked for more than once
+                in_pages = sum(self._in_pages(name))
+                self._room.take(max(8 * self._file.metadata.num_rows, in_pages))
+                self._taken.add(column)
             # One thread: the columns are small, and thread pools cause trouble after a fork.
             return self._file.read(columns=[name], use_threads=False).column(name)
+        except InputError:
+            raise
         except _damage() as error:
             raise self._unreadable(column, error) from None
+
+    def _in_pages(self, name: str) -> Iterator[int]:
+        """Bytes of a column's pages when they are unpacked, of each group of rows."""
+        metadata = self._file.metadata
+        own = [
+            leaf
+            for leaf in range(metadata.num_columns)
+            if f"{metadata.schema.column(leaf).path}.".startswith(f"{name}.")
+        ]
+        for group in map(metadata.row_group, range(metadata.num_row_groups)):
+            for chunk in map(group.column, own):
+                start = chunk.data_page_offset
+                if chunk.has_dictionary_page and 0 < chunk.dictionary_page_offset < start:
+                    start = chunk.dictionary_page_offset
+                yield unpacked_size(self._content, start, start + chunk.total_compressed_size)
 
     def _place(self, column: int) -> str:
         return f"{self.source}, column {self.headers[column]!r}"
@@ -122,6 +167,38 @@ class ParquetTable:
         return InputError(
             f"the column cannot be read ({reason_of(error)})", place=self._place(column)
         )
+
+
+def _is_number(kind: Any) -> bool:
+    """Whether each cell of a column is a number, a date or nothing, of a few bytes."""
+    from pyarrow import types
+
+    return bool(
+        types.is_integer(kind)
+        or types.is_floating(kind)
+        or types.is_boolean(kind)
+        or types.is_decimal(kind)
+        or types.is_temporal(kind)
+        or types.is_null(kind)
+    )
+
+
+def _texts(file: Any) -> list[str]:
+    """Names of the columns that hold texts, or other bytes."""
+    schema = file.metadata.schema
+    leaves = {schema.column(leaf).path for leaf in range(len(schema.names))}
+    return [
+        field.name
+        for field in file.schema_arrow
+        if field.name in leaves and not _is_number(field.type)
+    ]
+
+
+def _raise_if_rows_differ(metadata: Any) -> None:
+    """Raise `ValueError` if a group says more rows than there are: pyarrow prepares memory for them."""
+    rows = [metadata.row_group(group).num_rows for group in range(metadata.num_row_groups)]
+    if min(rows, default=0) < 0 or sum(rows) != metadata.num_rows:
+        raise ValueError(f"its groups hold {sum(rows)} rows, and it has {metadata.num_rows}")
 
 
 def _damage() -> tuple[type[Exception], ...]:

@@ -1,0 +1,318 @@
+"""Small files that hold more than they say: refused in one sentence, before the libraries unpack them."""
+
+import contextlib
+import inspect
+import io
+import itertools
+import os
+import resource
+import subprocess
+import sys
+import zipfile
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import jointid as jid
+from jointid.base.unpacking import Room
+from jointid.recording.readers.parquet_pages import unpacked_size
+
+_PEAK = 500_000_000  # bytes of the whole program
+_MOST = (
+    8_000_000_000  # bytes that it may reserve, so that a test that fails does not take the machine
+)
+_CODE = """
+import sys
+import jointid as jid
+try:
+    jid.load(sys.argv[1])
+except jid.InputError as error:
+    print(error)
+peak = next(line for line in open("/proc/self/status") if line.startswith("VmHWM"))
+print(int(peak.split()[1]) * 1024)
+"""
+_NAMES = ("time", "position", "torque")
+
+
+def _zigzag(number: int, width: int = 0) -> bytes:
+    """A number of Thrift's compact protocol, in so many bytes."""
+    number *= 2
+    parts: list[int] = []
+    while number or not parts:
+        parts.append(number & 127)
+        number >>= 7
+    parts += [0] * (width - len(parts))
+    return bytes([*(part | 128 for part in parts[:-1]), parts[-1]])
+
+
+def parquet_pages(path: Path) -> str:
+    """A column is one page of 480 MB; the footer says 12 rows, everywhere."""
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    rows = 60_000_000
+    known = inspect.signature(writer.ParquetWriter.__init__).parameters
+    one_page = {"max_rows_per_page": rows} if "max_rows_per_page" in known else {}
+    writer.write_table(
+        pyarrow.table({name: np.zeros(rows, "f8" if name == "time" else "i1") for name in _NAMES}),
+        path,
+        row_group_size=rows,
+        data_page_size=2**31 - 1,
+        write_batch_size=rows,
+        compression="zstd",
+        use_dictionary=False,
+        write_statistics=False,
+        **one_page,
+    )
+    content = path.read_bytes()
+    start = len(content) - 8 - int.from_bytes(content[-8:-4], "little")
+    said = _zigzag(rows)
+    footer = content[start:].replace(said, _zigzag(12, len(said)))
+    path.write_bytes(content[:start] + footer)
+    assert writer.ParquetFile(path).metadata.num_rows == 12
+    return "unpacked it is larger than"
+
+
+def parquet_rows(path: Path) -> str:
+    """A group of rows says 150 milliards of them: damage at four bytes of 1330, found among a million."""
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    rows = 1_000_003  # found twice in the footer behind the columns' own: of the group, and of the file
+    writer.write_table(pyarrow.table({name: np.zeros(rows) for name in _NAMES}), path)
+    content = path.read_bytes()
+    start = len(content) - 8 - int.from_bytes(content[-8:-4], "little")
+    said = _zigzag(rows)
+    footer = content[start:].replace(said, _zigzag(12, len(said)), 1)  # the first is the file's
+    path.write_bytes(content[:start] + footer)
+    return "its groups hold 1000003 rows, and it has 12"
+
+
+def parquet_texts(path: Path) -> str:
+    """A text of 100 kB, in each of 8,000 cells."""
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    cells = ["y" * 100_000] * 100
+    table = pyarrow.table({"time": np.zeros(100), "position": cells, "torque": np.zeros(100)})
+    with writer.ParquetWriter(path, table.schema, compression="zstd") as file:
+        for _ in range(80):
+            file.write_table(table)
+    return "at index 0 is not a number"
+
+
+def hdf5_chunk(path: Path) -> str:
+    """A chunk of 12 numbers that holds 800 MB."""
+    h5py = pytest.importorskip("h5py")
+    packer = zlib.compressobj(9)
+    packed = b"".join(packer.compress(bytes(10_000_000)) for _ in range(80)) + packer.flush()
+    with h5py.File(path, "w") as file:
+        for name in _NAMES:
+            dataset = file.create_dataset(name, (12,), "f8", chunks=(12,), compression="gzip")
+            dataset.id.write_direct_chunk((0,), packed)
+    return "a chunk holds more than 96 bytes"
+
+
+def hdf5_large_chunk(path: Path) -> str:
+    """A chunk of 800 MB, of a dataset of 12 numbers."""
+    h5py = pytest.importorskip("h5py")
+    packer = zlib.compressobj(9)
+    packed = b"".join(packer.compress(bytes(10_000_000)) for _ in range(80)) + packer.flush()
+    with h5py.File(path, "w") as file:
+        for name in _NAMES:
+            dataset = file.create_dataset(
+                name, (12,), "f8", chunks=(100_000_000,), maxshape=(None,), compression="gzip"
+            )
+            dataset.id.write_direct_chunk((0,), packed)
+    return "unpacked it is larger than"
+
+
+def npz_bzip2(path: Path) -> str:
+    """A member of 600 MB, of which the archive's index says 56 MB."""
+    head = io.BytesIO()
+    shape = {"descr": "<f8", "fortran_order": False, "shape": (7_000_000,)}
+    np.lib.format.write_array_header_1_0(head, shape)
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_BZIP2) as archive:
+        with archive.open("time.npy", "w", force_zip64=True) as member:
+            member.write(head.getvalue())
+            for _ in range(60):
+                member.write(bytes(10_000_000))
+        for name in ("position.npy", "torque.npy"):
+            archive.writestr(name, head.getvalue())
+        archive.infolist()[0].file_size = len(head.getvalue()) + 56_000_000
+    return "packed by a method that numpy.savez_compressed does not use"
+
+
+LIES: tuple[Callable[[Path], str], ...] = (
+    *(parquet_pages, parquet_rows, parquet_texts, hdf5_chunk, hdf5_large_chunk, npz_bzip2),
+)
+
+
+def _limit() -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (_MOST, _MOST))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the peak is measured as Linux counts it")
+@pytest.mark.parametrize("lie", LIES, ids=lambda lie: lie.__name__)
+def test_a_file_that_lies_is_refused_in_little_memory(
+    lie: Callable[[Path], str], tmp_path: Path
+) -> None:
+    ending = {"parquet": ".parquet", "hdf5": ".h5", "npz": ".npz"}[lie.__name__.partition("_")[0]]
+    path = tmp_path / f"lie{ending}"
+    expected = lie(path)
+    assert path.stat().st_size < 3_000_000
+    done = subprocess.run(
+        [sys.executable, "-c", _CODE, str(path)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+        check=False,
+        preexec_fn=_limit,
+    )
+    assert done.returncode == 0, done.stderr
+    sentence, peak = done.stdout.splitlines()
+    assert expected in sentence
+    assert path.name in sentence
+    assert int(peak) < _PEAK
+
+
+def _written(writer: Any, table: Any, **options: Any) -> bytes:
+    file = io.BytesIO()
+    writer.write_table(table, file, row_group_size=1000, data_page_size=2000, **options)
+    return file.getvalue()
+
+
+def _chunks(writer: Any, content: bytes) -> list[tuple[int, int, int]]:
+    """Start, end and bytes with headers, of each column of each group."""
+    metadata = writer.ParquetFile(io.BytesIO(content)).metadata
+    found = []
+    for group, leaf in itertools.product(
+        range(metadata.num_row_groups), range(metadata.num_columns)
+    ):
+        chunk = metadata.row_group(group).column(leaf)
+        start = chunk.data_page_offset
+        if chunk.has_dictionary_page:
+            start = min(start, chunk.dictionary_page_offset)
+        end = start + chunk.total_compressed_size
+        found.append((start, end, chunk.total_uncompressed_size))
+    return found
+
+
+def test_pages_hold_what_a_true_footer_says() -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    count = 3000
+    table = pyarrow.table(
+        {
+            "time": np.arange(count) * 1e-3,
+            "zero": np.zeros(count),
+            "text": [f"joint {k % 7}" for k in range(count)],
+            "few": pyarrow.array([None if k % 3 else float(k) for k in range(count)]),
+            "pair": [[1.0, 2.0]] * count,
+        }
+    )
+    for packed, dictionary, version, described in itertools.product(
+        ("none", "snappy", "gzip", "zstd"), (True, False), ("1.0", "2.0"), (True, False)
+    ):
+        content = _written(
+            writer,
+            table,
+            compression=packed,
+            use_dictionary=dictionary,
+            data_page_version=version,
+            write_statistics=described,
+            write_page_index=described,
+        )
+        for start, end, size in _chunks(writer, content):
+            held = unpacked_size(content, start, end)
+            assert size - 100 * (end - start) < held < size  # the footer counts headers, too
+            assert held > 0
+
+
+@settings(max_examples=300)
+@given(content=st.binary(max_size=200), start=st.integers(-3, 20), length=st.integers(-3, 250))
+def test_any_bytes_are_pages_or_damage(content: bytes, start: int, length: int) -> None:
+    with contextlib.suppress(ValueError):
+        assert unpacked_size(content, start, start + length) >= 0
+
+
+def test_sizes_are_read_as_thrift_reads_them() -> None:
+    page = b"\x15\x00\x15%s\x15%s\x00"
+    body = bytes(10)
+    one = page % (_zigzag(5000), _zigzag(10)) + body
+    assert unpacked_size(one, 0, len(one)) == 5000
+    assert unpacked_size(one + one, 0, 2 * len(one)) == 10_000
+    # More than 32 bits are cut off; the last of two sizes counts.
+    wide = page % (_zigzag((1 << 34) + 70), _zigzag(10)) + body
+    assert unpacked_size(wide, 0, len(wide)) == 70
+    twice = b"\x15\x00\x15%s\x15%s\x05\x04%s\x00" % (_zigzag(7), _zigzag(10), _zigzag(9)) + body
+    assert unpacked_size(twice, 0, len(twice)) == 9
+    with pytest.raises(ValueError, match="damaged"):
+        unpacked_size(twice[:6], 0, 6)
+    with pytest.raises(ValueError, match="no size"):
+        unpacked_size(b"\x15\x00\x15\x01\x15\x02\x00", 0, 7)
+    with pytest.raises(ValueError, match="damaged"):
+        unpacked_size(b"\x1c" * 100, 0, 100)  # structures within each other
+
+
+def test_pages_count_where_a_column_is_larger_than_its_rows(tmp_path: Path) -> None:
+    """Rows and pages are both counted, whichever is more."""
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    from jointid.recording.readers.parquet_reader import ParquetTable
+
+    path = tmp_path / "a.parquet"
+    words = [f"{k:040d}" for k in range(100)]
+    table = pyarrow.table({"time": np.zeros(100), "text": words})
+    writer.write_table(table, path, use_dictionary=["time"])
+    opened = ParquetTable(path)
+    opened._room = room = Room(path)
+    allowed = room.left
+    opened.numbers([0])
+    assert allowed - room.left == 8 * 100  # its pages hold a single number
+    opened.numbers([0])
+    assert allowed - room.left == 8 * 100
+    assert opened.text(1) == words
+    assert allowed - room.left > 8 * 100 + 40 * 100
+
+
+def test_chunks_of_any_kind_are_read(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    count = 40_000
+    chance = np.random.default_rng(1)
+    kinds: tuple[dict[str, Any], ...] = (
+        {"chunks": (20_000,), "compression": "gzip"},
+        {"chunks": (20_000,), "compression": "gzip", "shuffle": True, "fletcher32": True},
+        {"chunks": (50_000,), "compression": "gzip", "maxshape": (None,), "compression_opts": 0},
+        {"chunks": (20_000,), "compression": "lzf"},
+    )
+    for kind, block in itertools.product(kinds, (0, 512)):
+        path = tmp_path / "a.h5"
+        signals = {"time": np.arange(count) * 1e-3}
+        signals |= {name: chance.normal(size=count) for name in _NAMES[1:]}
+        with h5py.File(path, "w", userblock_size=block) as file:
+            for name, values in signals.items():
+                file.create_dataset(name, data=values, **kind)
+        run = jid.load(path)
+        assert np.array_equal(run.position, signals["position"])
+
+
+def test_chunks_packed_twice_are_refused(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "a.h5"
+    packed = zlib.compress(zlib.compress(bytes(96)) + bytes(70_000))
+    with h5py.File(path, "w") as file:
+        for name in _NAMES:
+            made_by = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+            made_by.set_chunk((12,))
+            made_by.set_deflate(9)
+            made_by.set_deflate(9)
+            space = h5py.h5s.create_simple((12,))
+            made = h5py.h5d.create(file.id, name.encode(), h5py.h5t.NATIVE_DOUBLE, space, made_by)
+            made.write_direct_chunk((0,), packed + bytes(70_000))
+    with pytest.raises(jid.InputError, match="its chunks are packed more than once"):
+        jid.load(path)
