@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 
 import jointid as jid
 from jointid.base.unpacking import Room
-from jointid.recording.readers.parquet_pages import unpacked_size
+from jointid.recording.readers.parquet_sizes import Sizes, pages_size
 
 _PEAK = 500_000_000  # bytes of the whole program
 _MOST = (
@@ -227,36 +227,57 @@ def test_pages_hold_what_a_true_footer_says() -> None:
             write_statistics=described,
             write_page_index=described,
         )
-        for start, end, size in _chunks(writer, content):
-            held = unpacked_size(content, start, end)
+        chunks = _chunks(writer, content)
+        for start, end, size in chunks:
+            held = pages_size(content, start, end)
             assert size - 100 * (end - start) < held < size  # the footer counts headers, too
             assert held > 0
+        sizes = Sizes(content)
+        assert sizes.rows == count
+        for leaf in range(5):
+            own = (pages_size(content, start, end) for start, end, _ in chunks[leaf::5])
+            assert sizes.of(leaf) == sum(own)
 
 
 @settings(max_examples=300)
 @given(content=st.binary(max_size=200), start=st.integers(-3, 20), length=st.integers(-3, 250))
 def test_any_bytes_are_pages_or_damage(content: bytes, start: int, length: int) -> None:
     with contextlib.suppress(ValueError):
-        assert unpacked_size(content, start, start + length) >= 0
+        assert pages_size(content, start, start + length) >= 0
+
+
+@settings(max_examples=300)
+@given(place=st.integers(0, 10**6), value=st.integers(0, 255), wide=st.booleans())
+def test_any_footer_is_read_or_damaged(place: int, value: int, wide: bool) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    content = bytearray(_written(writer, pyarrow.table({"time": [0.0, 1.0], "text": ["a", "b"]})))
+    where = place % len(content)
+    content[where : where + (4 if wide else 1)] = bytes([value] * (4 if wide else 1))
+    try:
+        sizes = Sizes(bytes(content))
+        assert min(sizes.rows, sizes.of(0), sizes.of(1)) >= 0
+    except (ValueError, LookupError):
+        pass
 
 
 def test_sizes_are_read_as_thrift_reads_them() -> None:
     page = b"\x15\x00\x15%s\x15%s\x00"
     body = bytes(10)
     one = page % (_zigzag(5000), _zigzag(10)) + body
-    assert unpacked_size(one, 0, len(one)) == 5000
-    assert unpacked_size(one + one, 0, 2 * len(one)) == 10_000
+    assert pages_size(one, 0, len(one)) == 5000
+    assert pages_size(one + one, 0, 2 * len(one)) == 10_000
     # More than 32 bits are cut off; the last of two sizes counts.
     wide = page % (_zigzag((1 << 34) + 70), _zigzag(10)) + body
-    assert unpacked_size(wide, 0, len(wide)) == 70
+    assert pages_size(wide, 0, len(wide)) == 70
     twice = b"\x15\x00\x15%s\x15%s\x05\x04%s\x00" % (_zigzag(7), _zigzag(10), _zigzag(9)) + body
-    assert unpacked_size(twice, 0, len(twice)) == 9
+    assert pages_size(twice, 0, len(twice)) == 9
     with pytest.raises(ValueError, match="damaged"):
-        unpacked_size(twice[:6], 0, 6)
+        pages_size(twice[:6], 0, 6)
     with pytest.raises(ValueError, match="no size"):
-        unpacked_size(b"\x15\x00\x15\x01\x15\x02\x00", 0, 7)
+        pages_size(b"\x15\x00\x15\x01\x15\x02\x00", 0, 7)
     with pytest.raises(ValueError, match="damaged"):
-        unpacked_size(b"\x1c" * 100, 0, 100)  # structures within each other
+        pages_size(b"\x1c" * 100, 0, 100)  # structures within each other
 
 
 def test_pages_count_where_a_column_is_larger_than_its_rows(tmp_path: Path) -> None:

@@ -9,6 +9,17 @@ from typing import Any
 from jointid.base.errors import InputError
 from jointid.base.schema import check_depth, read_text
 
+_LONGEST = 300_000  # characters: long keys take a time that grows with their square
+
+
+def check_length(text: str, path: Path) -> None:
+    """Raise `InputError` for a text that is longer than any TOML file of ours."""
+    if len(text) > _LONGEST:
+        raise InputError(
+            f"too long for a TOML file of ours: {len(text)} characters, at most {_LONGEST}",
+            place=str(path),
+        )
+
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Return the tables of a TOML file; a schema checks them.
@@ -19,6 +30,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         It cannot be read, or is not TOML; names the file, and the line where it is known.
     """
     text = read_text(path)
+    check_length(text, path)
     try:
         tables = tomllib.loads(text.removeprefix("\ufeff"))  # some editors on Windows write it
         check_depth(tables, "not TOML of ours")

@@ -13,6 +13,7 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.schema import read_bytes
+from jointid.base.toml_file import check_length
 from jointid.joint.checks import check_flag, check_parameter_name, suggestion
 from jointid.joint.file_angles import keep_angles, with_angles
 from jointid.joint.joint import Joint
@@ -313,6 +314,7 @@ def _text(path: Path) -> str:
 
 
 def _parsed(text: str, path: Path) -> dict[str, Any]:
+    check_length(text, path)
     try:
         return tomllib.loads(text)
     except RecursionError:

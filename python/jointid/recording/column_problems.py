@@ -26,6 +26,7 @@ _MEASURED = ("meas", "actual")
 _SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
 _EXAMINED = 12  # columns without headers
 _ROWS = 5000
+_MOST_TRIED = 200  # columns whose names say nothing
 _ALIKE = 0.999  # correlation of a velocity with the position's rate
 
 
@@ -232,7 +233,7 @@ def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> 
     unrecognised = [k for k in possible if understood(table.headers[k]).meaning is None]
     best = [k for k in of_joints if k in possible] or likely
     if not best and signal == "position":  # no word of the headers speaks for any
-        best = [k for k in unrecognised or possible if _moves(table, k)]
+        best = [k for k in (unrecognised or possible)[:_MOST_TRIED] if _moves(table, k)]
     elif not best:
         best = unrecognised or possible
     return sorted(best, key=lambda k: _doubts(plain(table.headers[k])))

@@ -8,6 +8,8 @@ import numpy.typing as npt
 
 from jointid.recording.signals import FloatArray
 
+MOST_COLUMNS = 10_000
+
 
 class Table(Protocol):
     """Named columns, wherever they come from."""

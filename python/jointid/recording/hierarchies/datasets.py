@@ -1,11 +1,15 @@
 """The datasets of an HDF5 file that hold numbers, each split into vectors."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+from jointid.base.unpacking import Room
 from jointid.base.values import dataclass
+from jointid.recording.hierarchies import hdf5_chunks
 
+_FEW, _LONGEST = 16, 10_000  # texts of an attribute that are read, and their bytes
 _WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
 _MATLAB_NUMBERS = (
     *("double", "single", "logical"),
@@ -51,12 +55,14 @@ class Vector:
         return self.path.rpartition("/")[0]
 
 
-def vectors_of(file: Any) -> tuple[list[Vector], list[str]]:
+def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
     """Return the vectors of an open file, and what is not read.
 
     Parameters
     ----------
     file : h5py.File
+    room : Room
+        For names that are read, too.
 
     Raises
     ------
@@ -71,7 +77,7 @@ def vectors_of(file: Any) -> tuple[list[Vector], list[str]]:
     def visit(path: str, thing: Any) -> None:
         if path.startswith("#"):  # MATLAB's own: contents of cells and objects
             return
-        kind = _text(thing.attrs.get("MATLAB_class"))
+        kind = _attribute(thing, "MATLAB_class")
         if isinstance(thing, h5py.Dataset):
             if kind and kind not in _MATLAB_NUMBERS:
                 if kind not in ("char", "cell", "string"):
@@ -84,7 +90,7 @@ def vectors_of(file: Any) -> tuple[list[Vector], list[str]]:
             left_out.append(f"{path} ({kind or 'object'})")
 
     file.visititems(visit)
-    return _named_blocks(file, found), left_out
+    return _named_blocks(file, found, room), left_out
 
 
 def _vectors(path: str, dataset: Any) -> Iterator[Vector]:
@@ -137,20 +143,31 @@ def values_of(file: Any, vector: Vector) -> Any:
     return dataset[vector.part, :] if vector.by_rows else dataset[:, vector.part]
 
 
-def _named_blocks(file: Any, vectors: list[Vector]) -> list[Vector]:
+def _named_blocks(file: Any, vectors: list[Vector], room: Room) -> list[Vector]:
     """Name the columns of a pandas frame's blocks, which stand in a dataset beside them."""
     named = []
+    labels: dict[str, Any] = {}
     for vector in vectors:
         name = ""
         last = vector.path.rpartition("/")[2]
         if last.startswith("block") and last.endswith("_values"):
-            items = file.get(f"{vector.path.removesuffix('_values')}_items")
-            if items is not None and items.dtype.kind == "S" and (vector.part or 0) < len(items):
-                name = _text(items[vector.part or 0])
+            path = f"{vector.path.removesuffix('_values')}_items"
+            if path not in labels:
+                labels[path] = _labels(file.get(path), room)
+            if (vector.part or 0) < len(labels[path]):
+                name = _text(labels[path][vector.part or 0])
         if last == "axis1" and f"{vector.group}/axis0".lstrip("/") in file:
             name = "index"
         named.append(vector if not name else replace(vector, name=name))
     return named
+
+
+def _labels(items: Any, room: Room) -> Any:
+    """Return the names of a block's columns; none where they are no texts, or far too many."""
+    if items is None or items.dtype.kind != "S" or items.ndim != 1 or len(items) > _WIDEST:
+        return ()
+    hdf5_chunks.take(items, room)
+    return items[:]
 
 
 def _unit(dataset: Any) -> str:
@@ -158,10 +175,19 @@ def _unit(dataset: Any) -> str:
         (
             text
             for name in ("unit", "units", "Unit", "Units")
-            if (text := _text(dataset.attrs.get(name)))
+            if (text := _attribute(dataset, name))
         ),
         "",
     )
+
+
+def _attribute(thing: Any, name: str) -> str:
+    """Return an attribute that is a text, or a few of which it is the first; else nothing."""
+    if name not in thing.attrs:
+        return ""
+    about = thing.attrs.get_id(name)
+    few = math.prod(about.shape) <= _FEW and about.get_storage_size() <= _LONGEST
+    return _text(thing.attrs.get(name)) if few else ""
 
 
 def _text(value: Any) -> str:

@@ -10,7 +10,9 @@ from typing import Any
 from jointid.base.unpacking import Room
 
 _SMALL = 60_000  # bytes of a chunk, of which zlib makes 62 MB at most
-_DEFLATE, _CHECKSUM = 1, 3  # HDF5's numbers of filters
+_DEFLATE, _SHUFFLE, _CHECKSUM = 1, 2, 3  # HDF5's numbers of filters
+# What these make depends on numbers in the file that the library does not check.
+_UNREAD = {4: "szip", 5: "N-bit", 6: "scale-offset"}
 
 
 def take(dataset: Any, room: Room) -> None:
@@ -29,19 +31,21 @@ def take(dataset: Any, room: Room) -> None:
         A chunk is damaged: it holds more than a chunk does, or cannot be unpacked.
     """
     if dataset.chunks is None:
-        room.take(dataset.nbytes)
+        room.take(max(dataset.nbytes, 8 * dataset.size))  # as numbers are converted
         return
     size = math.prod(dataset.chunks) * dataset.dtype.itemsize  # may be more than the dataset
-    room.take(max(dataset.nbytes, size))
+    room.take(max(dataset.nbytes, 8 * dataset.size, size))
     settings = dataset.id.get_create_plist()
     filters = [settings.get_filter(number)[0] for number in range(settings.get_nfilters())]
-    if _DEFLATE not in filters or dataset.id.get_storage_size() <= _SMALL:
+    for each in filters:
+        if each in _UNREAD:
+            raise ValueError(f"its chunks are packed by {_UNREAD[each]}, which is not read")
+    if _DEFLATE not in filters:
         return
-    if (
-        filters.count(_DEFLATE) > 1
-        or [each for each in filters if each != _CHECKSUM][-1] != _DEFLATE
-    ):
+    if filters.count(_DEFLATE) > 1 or set(filters) - {_SHUFFLE, _DEFLATE, _CHECKSUM}:
         raise ValueError("its chunks are packed more than once")
+    if dataset.id.get_storage_size() <= _SMALL:
+        return
     skipped = 1 << filters.index(_DEFLATE)
     for place in product(*map(range, [0] * len(dataset.shape), dataset.shape, dataset.chunks)):
         chunk = dataset.id.get_chunk_info_by_coord(place)

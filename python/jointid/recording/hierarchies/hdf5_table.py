@@ -15,6 +15,7 @@ from jointid.recording.hierarchies import hdf5_chunks
 from jointid.recording.hierarchies.datasets import Vector, values_of, vectors_of
 from jointid.recording.hierarchies.groups import chosen_vectors
 from jointid.recording.signals import FloatArray, signal_array
+from jointid.recording.table import MOST_COLUMNS
 
 
 class Hdf5Table:
@@ -52,10 +53,17 @@ class Hdf5Table:
             raise InputError("the file is not an HDF5 file, or is truncated", place=str(path))
         try:
             with h5py.File(path, "r", locking=False) as file:
-                vectors, left_out = vectors_of(file)
+                vectors, left_out = vectors_of(file, self._room)
+        except InputError:
+            raise
         # HDF5 documents no errors for damaged bytes.
         except Exception as error:
             raise self._damage(error) from None
+        if len(vectors) > MOST_COLUMNS:
+            raise InputError(
+                f"it has {len(vectors)} columns; at most {MOST_COLUMNS} are looked through",
+                place=str(path),
+            )
         if not vectors:
             raise InputError(
                 f"no vectors of numbers are found{_not_read(left_out)}",
@@ -63,7 +71,10 @@ class Hdf5Table:
                 remedy="save time and position as vectors",
             )
         self._vectors = chosen_vectors(str(path), vectors, group)
-        names = [_name(vector, self._vectors) for vector in self._vectors]
+        groups: dict[str, set[str]] = {}  # of what is called alike
+        for vector in self._vectors:
+            groups.setdefault(vector.last, set()).add(vector.group)
+        names = [_name(vector, groups[vector.last]) for vector in self._vectors]
         count = Counter(names)
         self.headers = tuple(
             _with_unit(name if count[name] == 1 else _full(vector, "/"), vector.unit)
@@ -81,9 +92,8 @@ class Hdf5Table:
             if count[other] <= 1
         }
         parts = [_part(vector) for vector in self._vectors]
-        self.other_names |= {
-            part: k for k, part in enumerate(parts) if part and parts.count(part) == 1
-        }
+        often = Counter(parts)
+        self.other_names |= {part: k for k, part in enumerate(parts) if part and often[part] == 1}
         self.notes = {"not_read": left_out} if left_out else {}
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
@@ -128,10 +138,10 @@ def _not_read(left_out: Sequence[str]) -> str:
     return f"; objects such as {left_out[0]} are not read" if left_out else ""
 
 
-def _name(vector: Vector, vectors: Sequence[Vector]) -> str:
+def _name(vector: Vector, groups: set[str]) -> str:
     """Return a vector's name: of a matrix the number of its column behind it, as in other MATLAB files."""
     if vector.name or vector.part is None:
-        return _joint_group(vector, vectors) + vector.last
+        return _joint_group(vector, groups) + vector.last
     return f"{vector.last}(:,{vector.part + 1})"
 
 
@@ -143,10 +153,9 @@ def _as_of_a_joint(vector: Vector) -> tuple[str, ...]:
     return name, _with_unit(name, vector.unit)
 
 
-def _joint_group(vector: Vector, vectors: Sequence[Vector]) -> str:
+def _joint_group(vector: Vector, groups: set[str]) -> str:
     """Return the group before the name where each of several groups holds one joint."""
-    alike = {other.group for other in vectors if other.last == vector.last}
-    return f"{vector.group.rpartition('/')[2]}." if len(alike) > 1 and vector.group else ""
+    return f"{vector.group.rpartition('/')[2]}." if len(groups) > 1 and vector.group else ""
 
 
 def _full(vector: Vector, separator: str) -> str:

@@ -7,7 +7,9 @@ import numpy.typing as npt
 
 from jointid.base.values import dataclass
 from jointid.recording.messages.decoding import BinaryDecoder, Block, JsonDecoder
+from jointid.recording.messages.joints import Column
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
+from jointid.recording.table import MOST_COLUMNS
 
 _MESSAGES, _BYTES = 4096, 4 << 20  # of a batch
 READ = ("cdr", "ros1", "json")
@@ -52,12 +54,17 @@ def collect(source: Source, topic: Topic) -> Collected:
         )
     decoder = JsonDecoder(topic) if topic.encoding == "json" else BinaryDecoder(topic)
     blocks: list[Block] = []
+    columns: set[Column] = set()
     stamps: list[npt.NDArray[np.int64]] = []
     log_times: list[npt.NDArray[np.int64]] = []
     read, stamped = 0, True
     for batch in _batches(source.messages(topic)):
         found, own = decoder.decode([message for _, message in batch], read)
         blocks += found
+        for block in found:
+            columns.update(block.columns)
+        if len(columns) > MOST_COLUMNS:
+            raise DamageError(f"its messages hold more than {MOST_COLUMNS} different numbers")
         log_times.append(_times(batch))
         if own is None:
             stamped = False

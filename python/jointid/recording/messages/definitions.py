@@ -36,10 +36,15 @@ def types_of(topic: Topic) -> Types:
     return _types(topic.kind, topic.definition, topic.definition_format)
 
 
+_LONGEST = 200_000  # characters of a definition
+
+
 @lru_cache(maxsize=256)
 def _types(kind: str, definition: str, form: str) -> Types:
     from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
+    if len(definition) > _LONGEST:
+        raise DamageError(f"the definition of {kind} is longer than {_LONGEST} characters")
     known = dict(_common())
     if definition:
         try:

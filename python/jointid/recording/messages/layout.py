@@ -37,6 +37,8 @@ _CODES = {
 _BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4  # kinds of a field's description in rosbags
 _LONGEST = 1024  # numbers of a sequence that become columns: a longer one is an image or a scan
 _DEEPEST = 32
+_MOST = 8192  # numbers, and as many texts, of a message
+_SPARE = 10_000  # elements of a message beside one for each byte: some take none
 
 
 @dataclass
@@ -114,6 +116,8 @@ class _Walk:
         self._aligned = encoding == "cdr"
         self._order = "<"
         self.position = self._origin = 0
+        self._left = len(message) + _SPARE
+        self._numbers_left = self._texts_left = _MOST
         if self._aligned:
             if len(message) < 4 or message[0] != 0 or message[1] > 1:
                 raise DamageError("its encapsulation is not plain CDR")
@@ -148,6 +152,9 @@ class _Walk:
             self._one(int(inner), kind, (*path, index), depth)
 
     def _one(self, node: int, kind: Any, path: Path, depth: int) -> None:
+        self._left -= 1
+        if self._left < 0:
+            raise DamageError("it holds more elements than bytes")
         if node == _NAME:
             self.fields(kind, path, depth + 1)
         elif kind[0] == "string":
@@ -169,6 +176,9 @@ class _Walk:
         if self.position > len(self._message):
             raise DamageError("it ends early")
         if count <= _LONGEST:
+            self._numbers_left -= count
+            if self._numbers_left < 0:
+                raise DamageError(f"it holds more than {_MOST} numbers")
             self.layout.numbers.append((path, start, self._order + code, count if each else 0))
 
     def _length(self) -> int:
@@ -187,5 +197,8 @@ class _Walk:
             raise DamageError("it ends early")
         text = self._message[start : self.position]
         if may_name(path):
+            self._texts_left -= 1
+            if self._texts_left < 0:
+                raise DamageError(f"it holds more than {_MOST} texts")
             self.layout.names[path] = text.rstrip(b"\0").decode("utf-8")
             self.layout.fixed.append((start, self.position))

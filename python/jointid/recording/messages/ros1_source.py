@@ -22,6 +22,9 @@ class _EndError(Exception):
     """The bytes end within a record."""
 
 
+_MOST_CONNECTIONS = 10_000
+
+
 class Ros1Source:
     """A ROS 1 bag of version 2.0.
 
@@ -119,6 +122,8 @@ class Ros1Source:
             )
         except (KeyError, UnicodeDecodeError, struct.error):
             raise DamageError("the description of a topic is damaged") from None
+        if len(self._connections) > _MOST_CONNECTIONS:
+            raise DamageError(f"it has more than {_MOST_CONNECTIONS} connections")
 
 
 def _record(stream: BinaryIO, size: int) -> tuple[dict[bytes, bytes], bytes]:

@@ -69,17 +69,36 @@ class SqliteSource:
                     raise DamageError("it is damaged (a row holds no message)")
                 if message.startswith(_ZSTANDARD):
                     message = _decompressed(message, self._room)
+                else:
+                    self._room.take(len(message))
                 yield time, message
         finally:
             connection.close()
 
     def _connected(self) -> sqlite3.Connection:
         # Not written to, not even by SQLite's own recovery.
-        return sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
+        connection = sqlite3.connect(
+            f"{self._path.resolve().as_uri()}?mode=ro&immutable=1", uri=True
+        )
+        # Nothing that a table holds is larger than the file.
+        longest = min(max(self._path.stat().st_size, 1_000_000), 1_000_000_000)
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
+        return connection
+
+    def _check_tables(self, connection: sqlite3.Connection) -> None:
+        """Refuse views and computed columns: they make as many rows as they like, of any size."""
+        for name in ("topics", "messages", "message_definitions"):
+            query = "SELECT type = 'table' AND rootpage > 0 FROM sqlite_master WHERE name = ?"
+            computed = connection.execute(
+                "SELECT COUNT(*) FROM pragma_table_xinfo(?) WHERE hidden <> 0", (name,)
+            )
+            if connection.execute(query, (name,)).fetchall() == [(0,)] or computed.fetchone()[0]:
+                raise DamageError(f"it is not a ROS 2 bag: {name} is not a plain table")
 
     def _topics(self) -> tuple[Topic, ...]:
         connection = self._connected()
         try:
+            self._check_tables(connection)
             rows = connection.execute("SELECT id, name, type, serialization_format FROM topics")
             described = rows.fetchall()
             counts = dict(

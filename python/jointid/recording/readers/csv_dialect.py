@@ -10,6 +10,7 @@ _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 BLANK = " "  # separates the cells of controllers' logs, one or several of them
 _TOKEN = r'"[^"]*"|\S+'
 _UNITS = r"[\[(][^\])]*[\])]|\S+"
+_LONG = 10_000  # characters of a line whose brackets are not looked for
 _OPEN = r"[\[(][^\[\]()]*$"
 _DECIMAL_COMMA = r"(?i)[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?"
 # 1,234 may mean 1234 or 1.234; 0,25 and 1,5 and 1234,567 are unambiguous.
@@ -33,7 +34,7 @@ def cells_of(line: str, separator: str) -> list[str]:
 
 def _between_blanks(line: str) -> list[str]:
     """Return what stands between blanks; a bracket belongs to the word before it: `time [s]`."""
-    if not any(sign in line for sign in '"[('):
+    if len(line) > _LONG or not any(sign in line for sign in '"[('):
         return line.split()
     if line.lstrip()[:1] in ("[", "("):  # a row of units
         return re.findall(_UNITS, line)

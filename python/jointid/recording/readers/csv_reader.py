@@ -66,7 +66,10 @@ class CsvTable:
             self._content, ending = session_text(self._content)
         self._table: FloatArray | None = None
         long = len(self._content) > _LONG
-        lines = _first_lines(self._content)
+        try:
+            lines = _first_lines(self._content)
+        except InputError as error:
+            raise error.at(self.source) from None
         self.saved: Mapping[str, Any] | None = None
         if lines[0].startswith(CSV_MARK):
             self.saved = saved_attributes(lines[0][len(CSV_MARK) :], f"{self.source}, line 1")
@@ -244,6 +247,8 @@ def _first_lines(text: str) -> list[str]:
     for length in (_SHORT, _LONG):
         if len(text) > length:
             lines = _lines(text[:length])[:-1]
+            if length == _LONG and not lines:
+                raise InputError("the first line is longer than 1 MB; a header is expected")
             if length == _LONG or _more_than(SEARCHED, lines):
                 return lines
     return _lines(text)

@@ -60,6 +60,13 @@ def _decoded(path: Path, content: bytes) -> str:
     return text
 
 
+def _count(content: bytes, room: Room) -> None:
+    """Count what a packed text takes beside its bytes: its numbers, and wide characters."""
+    cells = sum(map(content.count, (b",", b";", b"\t", b"\n")))
+    width = 0 if content.isascii() else 4 if re.search(b"[\xf0-\xf4]", content) else 2
+    room.take(8 * cells + width * len(content))
+
+
 def _unzipped(path: Path, content: bytes) -> bytes:
     if not content.startswith(_GZIP):
         raise InputError(
@@ -68,7 +75,11 @@ def _unzipped(path: Path, content: bytes) -> bytes:
             remedy="name it .csv if it is text",
         )
     try:
-        return Room(path, len(content)).gunzip(content)
+        room = Room(path, len(content))
+        text = room.gunzip(content)
+        room.again()
+        _count(text, room)
+        return text
     except EOFError:
         raise InputError(
             "the compressed file is truncated", place=str(path), remedy="copy or record it again"

@@ -21,7 +21,7 @@ from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.registry import reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.signals import Kind, TorqueHold
-from jointid.recording.table import Table
+from jointid.recording.table import MOST_COLUMNS, Table
 from jointid.recording.unreadable import read_leniently
 from jointid.recording.wide.one_joint import OneJoint, joint_of_table
 
@@ -296,7 +296,7 @@ def table_of(
         check_kind(kind)
     try:
         with allowing(unpacked):
-            return reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
+            table = reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
     except FileNotFoundError:
         raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:
@@ -312,6 +312,12 @@ def table_of(
             place=str(file),
             remedy=(f"pip install 'jointid[{reader.extra}]'", "save the file as .csv"),
         ) from None
+    if len(table.headers) > MOST_COLUMNS:
+        raise InputError(
+            f"it has {len(table.headers)} columns; at most {MOST_COLUMNS} are looked through",
+            place=str(file),
+        )
+    return table
 
 
 def _without(file: Path, argument: str) -> str:

@@ -25,6 +25,8 @@ _STRUCT, _OPAQUE = 2, 17
 _NUMERIC = range(6, 16)  # double, single, int8 ... uint64; logical is one of them with a flag
 _COMPLEX = 0x0800
 
+_MOST_FIELDS, _MOST_ELEMENTS = 1000, 100_000  # of a struct
+
 
 class DamageError(ValueError):
     """The bytes contradict the format."""
@@ -72,6 +74,8 @@ def variables_of(content: bytes, order: str, room: Room) -> Iterator[Variable]:
         if kind != _MATRIX:
             raise DamageError(f"an element of the kind {kind} is in the place of a variable")
         variable = _variable(matrix, order, nested=False)
+        if variable.array is not None:  # as it is converted, of whatever it is stored
+            room.take(max(0, 8 * variable.array.size - variable.array.nbytes))
         if variable.name:  # what has none is for MATLAB's own objects
             yield variable
 
@@ -148,6 +152,9 @@ def _struct(
     if len(width) != 1 or not 0 < int(width[0]) <= 1024:
         raise DamageError("a struct has no length of field names")
     listed, step = bytes(_next(parts)[1]), int(width[0])
+    fields = -(-len(listed) // step)
+    if fields > _MOST_FIELDS or count * fields > _MOST_ELEMENTS:
+        raise DamageError(f"a struct has {count} elements with {fields} fields")
     names = [
         listed[first : first + step].split(b"\0")[0].decode("ascii", "replace")
         for first in range(0, len(listed), step)

@@ -28,6 +28,9 @@ def _damages() -> tuple[type[Exception], ...]:
     )
 
 
+_CELL = 60  # bytes of a cell as text
+
+
 class NpzTable:
     """A .npz file as a table of columns.
 
@@ -95,7 +98,9 @@ class NpzTable:
 
     def text(self, column: int) -> list[str]:
         """Return the values of a member as text."""
-        return [str(value) for value in np.ravel(self._member(self.headers[column])).tolist()]
+        cells = np.ravel(self._member(self.headers[column]))
+        self._room.take(_CELL * cells.size)
+        return [str(value) for value in cells.tolist()]
 
     def place(self, column: int, row: int) -> str:
         """Return file, member and index of a value."""
@@ -106,7 +111,6 @@ class NpzTable:
 
     def _member(self, name: str) -> npt.NDArray[Any]:
         if name not in self._taken:  # a column may be asked for more than once
-            self._taken.add(name)
             self._room.take(self._sizes.get(name, 0))
         try:
             value = self._archive[name]
@@ -122,6 +126,9 @@ class NpzTable:
             ) from None
         if not isinstance(value, np.ndarray):
             raise InputError("it is not an array", place=self._place(name))
+        if name not in self._taken:  # as it is converted, of whatever it is stored
+            self._taken.add(name)
+            self._room.take(max(0, 8 * value.size - self._sizes.get(name, 0)))
         return value
 
 

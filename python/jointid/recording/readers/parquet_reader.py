@@ -1,6 +1,6 @@
 """Reading .parquet files with pyarrow, which the extra `parquet` installs."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -11,9 +11,11 @@ import numpy.typing as npt
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
-from jointid.recording.readers.parquet_pages import unpacked_size
+from jointid.recording.readers.parquet_sizes import Sizes
 from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
+
+_CELL = 60  # bytes of a cell as text
 
 
 class ParquetTable:
@@ -39,14 +41,14 @@ class ParquetTable:
         self.header_place = self.source
         self._room = Room(path)
         self._taken: set[int] = set()
-        self._content = content = path.read_bytes()
+        content = path.read_bytes()
         import pyarrow
         from pyarrow import parquet
 
         try:
             self._file: Any = parquet.ParquetFile(pyarrow.BufferReader(content))
             names = self._file.schema_arrow.names
-            _raise_if_rows_differ(self._file.metadata)
+            self._sizes = Sizes(content)
             texts = _texts(self._file)
             if texts:  # one that is repeated a million times is kept once
                 self._file = parquet.ParquetFile(
@@ -58,6 +60,8 @@ class ParquetTable:
                 place=str(path),
             ) from None
         self.headers = tuple(map(str, names))
+        schema = self._file.metadata.schema
+        self._leaves = [(schema.column(leaf).path, leaf) for leaf in range(len(schema.names))]
         if not self.headers:
             raise InputError(
                 "the file has no columns; time and position are expected", place=str(path)
@@ -135,30 +139,19 @@ class ParquetTable:
             )
         try:
             if column not in self._taken:  # a column may be asked for more than once
-                in_pages = sum(self._in_pages(name))
-                self._room.take(max(8 * self._file.metadata.num_rows, in_pages))
+                own = (leaf for path, leaf in self._leaves if f"{path}.".startswith(f"{name}."))
+                cell = 8 if _is_number(kind.type) else _CELL
+                self._room.take(max(cell * self._sizes.rows, sum(map(self._sizes.of, own))))
                 self._taken.add(column)
             # One thread: the columns are small, and thread pools cause trouble after a fork.
-            return self._file.read(columns=[name], use_threads=False).column(name)
+            values = self._file.read(columns=[name], use_threads=False).column(name)
+            if not _is_number(values.type):
+                values.validate(full=True)  # places beyond the dictionary's end
         except InputError:
             raise
         except _damage() as error:
             raise self._unreadable(column, error) from None
-
-    def _in_pages(self, name: str) -> Iterator[int]:
-        """Bytes of a column's pages when they are unpacked, of each group of rows."""
-        metadata = self._file.metadata
-        own = [
-            leaf
-            for leaf in range(metadata.num_columns)
-            if f"{metadata.schema.column(leaf).path}.".startswith(f"{name}.")
-        ]
-        for group in map(metadata.row_group, range(metadata.num_row_groups)):
-            for chunk in map(group.column, own):
-                start = chunk.data_page_offset
-                if chunk.has_dictionary_page and 0 < chunk.dictionary_page_offset < start:
-                    start = chunk.dictionary_page_offset
-                yield unpacked_size(self._content, start, start + chunk.total_compressed_size)
+        return values
 
     def _place(self, column: int) -> str:
         return f"{self.source}, column {self.headers[column]!r}"
@@ -192,13 +185,6 @@ def _texts(file: Any) -> list[str]:
         for field in file.schema_arrow
         if field.name in leaves and not _is_number(field.type)
     ]
-
-
-def _raise_if_rows_differ(metadata: Any) -> None:
-    """Raise `ValueError` if a group says more rows than there are: pyarrow prepares memory for them."""
-    rows = [metadata.row_group(group).num_rows for group in range(metadata.num_row_groups)]
-    if min(rows, default=0) < 0 or sum(rows) != metadata.num_rows:
-        raise ValueError(f"its groups hold {sum(rows)} rows, and it has {metadata.num_rows}")
 
 
 def _damage() -> tuple[type[Exception], ...]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from jointid.base.values import dataclass
-from jointid.recording.headers import parsed
+from jointid.recording.headers import LONGEST, parsed
 from jointid.recording.units import find_unit
 from jointid.recording.wide.one_joint import MARK
 from jointid.recording.wide.words import (
@@ -65,6 +65,8 @@ def joint_headers(headers: Sequence[str]) -> dict[str, list[JointHeader]]:
     """
     found: dict[str, list[JointHeader]] = {}
     for index, header in enumerate(headers):
+        if len(header) > LONGEST:
+            continue
         numbered = _numbered(index, header)
         each = _indexed(index, header) or _dotted(index, header)
         if each is None and (numbered is None or numbered.meaning is None):

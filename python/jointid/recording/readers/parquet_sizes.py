@@ -1,0 +1,159 @@
+"""What the columns of a Parquet file hold when they are unpacked, as its footer and its pages say.
+
+pyarrow prepares memory for as many rows as a group of them says, and unpacks a page whatever the footer says of its
+column, so that a file of 1 MB may fill the memory. What it tells of damaged columns ends the process in some versions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+_DEEPEST = 16  # structures within each other; a footer has 6
+# Types of Thrift's compact protocol; the values of the first two are in the type.
+_TRUE, _FALSE, _BYTE, _I16, _I32, _I64, _DOUBLE, _BINARY, _LIST, _SET, _MAP, _STRUCT, _UUID = range(
+    1, 14
+)
+_BITS = {_I16: 16, _I32: 32, _I64: 64}
+_BYTES = {_TRUE: 1, _FALSE: 1, _BYTE: 1, _DOUBLE: 8, _UUID: 16}
+_Struct = dict[tuple[int, int], Any]  # by the number of a field and its type
+
+
+class Sizes:
+    """The footer of a Parquet file.
+
+    Parameters
+    ----------
+    content : bytes
+        The whole file.
+
+    Raises
+    ------
+    ValueError
+        It is damaged, or its groups of rows hold more or fewer rows than it says.
+    """
+
+    def __init__(self, content: bytes) -> None:
+        self._content = content
+        start = len(content) - 8 - int.from_bytes(content[-8:-4], "little")
+        footer = _Reader(content, start, len(content) - 8).struct(0)
+        self.rows: int = footer.get((3, _I64), -1)
+        self._groups = [_structure(each) for each in footer.get((4, _LIST), [])]
+        rows = [group.get((3, _I64), -1) for group in self._groups]
+        if min(rows, default=0) < 0 or sum(rows) != self.rows:
+            raise ValueError(f"its groups hold {sum(rows)} rows, and it has {self.rows}")
+
+    def of(self, column: int) -> int:
+        """Return the bytes of a column's pages, by the number of the column in the file.
+
+        Raises
+        ------
+        ValueError, LookupError
+            The footer or the header of a page is damaged.
+        """
+        return sum(self._of_groups(column))
+
+    def _of_groups(self, column: int) -> Iterator[int]:
+        for group in self._groups:
+            about = _structure(group[1, _LIST][column])[3, _STRUCT]
+            start = about[9, _I64]
+            if 0 < (dictionary := about.get((11, _I64), 0)) < start:
+                start = dictionary
+            yield pages_size(self._content, start, start + about[7, _I64])
+
+
+def pages_size(content: bytes, start: int, end: int) -> int:
+    """Return the bytes of all pages from start to end when they are unpacked.
+
+    Raises
+    ------
+    ValueError
+        A header is damaged.
+    """
+    total = 0
+    while start < end:
+        reader = _Reader(content, start, end)
+        header = reader.struct(0)
+        unpacked, packed = header.get((2, _I32), -1), header.get((3, _I32), -1)
+        if min(unpacked, packed) < 0:
+            raise ValueError(f"the page at byte {start} has no size")
+        total += unpacked
+        start = reader.place + packed
+    return total
+
+
+def _structure(value: Any) -> _Struct:
+    if not isinstance(value, dict):
+        raise ValueError("its footer is damaged")
+    return value
+
+
+class _Reader:
+    """Structures of Thrift's compact protocol, from one byte to another."""
+
+    def __init__(self, content: bytes, start: int, end: int) -> None:
+        self._content, self._start, self._end = content, start, min(end, len(content))
+        self.place = start
+        if start < 0:
+            raise self._damaged()
+
+    def struct(self, depth: int) -> _Struct:
+        """Return the fields of a structure; of several alike the last, as Thrift does."""
+        if depth > _DEEPEST:
+            raise self._damaged()
+        found: _Struct = {}
+        number = 0
+        while (first := self._byte()) != 0:
+            kind = first & 15
+            number = number + (first >> 4) if first >> 4 else self._number(16)
+            inside = kind not in (_TRUE, _FALSE)
+            found[number, kind] = self._value(kind, depth + 1) if inside else None
+        return found
+
+    def _value(self, kind: int, depth: int) -> Any:
+        if kind == _STRUCT:
+            return self.struct(depth)
+        if kind in _BITS:
+            return self._number(_BITS[kind])
+        if kind == _BINARY:
+            return self._forward(self._varint())
+        if kind in _BYTES:
+            return self._forward(_BYTES[kind])
+        if depth > _DEEPEST or kind not in (_LIST, _SET, _MAP):
+            raise self._damaged()
+        if kind == _MAP:
+            count = self._varint()
+            both = self._byte() if count else 0
+            kinds: tuple[int, ...] = (both >> 4, both & 15)
+        else:
+            first = self._byte()
+            count = first >> 4 if first >> 4 < 15 else self._varint()
+            kinds = (first & 15,)
+        # Each takes a byte at least, and the file ends.
+        return [self._value(each, depth + 1) for _ in range(count) for each in kinds]
+
+    def _number(self, bits: int) -> int:
+        """A signed number of so many bits; what is more of it is cut off, as Thrift does."""
+        value = self._varint() & ((1 << bits) - 1)
+        return (value >> 1) ^ -(value & 1)
+
+    def _varint(self) -> int:
+        value = 0
+        for shift in range(0, 70, 7):
+            byte = self._byte()
+            value |= (byte & 127) << shift
+            if byte < 128:
+                return value
+        raise self._damaged()
+
+    def _byte(self) -> int:
+        return self._forward(1)[0]
+
+    def _forward(self, count: int) -> bytes:
+        self.place += count
+        if self.place > self._end:
+            raise self._damaged()
+        return self._content[self.place - count : self.place]
+
+    def _damaged(self) -> ValueError:
+        return ValueError(f"what begins at byte {self._start} is damaged")

@@ -1,0 +1,306 @@
+"""Small files of which much would be made: each is refused at a limit, in one sentence and in little time.
+
+Each is far larger than its limit and still small enough to be read where the limit is missing.
+"""
+
+import bz2
+import gzip
+import sqlite3
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid.base import unpacking
+from jointid.recording.headers import understood
+from jointid.recording.readers.csv_dialect import BLANK, cells_of
+
+_HEAD = b"time_s,position,torque\n"
+
+
+def refused(path: Path, load: Callable[[Path], object] = jid.load) -> str:
+    with pytest.raises(jid.InputError) as caught:
+        load(path)
+    assert "\n" not in str(caught.value)
+    assert path.name in str(caught.value)
+    return str(caught.value)
+
+
+# --- Text ---
+
+
+def test_a_first_line_of_megabytes(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"," * 1_100_000 + b"\n0,0,1\n")
+    assert "the first line is longer than 1 MB; a header is expected" in refused(path)
+
+
+@pytest.mark.parametrize("piece", ["_a", " [", " ", "1_", "["])
+def test_a_long_header_means_nothing(piece: str) -> None:
+    """The patterns that look for units in it take a time that grows with its square."""
+    header = understood("x" + piece * 500_000)
+    assert header.meaning is None
+    assert header.unit is None
+    assert understood("position [rad]").meaning is not None
+
+
+@pytest.mark.parametrize("piece", ["[ ", "a ( "])
+def test_brackets_of_a_long_line_are_not_looked_for(piece: str) -> None:
+    line = piece * 200_000
+    assert cells_of(line, BLANK) == line.split()
+    assert cells_of("time [s] q ( rad )", BLANK) == ["time [s]", "q ( rad )"]
+
+
+def test_a_table_of_many_columns(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    names = [f"c{k}" for k in range(10_001)]
+    path.write_text("\n".join([",".join(names), *[",".join("0" * 10_001)] * 3]))
+    assert "it has 10001 columns; at most 10000 are looked through" in refused(path)
+
+
+@pytest.mark.parametrize(
+    "line", [b"0,0,0\n", b"0;0;0\n", b"0\t0\t0\n", b"a,b,c\n", "\N{GRINNING FACE}\n".encode() * 2]
+)
+def test_a_packed_text_counts_as_what_is_made_of_it(
+    line: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(unpacking, "LEAST", 300_000)
+    path = tmp_path / "a.csv.gz"
+    path.write_bytes(gzip.compress(_HEAD + line * (250_000 // len(line))))
+    assert "unpacked it is larger than" in refused(path)
+
+
+def test_a_long_toml_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(".".join("a" * 200_000) + " = 1\n")
+    assert "too long for a TOML file of ours" in refused(path, jid.Joint.load)
+
+
+# --- Arrays ---
+
+
+@pytest.mark.parametrize("form", ["npz", "h5", "mat"])
+def test_bytes_count_as_the_numbers_that_they_become(
+    form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(unpacking, "LEAST", 600_000)
+    path = tmp_path / f"a.{form}"
+    arrays = {name: np.zeros(90_000, np.int8) for name in ("time", "position", "torque")}
+    if form == "npz":
+        np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
+    elif form == "mat":
+        pytest.importorskip("scipy.io").savemat(path, arrays, do_compression=True)
+    else:
+        with pytest.importorskip("h5py").File(path, "w") as file:
+            for name, array in arrays.items():
+                file.create_dataset(name, data=array, compression="gzip")
+    assert path.stat().st_size < 600_000 / unpacking.TIMES
+    assert "unpacked it is larger than" in refused(path)
+
+
+def test_a_text_array_counts_its_cells(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unpacking, "LEAST", 300_000)
+    monkeypatch.setattr(unpacking, "TIMES", 1)
+    path = tmp_path / "a.npz"
+    time = np.arange(6000) * 1e-3
+    run = np.full(6000, "a")
+    np.savez_compressed(path, time=time, position=time, torque=time, run=run)
+    assert len(jid.load(path)) == 6000
+    message = refused(path, lambda file: jid.load(file, where={"run": "a"}))
+    assert "unpacked it is larger than" in message
+
+
+def test_a_struct_of_many_elements(tmp_path: Path) -> None:
+    io = pytest.importorskip("scipy.io")
+    path = tmp_path / "a.mat"
+    io.savemat(path, {"log": {f"f{k}": 1.0 for k in range(1001)}})
+    assert "a struct has 1 elements with 1001 fields" in refused(path)
+    many = np.zeros(50_001, dtype=[("a", "O"), ("b", "O")])
+    io.savemat(path, {"log": many})
+    assert "a struct has 50001 elements with 2 fields" in refused(path)
+
+
+# --- HDF5 ---
+
+
+def _hdf5(path: Path, change: Callable[[Any], None]) -> Path:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w") as file:
+        file["time"] = np.arange(20) * 1e-3
+        file["position"] = np.sin(np.arange(20))
+        file["torque"] = np.cos(np.arange(20))
+        change(file)
+    return path
+
+
+def test_filters_that_believe_the_file_are_not_used(tmp_path: Path) -> None:
+    """A false count in a scale-offset filter ended the process."""
+
+    def change(file: Any) -> None:
+        del file["torque"]
+        file.create_dataset("torque", data=np.arange(20), chunks=(20,), scaleoffset=8)
+
+    message = refused(_hdf5(tmp_path / "a.h5", change))
+    assert "its chunks are packed by scale-offset, which is not read" in message
+
+
+def test_an_attribute_of_many_texts_is_not_read(tmp_path: Path) -> None:
+    def change(file: Any) -> None:
+        file["position"].attrs["units"] = ["deg"] * 17
+        file["torque"].attrs["units"] = ["Nm"] * 3
+        file["time"].attrs["units"] = "s"
+
+    found = jid.load(_hdf5(tmp_path / "a.h5", change))
+    assert found.position[1] == np.sin(1)  # as radians
+
+
+def test_names_of_a_block_are_counted(tmp_path: Path) -> None:
+    """A dataset that is not stored may be of any size: one text of 100 MB is."""
+
+    def change(file: Any) -> None:
+        file.create_dataset("block0_values", data=np.zeros((20, 2)))
+        file.create_dataset("block0_items", shape=(2,), dtype="S100000000", chunks=(1,))
+
+    assert "unpacked it is larger than" in refused(_hdf5(tmp_path / "a.h5", change))
+
+
+def test_matrices_of_many_columns(tmp_path: Path) -> None:
+    def change(file: Any) -> None:
+        for number in range(40):
+            file.create_dataset(f"m{number}", shape=(1000, 256), dtype="f4")
+
+    message = refused(_hdf5(tmp_path / "a.h5", change))
+    assert "it has 10243 columns; at most 10000 are looked through" in message
+
+
+# --- Messages ---
+
+
+def _field(name: bytes, value: bytes) -> bytes:
+    return struct.pack("<I", len(name) + 1 + len(value)) + name + b"=" + value
+
+
+def _record(header: bytes, body: bytes) -> bytes:
+    return struct.pack("<I", len(header)) + header + struct.pack("<I", len(body)) + body
+
+
+def _connection(number: int, definition: bytes) -> bytes:
+    about = _field(b"type", b"x/JointState") + _field(b"message_definition", definition)
+    start = _field(b"op", b"\7") + _field(b"conn", struct.pack("<I", number))
+    return _record(start + _field(b"topic", b"/j"), about + _field(b"topic", b"/j"))
+
+
+def _bag(path: Path, definition: bytes, message: bytes, connections: int = 1) -> Path:
+    body = b"".join(_connection(number, definition) for number in range(connections))
+    start = _field(b"op", b"\2") + _field(b"conn", bytes(4))
+    for second in range(3):
+        body += _record(start + _field(b"time", struct.pack("<II", second, 0)), message)
+    chunk = _field(b"op", b"\5") + _field(b"compression", b"bz2")
+    path.write_bytes(b"#ROSBAG V2.0\n" + _record(chunk, bz2.compress(body)))
+    return path
+
+
+def _nested(count: int, depth: int, innermost: bytes) -> bytes:
+    text = b"E0[%d] a" % count
+    for level in range(depth):
+        text += b"\n%s\nMSG: x/E%d\nE%d[%d] a" % (b"=" * 80, level, level + 1, count)
+    return text + b"\n%s\nMSG: x/E%d\n%s" % (b"=" * 80, depth, innermost)
+
+
+@pytest.mark.parametrize(
+    ("definition", "message", "expected"),
+    [
+        (_nested(40, 3, b""), bytes(100), "it holds more elements than bytes"),
+        (_nested(100, 1, b"uint8 b"), bytes(10_000), "it holds more than 8192 numbers"),
+        (
+            b"string[] name\nfloat64[] position\n",
+            struct.pack("<I", 9000) + bytes(4 * 9000 + 4),
+            "it holds more than 8192 texts",
+        ),
+        (b"uint8 a\n" * 25_001, b"\1", "is longer than 200000 characters"),
+    ],
+)
+def test_what_a_message_may_hold(
+    definition: bytes, message: bytes, expected: str, tmp_path: Path
+) -> None:
+    pytest.importorskip("rosbags")
+    assert expected in refused(_bag(tmp_path / "a.bag", definition, message))
+
+
+def test_a_bag_of_many_connections(tmp_path: Path) -> None:
+    pytest.importorskip("rosbags")
+    path = _bag(tmp_path / "a.bag", b"uint8 a\n", b"\1", 10_001)
+    assert "it has more than 10000 connections" in refused(path)
+
+
+def _state(name: bytes) -> bytes:
+    """A sensor_msgs/JointState with one position, in CDR; the name has five letters."""
+    text = struct.pack("<I", len(name) + 1) + name + b"\0"
+    head = struct.pack("<iII", 1, 0, 1) + b"\0" + bytes(3)
+    names = struct.pack("<I", 1) + text
+    body = head + names
+    body += bytes(-len(body) % 4) + struct.pack("<I", 1)
+    body += bytes(-len(body) % 8) + struct.pack("<d", 0.5) + bytes(8)
+    return b"\0\1\0\0" + body
+
+
+_TABLES = {
+    "topics": "CREATE TABLE topics(id, name, type, serialization_format)",
+    "messages": "CREATE TABLE messages(topic_id, timestamp, data)",
+}
+
+
+def _db3(path: Path, rows: list[bytes], **other: str) -> Path:
+    connection = sqlite3.connect(path)
+    for command in (_TABLES | other).values():
+        connection.execute(command)
+    if "topics" not in other:
+        kind = "sensor_msgs/msg/JointState"
+        connection.execute("INSERT INTO topics VALUES (1, '/j', ?, 'cdr')", (kind,))
+    for row in enumerate(rows):
+        connection.execute("INSERT INTO messages VALUES (1, ?, ?)", row)
+    connection.commit()
+    connection.close()
+    return path
+
+
+def _has_fts4() -> bool:
+    options = sqlite3.connect(":memory:").execute("PRAGMA compile_options").fetchall()
+    return ("ENABLE_FTS4",) in options or ("ENABLE_FTS3",) in options
+
+
+def test_another_name_in_each_message(tmp_path: Path) -> None:
+    pytest.importorskip("rosbags")
+    path = _db3(tmp_path / "a.db3", [_state(b"n%04d" % k) for k in range(100)])
+    assert "different numbers" not in refused(path)
+    path = _db3(tmp_path / "b.db3", [_state(b"n%05d" % k) for k in range(12_000)])
+    assert "its messages hold more than 10000 different numbers" in refused(path)
+
+
+@pytest.mark.parametrize("name", ["topics", "messages", "message_definitions"])
+@pytest.mark.parametrize("how", ["view", "computed", "virtual"])
+def test_tables_that_make_their_rows(name: str, how: str, tmp_path: Path) -> None:
+    """A view without an end, a computed column of any size, a table of an extension."""
+    pytest.importorskip("rosbags")
+    command = {
+        "view": f"CREATE VIEW {name} AS SELECT 1 AS id, zeroblob(9) AS data",
+        "computed": f"CREATE TABLE {name}(id, data GENERATED ALWAYS AS (zeroblob(9)) VIRTUAL)",
+        "virtual": f"CREATE VIRTUAL TABLE {name} USING fts4(id, data)",
+    }[how]
+    if how == "virtual" and not _has_fts4():
+        pytest.skip("SQLite has no FTS4 here")
+    path = _db3(tmp_path / "a.db3", [], **{name: command})
+    assert f"it is not a ROS 2 bag: {name} is not a plain table" in refused(path)
+
+
+def test_plain_messages_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows may share the pages of one message."""
+    pytest.importorskip("rosbags")
+    monkeypatch.setattr(unpacking, "LEAST", 100)
+    monkeypatch.setattr(unpacking, "TIMES", 0)
+    path = _db3(tmp_path / "a.db3", [_state(b"elbow")] * 3)
+    assert "unpacked it is larger than" in refused(path)
