@@ -17,6 +17,8 @@ import pytest
 import jointid as jid
 from jointid.base import unpacking
 from jointid.recording.headers import understood
+from jointid.recording.hierarchies import hdf5_chunks
+from jointid.recording.readers import csv_text
 from jointid.recording.readers.csv_dialect import BLANK, cells_of
 
 _HEAD = b"time_s,position,torque\n"
@@ -40,12 +42,14 @@ def test_a_first_line_of_megabytes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("piece", ["_a", " [", " ", "1_", "["])
-def test_a_long_header_means_nothing(piece: str) -> None:
-    """The patterns that look for units in it take a time that grows with its square."""
-    header = understood("x" + piece * 500_000)
-    assert header.meaning is None
-    assert header.unit is None
-    assert understood("position [rad]").meaning is not None
+def test_of_a_long_header_the_end_counts(piece: str) -> None:
+    """The patterns that look for units take a time that grows with its square."""
+    assert understood("x" + piece * 500_000).meaning is None
+    long = understood("/" + "r" * 400 + "/position [deg]")
+    assert long.unit is not None
+    assert long.unit.name == "deg"
+    assert long.meaning is not None
+    assert long.meaning.signal == "position"
 
 
 @pytest.mark.parametrize("piece", ["[ ", "a ( "])
@@ -63,15 +67,27 @@ def test_a_table_of_many_columns(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "line", [b"0,0,0\n", b"0;0;0\n", b"0\t0\t0\n", b"a,b,c\n", "\N{GRINNING FACE}\n".encode() * 2]
+    "line",
+    [b"0,0,0\n", b"0;0;0\n", b"0 0 0\n", b"0\t0\t0\n", b"a,b,c\n", "\N{GRINNING FACE}\n".encode()],
 )
 def test_a_packed_text_counts_as_what_is_made_of_it(
     line: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(unpacking, "LEAST", 300_000)
+    monkeypatch.setattr(csv_text, "_LEAST", 300_000)
     path = tmp_path / "a.csv.gz"
     path.write_bytes(gzip.compress(_HEAD + line * (250_000 // len(line))))
     assert "unpacked it is larger than" in refused(path)
+
+
+@pytest.mark.parametrize("unit", ["rad", "\N{DEGREE SIGN}"])
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_constant_columns_are_no_bomb(unit: str, encoding: str, tmp_path: Path) -> None:
+    names = [f"q{k} [{unit}]" for k in range(50)]
+    rows = (f"{row / 1000},{row % 7}" + ",0.0" * 50 for row in range(20_000))
+    text = "\n".join([",".join(["time_s", "position", *names]), *rows])
+    path = tmp_path / "a.csv.gz"
+    path.write_bytes(gzip.compress(text.encode(encoding)))
+    assert len(jid.load(path)) == 20_000
 
 
 def test_a_long_toml_file(tmp_path: Path) -> None:
@@ -114,14 +130,19 @@ def test_a_text_array_counts_its_cells(tmp_path: Path, monkeypatch: pytest.Monke
     assert "unpacked it is larger than" in message
 
 
-def test_a_struct_of_many_elements(tmp_path: Path) -> None:
+def test_a_struct_of_many_elements_is_left_out(tmp_path: Path) -> None:
     io = pytest.importorskip("scipy.io")
     path = tmp_path / "a.mat"
-    io.savemat(path, {"log": {f"f{k}": 1.0 for k in range(1001)}})
-    assert "a struct has 1 elements with 1001 fields" in refused(path)
-    many = np.zeros(50_001, dtype=[("a", "O"), ("b", "O")])
-    io.savemat(path, {"log": many})
-    assert "a struct has 50001 elements with 2 fields" in refused(path)
+    signals = {name: np.arange(20) * 1e-3 for name in ("time", "position", "torque")}
+    events = np.zeros(50_001, dtype=[("a", "O"), ("b", "O")])
+    io.savemat(path, signals | {"events": events})
+    assert len(jid.load(path)) == 20
+    io.savemat(path, {"events": events})
+    assert "no vectors of numbers are found, only 'events'" in refused(path)
+    io.savemat(path, {"log": {f"f{k}": 1.0 for k in range(10_001)}})
+    assert "no vectors of numbers are found, only 'log'" in refused(path)
+    io.savemat(path, {"log": signals | {f"f{k}": np.arange(20.0) for k in range(1200)}})
+    assert len(jid.load(path)) == 20
 
 
 # --- HDF5 ---
@@ -145,17 +166,71 @@ def test_filters_that_believe_the_file_are_not_used(tmp_path: Path) -> None:
         file.create_dataset("torque", data=np.arange(20), chunks=(20,), scaleoffset=8)
 
     message = refused(_hdf5(tmp_path / "a.h5", change))
-    assert "its chunks are packed by scale-offset, which is not read" in message
+    assert "/torque is packed by scale-offset, which is not read; save it with gzip" in message
 
 
-def test_an_attribute_of_many_texts_is_not_read(tmp_path: Path) -> None:
+def test_attributes_of_many_texts(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+
     def change(file: Any) -> None:
-        file["position"].attrs["units"] = ["deg"] * 17
-        file["torque"].attrs["units"] = ["Nm"] * 3
-        file["time"].attrs["units"] = "s"
+        del file["position"]
+        file["position"] = np.arange(400.0).reshape(20, 20)
+        file["position"].attrs["units"] = ["deg"] * 20  # one for each column
+        file["torque"].attrs["units"] = h5py.Empty("S10")
+        file["time"].attrs["MATLAB_class"] = h5py.Empty("S10")
 
-    found = jid.load(_hdf5(tmp_path / "a.h5", change))
-    assert found.position[1] == np.sin(1)  # as radians
+    path = _hdf5(tmp_path / "a.h5", change)
+    found = jid.load(path, columns={"position": "position(:,2)"})
+    assert found.position[0] == np.deg2rad(1.0)
+
+    def many(file: Any) -> None:
+        file["torque"].attrs["units"] = ["Nm"] * 257
+
+    message = refused(_hdf5(tmp_path / "b.h5", many))
+    assert "the attribute 'units' of /torque holds 257 texts; one is expected" in message
+
+    def alike(file: Any) -> None:
+        file["torque"].attrs.create("units", ["N" * 50_000] * 100, dtype=h5py.string_dtype())
+
+    assert "holds 100 texts" in refused(_hdf5(tmp_path / "c.h5", alike))
+
+
+def test_many_chunks_are_looked_through_at_once(tmp_path: Path) -> None:
+    """Each is looked for among all where its place is asked for."""
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "a.h5"
+    time = np.arange(20_000) * 1e-3
+    with h5py.File(path, "w") as file:
+        for name in ("time", "position", "torque"):
+            file.create_dataset(name, data=time, chunks=(1,), compression="gzip")
+    asked: list[Any] = []
+    real = h5py.h5d.DatasetID.get_chunk_info_by_coord
+
+    class Counting:
+        def __init__(self, dataset: Any) -> None:
+            self._dataset = dataset
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(self._dataset, name)
+
+        @property
+        def id(self) -> Any:
+            return Identifier(self._dataset.id)
+
+    class Identifier:
+        def __init__(self, identifier: Any) -> None:
+            self._identifier = identifier
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(self._identifier, name)
+
+        def get_chunk_info_by_coord(self, place: Any) -> Any:
+            asked.append(place)
+            return real(self._identifier, place)
+
+    with h5py.File(path) as file:
+        hdf5_chunks.take(Counting(file["time"]), unpacking.Room(path))
+    assert not asked
 
 
 def test_names_of_a_block_are_counted(tmp_path: Path) -> None:
@@ -282,18 +357,24 @@ def test_another_name_in_each_message(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["topics", "messages", "message_definitions"])
-@pytest.mark.parametrize("how", ["view", "computed", "virtual"])
+@pytest.mark.parametrize("how", ["view", "trigger", "computed", "virtual"])
 def test_tables_that_make_their_rows(name: str, how: str, tmp_path: Path) -> None:
     """A view without an end, a computed column of any size, a table of an extension."""
     pytest.importorskip("rosbags")
     command = {
         "view": f"CREATE VIEW {name} AS SELECT 1 AS id, zeroblob(9) AS data",
+        "trigger": f"CREATE VIEW {name} AS SELECT 1 AS id, zeroblob(9) AS data",
         "computed": f"CREATE TABLE {name}(id, data GENERATED ALWAYS AS (zeroblob(9)) VIRTUAL)",
         "virtual": f"CREATE VIRTUAL TABLE {name} USING fts4(id, data)",
     }[how]
+    more = {}
+    if how == "trigger":  # has the name of the view that it belongs to
+        command = command.replace(name, name.title())
+        does = f"CREATE TRIGGER {name} INSTEAD OF INSERT ON {name} BEGIN SELECT 1; END"
+        more = {"trigger": does}
     if how == "virtual" and not _has_fts4():
         pytest.skip("SQLite has no FTS4 here")
-    path = _db3(tmp_path / "a.db3", [], **{name: command})
+    path = _db3(tmp_path / "a.db3", [], **{name: command}, **more)
     assert f"it is not a ROS 2 bag: {name} is not a plain table" in refused(path)
 
 

@@ -313,7 +313,7 @@ def test_another_file_is_not_read(tmp_path: Path) -> None:
         file.create_virtual_dataset("current", layout)
     table = Hdf5Table(path, None)
     assert table.headers == ("q", "t")
-    assert table.notes == {"not_read": ["current (in another file)", "torque (in another file)"]}
+    assert table.notes == {"not_read": ["current (virtual)", "torque (external)"]}
 
 
 def test_a_nan_is_named(tmp_path: Path) -> None:

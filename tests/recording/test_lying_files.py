@@ -301,6 +301,69 @@ def test_pages_count_where_a_column_is_larger_than_its_rows(tmp_path: Path) -> N
     assert allowed - room.left > 8 * 100 + 40 * 100
 
 
+@pytest.mark.parametrize("empty", [(0,), (1,), (2,), (0, 1, 2)])
+def test_empty_groups_of_rows(empty: tuple[int, ...], tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "a.parquet"
+    time = np.arange(60) * 1e-3
+    table = pyarrow.table(dict.fromkeys(_NAMES, time))
+    with writer.ParquetWriter(path, table.schema) as file:
+        for number in range(3):
+            file.write_table(table.slice(20 * number, 0 if number in empty else 20))
+    if len(empty) < 3:
+        assert len(jid.load(path)) == 40
+    else:
+        with pytest.raises(jid.InputError, match="samples"):
+            jid.load(path)
+
+
+@pytest.mark.parametrize("encoding", ["PLAIN", "DELTA_LENGTH_BYTE_ARRAY", "DELTA_BYTE_ARRAY"])
+def test_texts_in_any_encoding(encoding: str, tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "a.parquet"
+    time = np.arange(60) * 1e-3
+    columns = dict.fromkeys(_NAMES, time) | {"run": ["left", "right", None] * 20}
+    encodings = {"run": encoding}
+    writer.write_table(
+        pyarrow.table(columns), path, use_dictionary=False, column_encoding=encodings
+    )
+    assert len(jid.load(path, where={"run": "left"})) == 20
+
+
+def test_texts_by_differences_are_counted(tmp_path: Path) -> None:
+    """Each begins like the one before: 1000 texts of 100 kB take less than 1 MB."""
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "a.parquet"
+    cells = ["y" * 100_000] * 200
+    columns = {"time": np.zeros(200), "position": cells, "torque": np.zeros(200)}
+    table = pyarrow.table(columns)
+    encodings = {"position": "DELTA_BYTE_ARRAY"}
+    with writer.ParquetWriter(
+        path, table.schema, use_dictionary=False, column_encoding=encodings
+    ) as file:
+        for _ in range(5):
+            file.write_table(table)
+    assert path.stat().st_size < 1_000_000
+    with pytest.raises(jid.InputError, match="unpacked it is larger than"):
+        jid.load(path)
+
+
+def test_groups_that_share_their_pages(tmp_path: Path) -> None:
+    """A thousand groups that point to the same pages would be looked through a thousand times."""
+    pyarrow = pytest.importorskip("pyarrow")
+    writer = pytest.importorskip("pyarrow.parquet")
+    file = io.BytesIO()
+    writer.write_table(pyarrow.table({"time": np.zeros(3000)}), file, row_group_size=1000)
+    sizes = Sizes(file.getvalue())
+    assert sizes.of(0) > 0
+    sizes._groups *= 1000
+    with pytest.raises(ValueError, match="its footer is damaged"):
+        sizes.of(0)
+
+
 def test_chunks_of_any_kind_are_read(tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     count = 40_000
@@ -335,5 +398,5 @@ def test_chunks_packed_twice_are_refused(tmp_path: Path) -> None:
             space = h5py.h5s.create_simple((12,))
             made = h5py.h5d.create(file.id, name.encode(), h5py.h5t.NATIVE_DOUBLE, space, made_by)
             made.write_direct_chunk((0,), packed + bytes(70_000))
-    with pytest.raises(jid.InputError, match="its chunks are packed more than once"):
+    with pytest.raises(jid.InputError, match="is packed by several filters, which is not read"):
         jid.load(path)

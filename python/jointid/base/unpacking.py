@@ -57,6 +57,8 @@ class Room:
     path : Path
     size : int, optional
         Bytes of the file. Default: as it is on the disk.
+    least : int, optional
+        Bytes that it may hold, whatever its size. Default: 64 MB.
 
     Attributes
     ----------
@@ -64,10 +66,12 @@ class Room:
         Bytes.
     """
 
-    def __init__(self, path: Path, size: int | None = None) -> None:
+    def __init__(self, path: Path, size: int | None = None, least: int | None = None) -> None:
         self._path = path
         self._allowed = max(
-            LEAST, TIMES * (path.stat().st_size if size is None else size), _raised.get()
+            LEAST if least is None else least,
+            TIMES * (path.stat().st_size if size is None else size),
+            _raised.get(),
         )
         self.left = self._allowed
 

@@ -51,14 +51,13 @@ class Header:
     meaning: Meaning | None = None
 
 
-LONGEST = 300  # characters of a header: a longer one means nothing
+LONGEST = 300  # characters of a header that are looked at: name and unit stand at its end
 
 
 @lru_cache(maxsize=4096)
 def understood(header: str) -> Header:
     """Return what a header says."""
-    if len(header) > LONGEST:
-        return Header(plain(header), None)
+    header = header[-LONGEST:]
     text, unit, unknown = _divided(header)
     meaning = _meaning(text)
     whole = re.sub(r"\s*[\[(][^\[\]()]*[\])]\s*$", "", header)
@@ -77,8 +76,7 @@ def _meaning(text: str) -> Meaning | None:
 
 def parsed(header: str) -> tuple[str, Unit | None, str]:
     """Return a header's plain name, its unit, and the text in the unit's place that is no unit."""
-    if len(header) > LONGEST:
-        return plain(header), None, ""
+    header = header[-LONGEST:]
     text, unit, unknown = _divided(header)
     return plain(text), unit, unknown
 

@@ -5,11 +5,16 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 from jointid.base.values import dataclass
 from jointid.recording.hierarchies import hdf5_chunks
 
-_FEW, _LONGEST = 16, 10_000  # texts of an attribute that are read, and their bytes
+_LONGEST = 1_000_000  # bytes of an attribute
+_LARGE_FILE, _LARGE = (
+    20_000_000,
+    200_000_000,
+)  # bytes; a small file's texts may be no more than large
 _WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
 _MATLAB_NUMBERS = (
     *("double", "single", "logical"),
@@ -83,7 +88,7 @@ def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
                 if kind not in ("char", "cell", "string"):
                     left_out.append(f"{path} ({kind})")
             elif thing.external or thing.is_virtual:
-                left_out.append(f"{path} (in another file)")
+                left_out.append(f"{path} ({'external' if thing.external else 'virtual'})")
             else:
                 found.extend(_vectors(path, thing))
         elif "MATLAB_sparse" in thing.attrs or (kind and kind != "struct"):
@@ -94,7 +99,7 @@ def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
 
 
 def _vectors(path: str, dataset: Any) -> Iterator[Vector]:
-    if dataset.attrs.get("MATLAB_empty") or dataset.size is None or dataset.size < 2:
+    if _flag(dataset, "MATLAB_empty") or dataset.size is None or dataset.size < 2:
         return
     unit = _unit(dataset)
     if dataset.dtype.names is not None:
@@ -181,13 +186,32 @@ def _unit(dataset: Any) -> str:
     )
 
 
+def _flag(thing: Any, name: str) -> bool:
+    few = name in thing.attrs and thing.attrs.get_id(name).get_storage_size() <= 8
+    return bool(thing.attrs.get(name)) if few else False
+
+
 def _attribute(thing: Any, name: str) -> str:
-    """Return an attribute that is a text, or a few of which it is the first; else nothing."""
+    """Return an attribute that is a text, or some of which it is the first; else nothing.
+
+    Raises
+    ------
+    InputError
+        It holds far more: texts of any length may be one and the same in the file, and many when they are read.
+    """
     if name not in thing.attrs:
         return ""
     about = thing.attrs.get_id(name)
-    few = math.prod(about.shape) <= _FEW and about.get_storage_size() <= _LONGEST
-    return _text(thing.attrs.get(name)) if few else ""
+    if about.shape is None:
+        return ""
+    count, size = math.prod(about.shape), thing.file.id.get_filesize()
+    shared = about.dtype.hasobject and size < _LARGE_FILE and count * size > _LARGE
+    if count > _WIDEST or about.get_storage_size() > _LONGEST or shared:
+        raise InputError(
+            f"the attribute {name!r} of {thing.name} holds {count} texts; one is expected, or one for each column",
+            place=str(thing.file.filename),
+        )
+    return _text(thing.attrs.get(name))
 
 
 def _text(value: Any) -> str:

@@ -80,7 +80,7 @@ class SqliteSource:
         connection = sqlite3.connect(
             f"{self._path.resolve().as_uri()}?mode=ro&immutable=1", uri=True
         )
-        # Nothing that a table holds is larger than the file.
+        # Nothing that a table holds is larger than the file; SQLite's own texts may be.
         longest = min(max(self._path.stat().st_size, 1_000_000), 1_000_000_000)
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
         return connection
@@ -88,11 +88,15 @@ class SqliteSource:
     def _check_tables(self, connection: sqlite3.Connection) -> None:
         """Refuse views and computed columns: they make as many rows as they like, of any size."""
         for name in ("topics", "messages", "message_definitions"):
-            query = "SELECT type = 'table' AND rootpage > 0 FROM sqlite_master WHERE name = ?"
+            other = connection.execute(
+                "SELECT COUNT(*) FROM sqlite_master WHERE name = ? COLLATE NOCASE "
+                "AND type IN ('table', 'view') AND NOT (type = 'table' AND rootpage > 0)",
+                (name,),
+            )
             computed = connection.execute(
                 "SELECT COUNT(*) FROM pragma_table_xinfo(?) WHERE hidden <> 0", (name,)
             )
-            if connection.execute(query, (name,)).fetchall() == [(0,)] or computed.fetchone()[0]:
+            if other.fetchone()[0] or computed.fetchone()[0]:
                 raise DamageError(f"it is not a ROS 2 bag: {name} is not a plain table")
 
     def _topics(self) -> tuple[Topic, ...]:

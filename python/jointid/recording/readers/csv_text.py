@@ -12,6 +12,9 @@ from jointid.base.unpacking import Room
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"
 # Characters on which Latin-1 and Windows-1252 agree.
+_LEAST = 100_000_000  # bytes that the numbers of any packed text may take
+# Characters that make all of a text take 4 or 2 bytes each.
+_ANY_OF_FOUR, _ANY_OF_TWO = rb"[\xf0-\xf4][\x80-\xbf]{3}", rb"[\xc4-\xef][\x80-\xbf]"
 _LATIN = rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*"
 
 
@@ -62,8 +65,11 @@ def _decoded(path: Path, content: bytes) -> str:
 
 def _count(content: bytes, room: Room) -> None:
     """Count what a packed text takes beside its bytes: its numbers, and wide characters."""
-    cells = sum(map(content.count, (b",", b";", b"\t", b"\n")))
-    width = 0 if content.isascii() else 4 if re.search(b"[\xf0-\xf4]", content) else 2
+    blanks = content.count(b" ") - content.count(b"  ")  # of several side by side, some
+    separators = max(blanks, *map(content.count, (b",", b";", b"\t")))
+    cells = separators + content.count(b"\n")
+    wide = re.search(_ANY_OF_FOUR, content) or re.search(_ANY_OF_TWO, content)
+    width = 0 if wide is None else 4 if wide[0][0] >= 0xF0 else 2
     room.take(8 * cells + width * len(content))
 
 
@@ -75,10 +81,8 @@ def _unzipped(path: Path, content: bytes) -> bytes:
             remedy="name it .csv if it is text",
         )
     try:
-        room = Room(path, len(content))
-        text = room.gunzip(content)
-        room.again()
-        _count(text, room)
+        text = Room(path, len(content)).gunzip(content)
+        _count(text, Room(path, len(content), least=_LEAST))
         return text
     except EOFError:
         raise InputError(

@@ -25,7 +25,7 @@ _STRUCT, _OPAQUE = 2, 17
 _NUMERIC = range(6, 16)  # double, single, int8 ... uint64; logical is one of them with a flag
 _COMPLEX = 0x0800
 
-_MOST_FIELDS, _MOST_ELEMENTS = 1000, 100_000  # of a struct
+_MOST_FIELDS, _MOST_ELEMENTS = 10_000, 100_000  # of a struct that is read
 
 
 class DamageError(ValueError):
@@ -74,8 +74,6 @@ def variables_of(content: bytes, order: str, room: Room) -> Iterator[Variable]:
         if kind != _MATRIX:
             raise DamageError(f"an element of the kind {kind} is in the place of a variable")
         variable = _variable(matrix, order, nested=False)
-        if variable.array is not None:  # as it is converted, of whatever it is stored
-            room.take(max(0, 8 * variable.array.size - variable.array.nbytes))
         if variable.name:  # what has none is for MATLAB's own objects
             yield variable
 
@@ -131,7 +129,8 @@ def _variable(matrix: memoryview, order: str, *, nested: bool) -> Variable:
         raise DamageError("a dimension is negative")
     name = _text(_next(parts))
     if kind == _STRUCT and not nested:
-        return Variable(name=name, fields=tuple(_struct(parts, math.prod(shape), order)))
+        fields = _struct(parts, math.prod(shape), order)
+        return Variable(name=name, fields=tuple(fields))
     if kind not in _NUMERIC or len(shape) != 2:
         return Variable(name=name)
     array = _numbers(_next(parts), order)
@@ -154,7 +153,7 @@ def _struct(
     listed, step = bytes(_next(parts)[1]), int(width[0])
     fields = -(-len(listed) // step)
     if fields > _MOST_FIELDS or count * fields > _MOST_ELEMENTS:
-        raise DamageError(f"a struct has {count} elements with {fields} fields")
+        return  # a list of events, no signals
     names = [
         listed[first : first + step].split(b"\0")[0].decode("ascii", "replace")
         for first in range(0, len(listed), step)

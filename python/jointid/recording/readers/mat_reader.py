@@ -44,7 +44,9 @@ class MatTable:
     def __init__(self, path: Path) -> None:
         self.source = str(path)
         self.header_place = self.source
-        variables = _variables(path)
+        self._room = Room(path)
+        self._taken: set[int] = set()
+        variables = _variables(path, self._room)
         found = [part for variable in variables for part in _columns(variable)]
         short = Counter(field for _, field, _ in found)
         self._arrays = [array for _, _, array in found]
@@ -62,24 +64,31 @@ class MatTable:
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return vectors as arrays of shape (n,), or raise `InputError`."""
         return [
-            signal_array("", self._arrays[k], f"{self.source}, variable {self.headers[k]!r}")
+            signal_array("", self._array(k), f"{self.source}, variable {self.headers[k]!r}")
             for k in columns
         ]
 
     def raw(self, column: int) -> npt.NDArray[Any]:
         """Return the values of a column as the file has them."""
-        return self._arrays[column]
+        return self._array(column)
 
     def text(self, column: int) -> list[str]:
         """Return the values of a vector as text."""
-        return [f"{value:g}" for value in self._arrays[column].tolist()]
+        return [f"{value:g}" for value in self._array(column).tolist()]
+
+    def _array(self, column: int) -> Array:
+        array = self._arrays[column]
+        if column not in self._taken:  # as it is converted, of whatever it is stored
+            self._room.take(max(0, 8 * array.size - array.nbytes))
+            self._taken.add(column)
+        return array
 
     def place(self, column: int, row: int) -> str:
         """Return file, variable and 0-based index of a value."""
         return f"{self.source}, variable {self.headers[column]!r}, index {row}"
 
 
-def _variables(path: Path) -> list[Variable]:
+def _variables(path: Path, room: Room) -> list[Variable]:
     content = path.read_bytes()
     order = _ORDERS.get(content[_HEADER - 2 : _HEADER])
     if order is None:
@@ -89,7 +98,7 @@ def _variables(path: Path) -> list[Variable]:
             remedy="in MATLAB save it with '-v7'",
         )
     try:
-        return list(variables_of(content[_HEADER:], order, Room(path)))
+        return list(variables_of(content[_HEADER:], order, room))
     except DamageError as error:
         raise InputError(
             f"the .mat file is damaged or truncated ({error})", place=str(path)

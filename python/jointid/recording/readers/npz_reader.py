@@ -66,7 +66,7 @@ class NpzTable:
                 f"the archive is damaged ({reason_of(error)})", place=str(path)
             ) from None
         self._archive: Mapping[str, Any] = archive
-        # Of a member at most as much is unpacked as the archive's index says; by other methods, all of a piece.
+        # Of a member at most as much is unpacked as the archive's index says; other methods have no limit.
         for each in archive.zip.infolist():
             if each.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
                 raise InputError(

@@ -16,6 +16,8 @@ from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 
 _CELL = 60  # bytes of a cell as text
+_ROWS = 1024  # of a batch
+_BY_DIFFERENCES = {6, 7}  # DELTA_LENGTH_BYTE_ARRAY and DELTA_BYTE_ARRAY
 
 
 class ParquetTable:
@@ -49,7 +51,7 @@ class ParquetTable:
             self._file: Any = parquet.ParquetFile(pyarrow.BufferReader(content))
             names = self._file.schema_arrow.names
             self._sizes = Sizes(content)
-            texts = _texts(self._file)
+            texts = _texts(self._file, self._sizes)
             if texts:  # one that is repeated a million times is kept once
                 self._file = parquet.ParquetFile(
                     pyarrow.BufferReader(content), read_dictionary=texts
@@ -130,28 +132,40 @@ class ParquetTable:
     def _values(self, column: int) -> Any:
         import pyarrow
 
-        kind = self._file.schema_arrow.field(column)
-        name = kind.name
-        if not _is_number(kind.type) and not pyarrow.types.is_dictionary(kind.type):
+        field = self._file.schema_arrow.field(column)
+        name, kind = field.name, _stored(field.type)
+        if pyarrow.types.is_nested(kind):
             raise InputError(
-                f"the column holds {kind.type!s:.60}; numbers are expected",
+                f"the column holds {field.type!s:.60}; numbers are expected",
                 place=self._place(column),
             )
         try:
             if column not in self._taken:  # a column may be asked for more than once
                 own = (leaf for path, leaf in self._leaves if f"{path}.".startswith(f"{name}."))
-                cell = 8 if _is_number(kind.type) else _CELL
+                cell = 8 if _is_number(kind) else _CELL
                 self._room.take(max(cell * self._sizes.rows, sum(map(self._sizes.of, own))))
                 self._taken.add(column)
+            if not (_is_number(kind) or pyarrow.types.is_dictionary(kind)):
+                return self._in_batches(name, field.type)
             # One thread: the columns are small, and thread pools cause trouble after a fork.
             values = self._file.read(columns=[name], use_threads=False).column(name)
-            if not _is_number(values.type):
+            if not _is_number(kind):
                 values.validate(full=True)  # places beyond the dictionary's end
         except InputError:
             raise
         except _damage() as error:
             raise self._unreadable(column, error) from None
         return values
+
+    def _in_batches(self, name: str, kind: Any) -> Any:
+        """Texts whose length no header tells, since they begin like those before, or are all alike."""
+        import pyarrow
+
+        chunks = []
+        for batch in self._file.iter_batches(_ROWS, columns=[name], use_threads=False):
+            self._room.take(batch.nbytes)
+            chunks.append(batch.column(0))
+        return pyarrow.chunked_array(chunks, kind)
 
     def _place(self, column: int) -> str:
         return f"{self.source}, column {self.headers[column]!r}"
@@ -166,6 +180,7 @@ def _is_number(kind: Any) -> bool:
     """Whether each cell of a column is a number, a date or nothing, of a few bytes."""
     from pyarrow import types
 
+    kind = _stored(kind)
     return bool(
         types.is_integer(kind)
         or types.is_floating(kind)
@@ -176,14 +191,21 @@ def _is_number(kind: Any) -> bool:
     )
 
 
-def _texts(file: Any) -> list[str]:
-    """Names of the columns that hold texts, or other bytes."""
+def _stored(kind: Any) -> Any:
+    """Return the type in which an extension's values are stored."""
+    return getattr(kind, "storage_type", kind)
+
+
+def _texts(file: Any, sizes: Sizes) -> list[str]:
+    """Names of the columns that hold texts, or other bytes, and can be read as a dictionary."""
     schema = file.metadata.schema
-    leaves = {schema.column(leaf).path for leaf in range(len(schema.names))}
+    leaves = {schema.column(leaf).path: leaf for leaf in range(len(schema.names))}
     return [
         field.name
         for field in file.schema_arrow
-        if field.name in leaves and not _is_number(field.type)
+        if field.name in leaves
+        and not _is_number(field.type)
+        and not sizes.encodings(leaves[field.name]) & _BY_DIFFERENCES
     ]
 
 

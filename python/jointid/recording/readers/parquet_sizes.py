@@ -1,7 +1,7 @@
 """What the columns of a Parquet file hold when they are unpacked, as its footer and its pages say.
 
 pyarrow prepares memory for as many rows as a group of them says, and unpacks a page whatever the footer says of its
-column, so that a file of 1 MB may fill the memory. What it tells of damaged columns ends the process in some versions.
+column, so that a file of 1 MB may fill the memory. To ask it for the metadata of a damaged column ends the process.
 """
 
 from __future__ import annotations
@@ -53,9 +53,23 @@ class Sizes:
         """
         return sum(self._of_groups(column))
 
+    def encodings(self, column: int) -> set[int]:
+        """Return the numbers of the encodings in which a column's values are written."""
+        return {
+            each
+            for group in self._groups
+            for each in _structure(group[1, _LIST][column])[3, _STRUCT].get((2, _LIST), [])
+        }
+
     def _of_groups(self, column: int) -> Iterator[int]:
+        packed = 0
         for group in self._groups:
             about = _structure(group[1, _LIST][column])[3, _STRUCT]
+            packed += about[7, _I64]
+            if packed > len(self._content):  # several groups with the same pages
+                raise ValueError("its footer is damaged")
+            if about[5, _I64] == 0:  # no value: then its pages need not be anywhere
+                continue
             start = about[9, _I64]
             if 0 < (dictionary := about.get((11, _I64), 0)) < start:
                 start = dictionary
