@@ -252,7 +252,8 @@ def test_any_footer_is_read_or_damaged(place: int, value: int, wide: bool) -> No
     pyarrow = pytest.importorskip("pyarrow")
     writer = pytest.importorskip("pyarrow.parquet")
     content = bytearray(_written(writer, pyarrow.table({"time": [0.0, 1.0], "text": ["a", "b"]})))
-    where = place % len(content)
+    length = int.from_bytes(content[-8:-4], "little")
+    where = len(content) - 8 - length + place % (length + 4)
     content[where : where + (4 if wide else 1)] = bytes([value] * (4 if wide else 1))
     try:
         sizes = Sizes(bytes(content))

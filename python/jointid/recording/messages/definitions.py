@@ -7,6 +7,8 @@ from typing import Any
 from jointid.base.error_text import reason_of
 from jointid.recording.messages.topic import DamageError, Topic
 
+_LONGEST = 200_000  # characters of a definition
+
 Field = tuple[str, Any]  # name, and the description as rosbags writes it
 Types = Mapping[str, Sequence[Field]]
 
@@ -34,9 +36,6 @@ def types_of(topic: Topic) -> Types:
         The definition cannot be read, or there is none.
     """
     return _types(topic.kind, topic.definition, topic.definition_format)
-
-
-_LONGEST = 200_000  # characters of a definition
 
 
 @lru_cache(maxsize=256)

@@ -12,6 +12,8 @@ from jointid.recording.messages.definitions import normal_kind
 from jointid.recording.messages.packed import of_lz4
 from jointid.recording.messages.topic import DamageError, Message, Topic
 
+_MOST_CONNECTIONS = 10_000
+
 _MAGIC = b"#ROSBAG V2.0\n"
 _MESSAGE, _BAG, _CHUNK, _CONNECTION = b"\x02", b"\x03", b"\x05", b"\x07"  # kinds of record
 _LENGTH = struct.Struct("<I")
@@ -20,9 +22,6 @@ _TIME = struct.Struct("<II")
 
 class _EndError(Exception):
     """The bytes end within a record."""
-
-
-_MOST_CONNECTIONS = 10_000
 
 
 class Ros1Source:

@@ -123,7 +123,8 @@ def load(
         Default: the only one with such datasets.
     unpacked : int, optional
         Bytes that a compressed file may hold when it is unpacked. Default: 64 MB or 50 times its size, whichever is
-        larger; a small file that holds more is refused.
+        larger; a small file that holds more is refused. A number counts 8 bytes, however it is stored; of a packed
+        text, numbers may take 100 MB.
 
     Returns
     -------

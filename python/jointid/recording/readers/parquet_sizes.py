@@ -120,8 +120,8 @@ class _Reader:
         while (first := self._byte()) != 0:
             kind = first & 15
             number = number + (first >> 4) if first >> 4 else self._number(16)
-            inside = kind not in (_TRUE, _FALSE)
-            found[number, kind] = self._value(kind, depth + 1) if inside else None
+            has_value = kind not in (_TRUE, _FALSE)
+            found[number, kind] = self._value(kind, depth + 1) if has_value else None
         return found
 
     def _value(self, kind: int, depth: int) -> Any:
@@ -130,9 +130,9 @@ class _Reader:
         if kind in _BITS:
             return self._number(_BITS[kind])
         if kind == _BINARY:
-            return self._forward(self._varint())
+            return self._take(self._varint())
         if kind in _BYTES:
-            return self._forward(_BYTES[kind])
+            return self._take(_BYTES[kind])
         if depth > _DEEPEST or kind not in (_LIST, _SET, _MAP):
             raise self._damaged()
         if kind == _MAP:
@@ -161,9 +161,9 @@ class _Reader:
         raise self._damaged()
 
     def _byte(self) -> int:
-        return self._forward(1)[0]
+        return self._take(1)[0]
 
-    def _forward(self, count: int) -> bytes:
+    def _take(self, count: int) -> bytes:
         self.place += count
         if self.place > self._end:
             raise self._damaged()
