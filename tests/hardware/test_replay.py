@@ -234,6 +234,16 @@ def test_a_missing_frame_is_named(
     ), wording
 
 
+def test_a_sample_that_came_early_is_refused(
+    made: Callable[[str], tuple[jid.Recording, Path]],
+) -> None:
+    recording, log = made("converter")
+    late = np.zeros(len(recording.time))
+    late[40] = -1.0
+    with pytest.raises(jid.InputError, match="late is -1 in row 40 of the recording; 0 or more"):
+        jid.hardware.replay(log, JOINT, recording=recording.with_signals(late=late))
+
+
 def test_missing_cycles_are_counted(
     made: Callable[[str], tuple[jid.Recording, Path]], tmp_path: Path
 ) -> None:

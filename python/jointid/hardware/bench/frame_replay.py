@@ -188,6 +188,11 @@ def _late(
         return late
     known = len(session.time)
     recorded = np.zeros(known) if session.late is None else session.late
+    if (recorded < 0.0).any():
+        row = int(np.argmax(recorded < 0.0))
+        raise InputError(
+            f"late is {recorded[row]:g} in row {row} of the recording; 0 or more is expected"
+        )
     if late[:known].sum() > np.floor(recorded).sum():
         raise InputError(next(cycle.lost for cycle in every[before:] if cycle.lost))
     late[:known] = recorded[: len(late)]
