@@ -79,7 +79,7 @@ def parquet_pages(path: Path) -> str:
 
 
 def parquet_rows(path: Path) -> str:
-    """A group of rows says 150 milliards of them: damage at four bytes of 1330, found among a million."""
+    """A group of rows says 150 billion of them: damage at four bytes of 1330, found among a million."""
     pyarrow = pytest.importorskip("pyarrow")
     writer = pytest.importorskip("pyarrow.parquet")
     rows = 1_000_003  # found twice in the footer behind the columns' own: of the group, and of the file
@@ -258,6 +258,7 @@ def test_any_footer_is_read_or_damaged(place: int, value: int, wide: bool) -> No
     try:
         sizes = Sizes(bytes(content))
         assert min(sizes.rows, sizes.of(0), sizes.of(1)) >= 0
+        assert all(isinstance(each, int) for each in sizes.encodings(1))
     except (ValueError, LookupError):
         pass
 
@@ -360,7 +361,11 @@ def test_groups_that_share_their_pages(tmp_path: Path) -> None:
     writer.write_table(pyarrow.table({"time": np.zeros(3000)}), file, row_group_size=1000)
     sizes = Sizes(file.getvalue())
     assert sizes.of(0) > 0
+    assert sizes.encodings(0)
+    about = sizes._groups[0][1, 9][0][3, 12]
+    about[2, 9] = [{}]  # a list of structures, as damage makes of one of numbers
     sizes._groups *= 1000
+    assert sizes.encodings(0) <= set(range(10))
     with pytest.raises(ValueError, match="its footer is damaged"):
         sizes.of(0)
 

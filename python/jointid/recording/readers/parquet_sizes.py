@@ -59,6 +59,7 @@ class Sizes:
             each
             for group in self._groups
             for each in _structure(group[1, _LIST][column])[3, _STRUCT].get((2, _LIST), [])
+            if isinstance(each, int)  # in a damaged footer it may be anything
         }
 
     def _of_groups(self, column: int) -> Iterator[int]:
