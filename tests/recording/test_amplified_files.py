@@ -18,7 +18,7 @@ import jointid as jid
 from jointid.base import unpacking
 from jointid.recording.headers import understood
 from jointid.recording.hierarchies import hdf5_chunks
-from jointid.recording.readers import csv_text
+from jointid.recording.readers import csv_reader, csv_text
 from jointid.recording.readers.csv_dialect import BLANK, cells_of
 
 _HEAD = b"time_s,position,torque\n"
@@ -77,6 +77,52 @@ def test_a_packed_text_counts_as_what_is_made_of_it(
     path = tmp_path / "a.csv.gz"
     path.write_bytes(gzip.compress(_HEAD + line * (250_000 // len(line))))
     assert "unpacked it is larger than" in refused(path)
+
+
+_SCOPE = (
+    b"Name,position,Name,torque\nData-Type,REAL64,Data-Type,REAL64\n"
+    b"SampleTime[ms],1,SampleTime[ms],1\n0,0,0,0\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("head", "line"),
+    [
+        (_HEAD, b'"0","0","0"\n'),
+        (_HEAD, b"0,0,x\r"),
+        (_HEAD, b'"0",0,' + b"0" * 5000 + b"\r\n"),
+        (_HEAD, b"1\n"),
+        (_HEAD, b"#\n"),
+        (_HEAD, b"2025-11-01 12:26:40.5,0," + b"0" * 5000 + b"\n"),
+        (_HEAD, b'"0",' * 2000),
+        (_HEAD.replace(b",", b" "), b"0 0 a\n"),
+        (_HEAD.replace(b",", b" "), b'"0" ' * 2000),
+        (_HEAD.replace(b",", b";"), b"0,1;0,1;0,1\n"),
+        (_HEAD, b"2025-11-01 12:26:40.5,0,0\n"),
+        (_SCOPE, b"0,0,0,0\n"),
+        (_SCOPE, b"0,0,0,\n"),
+        (_SCOPE, b"0,0,0," + b"," * 5000 + b"\n"),
+    ],
+)
+@pytest.mark.parametrize("packed", [True, False])
+def test_the_lines_of_a_packed_text_count_as_texts(
+    head: bytes, line: bytes, packed: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each takes 100 bytes of memory beside its characters, and so do cells."""
+    monkeypatch.setattr(csv_text, "_LEAST_AS_TEXTS", 300_000)
+    monkeypatch.setattr(csv_reader, "_LONG", 200)
+    content = head + line * (200_000 // len(line))
+    path = tmp_path / ("a.csv.gz" if packed else "a.csv")
+    path.write_bytes(gzip.compress(content) if packed else content)
+    assert ("unpacked it is larger than" in refused(path)) is packed
+
+
+def test_the_place_of_a_row_makes_no_list(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_bytes(_HEAD + b"0,1,2\r\n\n# pause\r3,4,5\n \n6,7,x")
+    table = csv_reader.CsvTable(path)
+    places = [table.place(2, row) for row in range(3)]
+    assert places == [f"{path}, line {line}, column 'torque'" for line in (2, 5, 7)]
 
 
 @pytest.mark.parametrize("unit", ["rad", "\N{DEGREE SIGN}"])

@@ -4,10 +4,6 @@ import contextlib
 import inspect
 import io
 import itertools
-import os
-import resource
-import subprocess
-import sys
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -18,25 +14,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from measured_reading import on_linux, refusal
 
 import jointid as jid
 from jointid.base.unpacking import Room
 from jointid.recording.readers.parquet_sizes import Sizes, pages_size
 
-_PEAK = 500_000_000  # bytes of the whole program
-_MOST = (
-    8_000_000_000  # bytes that it may reserve, so that a test that fails does not take the machine
-)
-_CODE = """
-import sys
-import jointid as jid
-try:
-    jid.load(sys.argv[1])
-except jid.InputError as error:
-    print(error)
-peak = next(line for line in open("/proc/self/status") if line.startswith("VmHWM"))
-print(int(peak.split()[1]) * 1024)
-"""
 _NAMES = ("time", "position", "torque")
 
 
@@ -151,11 +134,7 @@ LIES: tuple[Callable[[Path], str], ...] = (
 )
 
 
-def _limit() -> None:
-    resource.setrlimit(resource.RLIMIT_AS, (_MOST, _MOST))
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="the peak is measured as Linux counts it")
+@on_linux
 @pytest.mark.parametrize("lie", LIES, ids=lambda lie: lie.__name__)
 def test_a_file_that_lies_is_refused_in_little_memory(
     lie: Callable[[Path], str], tmp_path: Path
@@ -164,20 +143,7 @@ def test_a_file_that_lies_is_refused_in_little_memory(
     path = tmp_path / f"lie{ending}"
     expected = lie(path)
     assert path.stat().st_size < 3_000_000
-    done = subprocess.run(
-        [sys.executable, "-c", _CODE, str(path)],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
-        check=False,
-        preexec_fn=_limit,
-    )
-    assert done.returncode == 0, done.stderr
-    sentence, peak = done.stdout.splitlines()
-    assert expected in sentence
-    assert path.name in sentence
-    assert int(peak) < _PEAK
+    assert expected in refusal(path)
 
 
 def _written(writer: Any, table: Any, **options: Any) -> bytes:

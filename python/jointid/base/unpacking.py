@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,7 +14,8 @@ from jointid.base.errors import InputError
 
 LEAST = 64_000_000  # bytes that any file may hold
 TIMES = 50  # its size: recorded numbers are packed 2 to 20 times, and repeated ones 1000 times
-_CHUNK = 1 << 20  # bytes
+_FIRST, _CHUNK = 256, 1 << 20  # bytes
+_PADDED = re.compile(rb"\0*")  # a file may be
 
 
 class TooLargeError(InputError):
@@ -113,18 +115,23 @@ class Room:
             It is damaged.
         """
         parts = []
-        rest = content
-        while rest:
+        place = 0
+        while place < len(content):
             member = zlib.decompressobj(16 + zlib.MAX_WBITS)
-            found = member.decompress(rest, self.left + 1)
-            self.take(len(found))
-            if not member.eof:
-                if member.unconsumed_tail:  # as large as it may be, and more to come
-                    self.take(self.left + 1)
-                raise EOFError
-            parts.append(found)
-            rest = member.unused_data.lstrip(b"\0")  # a file may be padded
-        return parts[0] if len(parts) == 1 else b"".join(parts)
+            length = (
+                _FIRST  # zlib copies what is behind a member: of a million members, all each time
+            )
+            while not member.eof:
+                piece = content[place : place + length]
+                if not piece:
+                    raise EOFError
+                found = member.decompress(piece, self.left + 1)
+                self.take(len(found))
+                parts.append(found)
+                place += len(piece) - len(member.unused_data)
+                length = min(2 * length, _CHUNK)
+            place = _PADDED.match(content, place).end()  # type: ignore[union-attr]
+        return b"".join(parts)
 
     def bz2(self, content: bytes) -> bytes:
         """Return what bzip2 has packed.

@@ -4,7 +4,6 @@ import csv
 import re
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from io import StringIO
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
@@ -21,8 +20,8 @@ from jointid.recording.readers.csv_dialect import (
     number_of,
 )
 from jointid.recording.readers.csv_layout import SEARCHED, is_comment, layout_of
-from jointid.recording.readers.csv_stream import even_rows, plain_numbers
-from jointid.recording.readers.csv_text import text_of
+from jointid.recording.readers.csv_stream import each_line, even_rows, plain_numbers
+from jointid.recording.readers.csv_text import count_texts, text_of
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
 from jointid.recording.saved import CSV_MARK, saved_attributes
@@ -90,7 +89,7 @@ class CsvTable:
         if self._table is None and long and '"' not in self._content:
             if few:
                 self._table = plain_numbers(
-                    path if ending is None else StringIO(self._content),
+                    path if ending is None else each_line(self._content),
                     self._below,
                     self._separator,
                     len(self.headers),
@@ -154,7 +153,10 @@ class CsvTable:
 
     def place(self, column: int, row: int) -> str:
         """Return file, line and column of a cell."""
-        line = self._line_numbers[row]
+        # Here no list is made: this may be the only line of a million that is asked for.
+        numbered = enumerate(each_line(self._content), 1)
+        below = (k for k, line in numbered if k > self._below and _is_row(line))
+        line = next(islice(below, row, None))
         return f"{self.source}, line {line}, column {self.headers[column]!r}"
 
     @cached_property
@@ -171,17 +173,15 @@ class CsvTable:
     @cached_property
     def _line_numbers(self) -> list[int]:
         """1-based line number of each row; blank lines are no rows."""
+        count_texts(Path(self.source), self._content)
         below = _lines(self._content)[self._below :]
-        return [
-            number
-            for number, line in enumerate(below, self._below + 1)
-            if line.strip() and not is_comment(line)
-        ]
+        return [number for number, line in enumerate(below, self._below + 1) if _is_row(line)]
 
     @cached_property
     def _rows(self) -> list[str]:
+        numbers = self._line_numbers  # which counts what the lines take
         lines = _lines(self._content)
-        return [lines[number - 1] for number in self._line_numbers]
+        return [lines[number - 1] for number in numbers]
 
     def _with_points(self, columns: Sequence[int]) -> list[str]:
         """Return the rows with these columns only, decimal points for decimal commas."""
@@ -195,6 +195,7 @@ class CsvTable:
         return [_INNER.join(row).replace(",", ".") for row in zip(*cells, strict=True)]
 
     def _columns(self, columns: Sequence[int]) -> list[list[str]]:
+        count_texts(Path(self.source), self._content, len(self._rows) * len(columns))
         found: list[list[str]] = [[] for _ in columns]
         for row, number in zip(self._rows, self._line_numbers, strict=True):
             cells = self._cells(row, number)
@@ -220,6 +221,8 @@ class CsvTable:
                 )
 
     def _cells(self, line: str, number: int) -> list[str]:
+        if len(line) > _LONG:
+            count_texts(Path(self.source), line, len(line) // 2)
         try:
             return cells_of(line, self._separator)
         except csv.Error as error:
@@ -242,6 +245,11 @@ def _lines(text: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
+def _is_row(line: str) -> bool:
+    """Whether a line below the header is neither blank nor a comment."""
+    return bool(line.strip()) and not is_comment(line)
+
+
 def _first_lines(text: str) -> list[str]:
     """Return as many lines of a text as decide where its table begins: all, or more than are searched."""
     for length in (_SHORT, _LONG):
@@ -258,8 +266,7 @@ def _more_than(count: int, lines: Sequence[str]) -> bool:
     """Return whether so many of the lines are neither empty nor comments."""
     if len(lines) > count and all(map(_BEGINS_AT_ONCE, lines[: count + 1])):
         return True
-    filled = (line for line in lines if line.strip() and not is_comment(line))
-    return next(islice(filled, count, None), None) is not None
+    return next(islice(filter(_is_row, lines), count, None), None) is not None
 
 
 def _no_number(cell: str) -> str:

@@ -1,7 +1,7 @@
 """Long text files read as a stream: a million rows as separate texts take more time and memory than their numbers."""
 
-from collections.abc import Sequence
-from io import StringIO
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +12,17 @@ from jointid.recording.signals import FloatArray
 _BLOCK = 1 << 23  # characters
 
 
+_LINE = re.compile(r"([^\r\n]*)(?:\r\n|\r|\n|\Z)")
+
+
+def each_line(text: str) -> Iterator[str]:
+    """Yield the lines of a text one by one, without a list of them; after the last one may come an empty one."""
+    for match in _LINE.finditer(text):
+        yield match[1]
+
+
 def plain_numbers(
-    source: Path | StringIO,
+    source: Path | Iterator[str],
     below: int,
     separator: str,
     count: int,
@@ -25,7 +34,8 @@ def plain_numbers(
 
     Parameters
     ----------
-    source : Path or StringIO
+    source : Path or iterator of str
+        A file, or the lines of one.
     below : int
         Lines above the rows.
     separator : str

@@ -11,8 +11,10 @@ from jointid.base.unpacking import Room
 
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"
-# Characters on which Latin-1 and Windows-1252 agree.
 _LEAST = 100_000_000  # bytes that the numbers of any packed text may take
+_LEAST_AS_TEXTS = 250_000_000  # the same, where its lines and cells become texts of Python
+_LINE, _CELL = 110, 64  # bytes that each takes as a text, beside a line's characters
+# Characters on which Latin-1 and Windows-1252 agree.
 # Characters that make all of a text take 4 or 2 bytes each.
 _ANY_OF_FOUR, _ANY_OF_TWO = rb"[\xf0-\xf4][\x80-\xbf]{3}", rb"[\xc4-\xef][\x80-\xbf]"
 _LATIN = rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*"
@@ -39,6 +41,29 @@ def text_of(path: Path) -> str:
             "the file is empty; a header and rows of numbers are expected", place=str(path)
         )
     return text
+
+
+def count_texts(path: Path, text: str, cells: int = 0) -> None:
+    """Count what a packed file takes whose lines become separate texts; a plain file may hold what it likes.
+
+    Parameters
+    ----------
+    path : Path
+    text : str
+        What the file holds.
+    cells : int, optional
+        Cells that become separate texts, too.
+
+    Raises
+    ------
+    InputError
+        The file holds more than it may.
+    """
+    if not path.name.lower().endswith(".gz"):
+        return
+    copied = 1 + ("\r" in text) + (cells > 0)  # lines of one kind, the lines, their cells
+    lines = text.count("\n") + text.count("\r")
+    Room(path, least=_LEAST_AS_TEXTS).take(copied * len(text) + _LINE * lines + _CELL * cells)
 
 
 def _decoded(path: Path, content: bytes) -> str:

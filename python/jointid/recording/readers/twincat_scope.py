@@ -2,7 +2,8 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from io import StringIO
+from functools import cached_property
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -13,6 +14,7 @@ from jointid.base.values import dataclass
 from jointid.recording.headers import understood
 from jointid.recording.order_statistics import median
 from jointid.recording.readers.csv_dialect import number_of
+from jointid.recording.readers.csv_text import count_texts
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import Stamps, looks_exact, stamps_of
 from jointid.recording.units import UNITS
@@ -73,6 +75,7 @@ class ScopeTable:
 
     def __init__(self, source: str, text: str, separator: str) -> None:
         self.source = source
+        count_texts(Path(source), text, text.count(separator))
         lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         self._separator = separator
         keys: dict[str, list[str]] = {}
@@ -185,11 +188,7 @@ class ScopeTable:
         if self._table is not None:
             time, values = self._table[:, group.time], self._table[:, index]
         else:
-            cells = [
-                row
-                for row in map(self._cells, self._rows)
-                if len(row) > group.time and row[group.time]
-            ]
+            cells = [row for row in self._all_cells if len(row) > group.time and row[group.time]]
             stamps = [row[group.time] for row in cells]
             values = self._column(cells, index)
             exact = _exact(stamps) if stamps and looks_exact(stamps[0]) else None
@@ -198,6 +197,10 @@ class ScopeTable:
             np.concatenate([[True], np.diff(time) != 0.0]) if len(time) else np.zeros(0, dtype=bool)
         )
         return time[new], values[new]
+
+    @cached_property
+    def _all_cells(self) -> list[list[str]]:
+        return [self._cells(row) for row in self._rows]
 
     def _column(self, rows: list[list[str]], index: int) -> FloatArray:
         found = [self._number(row[index] if index < len(row) else "") for row in rows]
@@ -214,13 +217,13 @@ class ScopeTable:
         """Return all rows, if they are whole and only numbers."""
         if looks_exact(self._cells(self._rows[0])[0]):
             return None
-        text = "\n".join(self._rows)
-        if self._separator != ",":
-            if "," in text and "." in text:
+        rows = self._rows
+        if self._separator != "," and any("," in row for row in rows):
+            if any("." in row for row in rows):
                 return None
-            text = text.replace(",", ".")
+            rows = [row.replace(",", ".") for row in rows]
         try:
-            table = np.loadtxt(StringIO(text), delimiter=self._separator, comments=None, ndmin=2)
+            table = np.loadtxt(rows, delimiter=self._separator, comments=None, ndmin=2)
         except ValueError:
             return None
         return table if table.shape[1] > max(self._channels) else None
