@@ -23,6 +23,7 @@ from typing import Any
 _FIRST, _BATCH = 5_000, 50_000  # a short one of each reader says how long it takes
 _LONGEST = 4 * 3600  # [s] of a batch
 _SHOWN = 20  # failures of a batch
+_SAID = 4000  # characters of what a process said that was ended
 
 
 def _batch(name: str, start: int, count: int, progress: str) -> None:
@@ -54,7 +55,10 @@ def _tried(name: str, start: int, count: int) -> dict[str, Any]:
     if done.returncode == 0:
         found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
         return found
-    said = f"case {case}: ends the process ({done.returncode}): {done.stderr[-3000:]}"
+    said = done.stderr  # a sanitizer names the place first, Python last
+    if len(said) > _SAID:
+        said = f"{said[: _SAID // 2]} ... {said[-_SAID // 2 :]}"
+    said = f"case {case}: ends the process ({done.returncode}): {said}"
     return {"cases": case - start + 1, "failures": 1, "wrong": [said], "seconds": 0.0}
 
 

@@ -4,6 +4,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import message_files
 import numpy as np
@@ -40,9 +41,18 @@ def _hdf5(path: Path) -> None:
     import h5py
 
     run = _run()
+    packed: dict[str, dict[str, Any]] = {
+        "time": {"compression": "gzip"},
+        "position": {"compression": "gzip", "shuffle": True, "fletcher32": True, "chunks": (5,)},
+        "velocity": {"chunks": (5,)},
+        "torque": {},
+        "temperature": {"compression": "lzf"},
+    }
     with h5py.File(path, "w") as file:
-        for name in ("time", "position", "torque"):
-            file.create_dataset(f"run/{name}", data=getattr(run, name), compression="gzip")
+        for name, options in packed.items():
+            values = getattr(run, name, None)
+            values = run.time if values is None else values
+            file.create_dataset(f"run/{name}", data=values, **options)
 
 
 def _parquet(path: Path) -> None:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import zlib
+from collections.abc import Sequence
 from itertools import product
 from typing import Any
 
 from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 
-_SMALL = 60_000  # bytes of a chunk, of which zlib makes 62 MB at most
-_DEFLATE, _SHUFFLE, _CHECKSUM = 1, 2, 3  # HDF5's numbers of filters
+_DEFLATE, _SHUFFLE, _CHECKSUM, _LZF = 1, 2, 3, 32000  # HDF5's numbers of filters
+_SUM = 4  # bytes of a checksum
 # What these make depends on numbers in the file that the library does not check.
 _UNREAD = {4: "szip", 5: "N-bit", 6: "scale-offset"}
+_TIMES = (
+    4  # what all chunks of a dataset may hold, of what there is room for: their edges are not read
+)
 
 
 def take(dataset: Any, room: Room) -> None:
@@ -29,16 +33,22 @@ def take(dataset: Any, room: Room) -> None:
     InputError
         It takes more than there is room for, or its chunks are packed by filters that are not read.
     ValueError, zlib.error
-        A chunk is damaged: it holds more than a chunk does, or cannot be unpacked.
+        A chunk is damaged: it does not hold what a chunk does, or cannot be unpacked. The library reads what is
+        in memory behind one that holds less.
     """
     room.take(max(dataset.nbytes, 8 * dataset.size))  # as numbers are converted
     if dataset.chunks is None:
         return
-    size = math.prod(dataset.chunks) * dataset.dtype.itemsize  # may be more than the dataset
+    size = (
+        math.prod(dataset.chunks) * dataset.id.get_type().get_size()
+    )  # may be more than the dataset
     if size > room.left:  # one after the other, so that they are not counted together
         room.take(size)
+    if size * dataset.id.get_num_chunks() > _TIMES * room.left:
+        room.take(size * dataset.id.get_num_chunks())
     settings = dataset.id.get_create_plist()
-    filters = [settings.get_filter(number)[0] for number in range(settings.get_nfilters())]
+    described = [settings.get_filter(number) for number in range(settings.get_nfilters())]
+    filters = [code for code, *_ in described]
     refused = [_UNREAD[each] for each in filters if each in _UNREAD]
     if _DEFLATE in filters and (
         filters.count(_DEFLATE) > 1 or set(filters) - {_SHUFFLE, _DEFLATE, _CHECKSUM}
@@ -50,30 +60,54 @@ def take(dataset: Any, room: Room) -> None:
             place=str(dataset.file.filename),
             remedy="save it with gzip or lzf",
         )
-    if _DEFLATE not in filters or dataset.id.get_storage_size() <= _SMALL:
-        return
-    skipped = 1 << filters.index(_DEFLATE)
-    for place in _large_chunks(dataset):
-        chunk = dataset.id.get_chunk_info_by_coord(place)
-        if chunk.size > _SMALL and not chunk.filter_mask & skipped:
-            packed = dataset.id.read_direct_chunk(place)[1]
-            if len(zlib.decompressobj().decompress(packed, size + 1)) > size:
-                raise ValueError(f"a chunk holds more than {size} bytes")
+    for code, _, values, _ in described:
+        if code == _LZF and (
+            len(values) < 3 or values[2] < size
+        ):  # as much as is made, and no more
+            raise ValueError(f"an LZF filter makes less than a chunk of {size} bytes")
+    for chunk, place in _chunks(dataset):
+        held = _held(dataset, chunk, place, filters, size)
+        if held is not None and held != size:
+            least = "more than" if held > size else f"{held} of"
+            raise ValueError(f"a chunk holds {least} {size} bytes")
 
 
-def _large_chunks(dataset: Any) -> list[tuple[int, ...]]:
-    """Return where chunks that are large when packed begin, or where any chunk does."""
-    found: list[Any] = []
+def _held(
+    dataset: Any, chunk: Any, place: tuple[int, ...], filters: Sequence[int], size: int
+) -> int | None:
+    """Return how many bytes a chunk holds, at most one more than it should; None where its filters are others'."""
+    used = [code for k, code in enumerate(filters) if not chunk.filter_mask >> k & 1]
+    if set(used) - {_DEFLATE, _SHUFFLE, _CHECKSUM}:
+        return None
+    if _DEFLATE not in used:
+        return int(chunk.size) - _SUM * used.count(_CHECKSUM)
+    packed = dataset.id.read_direct_chunk(place)[1]
+    before, behind = used[: used.index(_DEFLATE)], used[used.index(_DEFLATE) :]
+    sums = _SUM * before.count(_CHECKSUM)
+    packed = packed[: len(packed) - _SUM * behind.count(_CHECKSUM)]
+    try:
+        return len(zlib.decompressobj().decompress(packed, size + sums + 1)) - sums
+    except zlib.error:
+        # The last chunks of a dimension may be left as they are, which h5py does not tell.
+        edges = zip(place, dataset.chunks, dataset.shape, strict=True)
+        if chunk.size == size and any(start + length > end for start, length, end in edges):
+            return size
+        raise
 
-    def look(chunk: Any) -> None:
-        if chunk.size > _SMALL:
-            found.append(chunk)
 
-    # By its place, a chunk is looked for among all of them, which takes long where they are many.
+def _chunks(dataset: Any) -> list[tuple[Any, tuple[int, ...]]]:
+    """Return what is known of each chunk, and where it begins."""
     if hasattr(dataset.id, "chunk_iter"):
-        dataset.id.chunk_iter(look)
-        places = [tuple(chunk.chunk_offset) for chunk in found]
-        sizes = [dataset.id.get_chunk_info_by_coord(place).size for place in places]
-        if sizes == [chunk.size for chunk in found]:  # some versions tell other places
-            return places
-    return list(product(*map(range, [0] * dataset.ndim, dataset.shape, dataset.chunks)))
+        found: list[Any] = []
+        dataset.id.chunk_iter(found.append)
+        if all(_begins_at(dataset, chunk) for chunk in found):  # some versions tell other places
+            return [(chunk, tuple(chunk.chunk_offset)) for chunk in found]
+    # By its place, a chunk is looked for among all of them, which takes long where they are many.
+    places = product(*map(range, [0] * dataset.ndim, dataset.shape, dataset.chunks))
+    known = ((dataset.id.get_chunk_info_by_coord(place), place) for place in places)
+    return [(chunk, place) for chunk, place in known if chunk.byte_offset is not None]
+
+
+def _begins_at(dataset: Any, chunk: Any) -> bool:
+    place = chunk.chunk_offset
+    return all(start % length == 0 for start, length in zip(place, dataset.chunks, strict=True))

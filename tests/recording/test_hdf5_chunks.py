@@ -1,0 +1,115 @@
+"""Chunks of HDF5 files that hold less or more than they should: the library reads the memory behind them."""
+
+import struct
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid.base import unpacking
+
+h5py = pytest.importorskip("h5py")
+
+_ROWS = 20
+_TIME = np.arange(_ROWS) * 1e-3
+_TORQUE = np.cos(np.arange(_ROWS))
+# Each as HDF5 or h5py packs it: of 20 numbers, the last chunk has 8 in use.
+PACKED: dict[str, dict[str, Any]] = {
+    "plain": {},
+    "gzip": {"compression": "gzip"},
+    "shuffled": {"compression": "gzip", "shuffle": True},
+    "summed": {"fletcher32": True},
+    "all": {"compression": "gzip", "shuffle": True, "fletcher32": True},
+    "lzf": {"compression": "lzf"},
+    "lzf and sum": {"compression": "lzf", "fletcher32": True},
+}
+
+
+def _file(path: Path, change: Callable[[Any], object] = lambda _: None, **options: Any) -> Path:
+    with h5py.File(path, "w") as file:
+        file["time"] = _TIME
+        file["position"] = np.sin(_TIME)
+        file.create_dataset("torque", **{"data": _TORQUE, "chunks": (12,), **options})
+        change(file["torque"])
+    return path
+
+
+def _torque(path: Path) -> Any:
+    return jid.load(path).torque
+
+
+def _refused(path: Path) -> str:
+    with pytest.raises(jid.InputError) as caught:
+        jid.load(path)
+    assert path.name in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", PACKED)
+@pytest.mark.parametrize("kind", ["f8", "f4", ">f8"])
+def test_whole_chunks_are_read(name: str, kind: str, tmp_path: Path) -> None:
+    values = _TORQUE.astype(kind)
+    path = _file(tmp_path / "a.h5", lambda torque: torque.write_direct(values), **PACKED[name])
+    assert np.array_equal(_torque(path), values)
+
+
+def test_chunks_without_their_filters_are_read(tmp_path: Path) -> None:
+    """A writer may leave out a filter that makes a chunk larger; its number in a mask says so."""
+
+    def change(torque: Any) -> None:
+        torque.id.write_direct_chunk((0,), _TORQUE[:12].tobytes(), filter_mask=1)
+
+    path = _file(tmp_path / "a.h5", change, compression="gzip")
+    assert np.array_equal(_torque(path), _TORQUE)
+
+
+@pytest.mark.parametrize(
+    ("options", "written", "mask"),
+    [
+        ({"compression": "gzip"}, zlib.compress(bytes(88)), 0),
+        ({"compression": "gzip"}, zlib.compress(bytes(104)), 0),
+        ({"compression": "gzip"}, bytes(88), 1),
+        ({"compression": "gzip", "shuffle": True}, zlib.compress(bytes(95)), 0),
+        ({"compression": "gzip", "shuffle": True}, bytes(88), 2),
+        ({"fletcher32": True}, bytes(92), 1),
+    ],
+)
+def test_a_chunk_of_another_size_is_refused(
+    options: dict[str, Any], written: bytes, mask: int, tmp_path: Path
+) -> None:
+    path = _file(
+        tmp_path / "a.h5",
+        lambda torque: torque.id.write_direct_chunk((0,), written, filter_mask=mask),
+        **options,
+    )
+    assert "the file is damaged (a chunk holds " in _refused(path)
+
+
+@pytest.mark.parametrize("size", [0, 88])
+def test_a_filter_that_makes_less_is_refused(size: int, tmp_path: Path) -> None:
+    path = _file(tmp_path / "a.h5", compression="lzf")
+    with h5py.File(path) as file:
+        _, _, values, _ = file["torque"].id.get_create_plist().get_filter(0)
+    content = path.read_bytes()
+    known = struct.pack("<III", *values)
+    assert content.count(known) == 1
+    path.write_bytes(content.replace(known, struct.pack("<III", *values[:2], size)))
+    assert "an LZF filter makes less than a chunk of 96 bytes" in _refused(path)
+
+
+def test_all_chunks_together_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each may be far larger than what the dataset has of it, and all may be one place of the file."""
+    monkeypatch.setattr(unpacking, "LEAST", 20_000)
+    monkeypatch.setattr(unpacking, "TIMES", 0)
+    path = _file(
+        tmp_path / "a.h5",
+        data=_TORQUE[:, None],
+        chunks=(1, 1000),
+        maxshape=(None, None),
+        compression="gzip",
+    )
+    assert "unpacked it is larger than" in _refused(path)
