@@ -31,6 +31,11 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
         count = metadata.get(name)
         if isinstance(count, int) and count:
             found.append(f"{count} messages {what}")
+    topics = metadata.get("topics_not_compared")
+    if isinstance(topics, int) and topics:
+        found.append(
+            f"{topics} topics are not compared with this one: too many have as many messages"
+        )
     dropped = metadata.get("dropped_rows")
     if isinstance(dropped, int) and dropped:
         rows = "1 damaged row is" if dropped == 1 else f"{dropped} damaged rows are"

@@ -27,11 +27,14 @@ class Collected:
         Their own stamps [ns]; None if they have none, or only zeros.
     log_times : ndarray of int, shape (messages,)
         When each was logged [ns].
+    not_compared : int
+        Topics with as many messages whose stamps were not compared with these: there are too many.
     """
 
     blocks: tuple[Block, ...]
     stamps: npt.NDArray[np.int64] | None
     log_times: npt.NDArray[np.int64]
+    not_compared: int = 0
 
 
 def collect(source: Source, topic: Topic) -> Collected:

@@ -12,6 +12,7 @@ from jointid.recording.messages.joints import is_joint_kind
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
 _TRIED = 16  # messages whose stamps are compared before a topic is read
+_MOST_TOPICS = 256  # that are compared: for each, much of the file may be looked through
 
 
 def with_companions(source: Source, chosen: Topic, collected: Collected) -> Collected:
@@ -30,12 +31,17 @@ def with_companions(source: Source, chosen: Topic, collected: Collected) -> Coll
     if collected.stamps is None or not is_joint_kind(chosen.kind):
         return collected
     blocks = list(collected.blocks)
-    for topic in source.topics:
-        if topic.name == chosen.name or is_joint_kind(topic.kind):
-            continue
-        if topic.count == len(collected.stamps) and topic.encoding in READ:
-            blocks += _blocks(source, topic, collected)
-    return replace(collected, blocks=tuple(blocks))
+    others = [
+        topic
+        for topic in source.topics
+        if topic.name != chosen.name
+        and not is_joint_kind(topic.kind)
+        and topic.count == len(collected.stamps)
+        and topic.encoding in READ
+    ]
+    for topic in others[:_MOST_TOPICS]:
+        blocks += _blocks(source, topic, collected)
+    return replace(collected, blocks=tuple(blocks), not_compared=max(0, len(others) - _MOST_TOPICS))
 
 
 def _blocks(source: Source, topic: Topic, collected: Collected) -> list[Block]:

@@ -104,8 +104,11 @@ class McapSource:
 
     def _topics(self) -> tuple[Topic, ...]:
         found: dict[tuple[str, str, str], Topic] = {}
+        texts: dict[int, str] = {}  # decoded once: thousands of channels may have one schema
         for number, channel in self._channels.items():
             schema = self._schemas.get(channel.schema_id)
+            if schema and channel.schema_id not in texts:
+                texts[channel.schema_id] = schema.data.decode("utf-8", "replace")
             key = self._name(channel)
             count = None if self._counts is None else self._counts.get(number, 0)
             if key in found:
@@ -115,7 +118,7 @@ class McapSource:
                 name=key[0],
                 kind=key[1],
                 encoding=key[2],
-                definition=schema.data.decode("utf-8", "replace") if schema else "",
+                definition=texts.get(channel.schema_id, ""),
                 definition_format=schema.encoding if schema else "",
                 count=count,
             )
@@ -219,6 +222,8 @@ def _content(chunk: Any, room: Room) -> bytes:
     unpack = _UNPACKING.get(chunk.compression)
     if unpack is None and chunk.compression:
         raise DamageError(f"the compression {chunk.compression!r} is not read")
+    if unpack is None:
+        room.take(len(chunk.data))  # several entries of the summary may name one chunk
     content = chunk.data if unpack is None else unpack(chunk.data, room)
     if chunk.uncompressed_crc and zlib.crc32(content) != chunk.uncompressed_crc:
         raise DamageError("crc validation failed in Chunk")

@@ -202,6 +202,8 @@ def _notes(topic: Topic, collected: Collected, rows: Rows, incomplete: str) -> d
         notes["repeated_messages"] = rows.repeated
     if rows.reordered:
         notes["reordered_messages"] = rows.reordered
+    if collected.not_compared:
+        notes["topics_not_compared"] = collected.not_compared
     if incomplete:
         notes["incomplete"] = incomplete
     return notes

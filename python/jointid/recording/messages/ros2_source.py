@@ -7,6 +7,7 @@ import weakref
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import mkdtemp
+from typing import Any
 
 from jointid.base.error_text import reason_of
 from jointid.base.unpacking import Room
@@ -16,6 +17,9 @@ from jointid.recording.messages.packed import of_zstandard
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
 _ENDING = re.compile(r"\.(db3|mcap)(\.zstd)?$", re.IGNORECASE)
+_MOST_TOPICS = 10_000
+_LONGEST_DEFAULT = 100  # characters
+_STEPS, _STEPS_A_BYTE, _STEPS_AT_ONCE = 1000, 20, 1000  # a row takes some 30, and more bytes
 _ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0
 
 
@@ -48,23 +52,10 @@ class SqliteSource:
     def messages(self, topic: Topic) -> Iterator[Message]:
         """Yield the messages of a topic, in the order of their log times."""
         numbers = self._numbers[topic.name, topic.kind, topic.encoding]
-        marks = ",".join("?" * len(numbers))
-        query = (
-            f"SELECT timestamp, data FROM messages WHERE topic_id IN ({marks}) ORDER BY timestamp"
-        )
         self._room.again()
         connection = self._connected()
         try:
-            rows = None
-            while True:
-                try:
-                    rows = rows or connection.execute(query, numbers)
-                    row = rows.fetchone()
-                except sqlite3.Error as error:
-                    raise DamageError(f"it is damaged ({reason_of(error)})") from None
-                if row is None:
-                    return
-                time, message = row
+            for time, message in _in_order(connection, numbers):
                 if not isinstance(time, int) or not isinstance(message, bytes):
                     raise DamageError("it is damaged (a row holds no message)")
                 if message.startswith(_ZSTANDARD):
@@ -72,6 +63,8 @@ class SqliteSource:
                 else:
                     self._room.take(len(message))
                 yield time, message
+        except sqlite3.Error as error:
+            raise DamageError(f"it is damaged ({reason_of(error)})") from None
         finally:
             connection.close()
 
@@ -83,6 +76,9 @@ class SqliteSource:
         # Nothing that a table holds is larger than the file; SQLite's own texts may be.
         longest = min(max(self._path.stat().st_size, 1_000_000), 1_000_000_000)
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
+        # Pages that name each other have rows without an end.
+        steps = iter(range(_STEPS + self._path.stat().st_size * _STEPS_A_BYTE // _STEPS_AT_ONCE))
+        connection.set_progress_handler(lambda: next(steps, None) is None, _STEPS_AT_ONCE)
         return connection
 
     def _check_tables(self, connection: sqlite3.Connection) -> None:
@@ -93,8 +89,11 @@ class SqliteSource:
                 "AND type IN ('table', 'view') AND NOT (type = 'table' AND rootpage > 0)",
                 (name,),
             )
+            # A default stands in each row that ends before its column.
             computed = connection.execute(
-                "SELECT COUNT(*) FROM pragma_table_xinfo(?) WHERE hidden <> 0", (name,)
+                "SELECT COUNT(*) FROM pragma_table_xinfo(?) "
+                "WHERE hidden <> 0 OR length(dflt_value) > ?",
+                (name, _LONGEST_DEFAULT),
             )
             if other.fetchone()[0] or computed.fetchone()[0]:
                 raise DamageError(f"it is not a ROS 2 bag: {name} is not a plain table")
@@ -104,9 +103,12 @@ class SqliteSource:
         try:
             self._check_tables(connection)
             rows = connection.execute("SELECT id, name, type, serialization_format FROM topics")
-            described = rows.fetchall()
+            described = self._few(rows)
             counts = dict(
-                connection.execute("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id")
+                connection.execute(
+                    "SELECT topic_id, COUNT(*) FROM messages "
+                    "WHERE typeof(topic_id) = 'integer' GROUP BY topic_id"
+                )
             )
             definitions = self._definitions(connection)
         finally:
@@ -130,12 +132,25 @@ class SqliteSource:
 
     def _definitions(self, connection: sqlite3.Connection) -> dict[str, tuple[str, str]]:
         try:
-            rows = connection.execute(
-                "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
-            ).fetchall()
+            rows = self._few(
+                connection.execute(
+                    "SELECT topic_type, encoding, encoded_message_definition "
+                    "FROM message_definitions"
+                )
+            )
         except sqlite3.OperationalError:  # bags before ROS 2 Iron hold no definitions
             return {}
         return {normal_kind(kind): (form, text) for kind, form, text in rows}
+
+    def _few(self, rows: sqlite3.Cursor) -> list[tuple[Any, ...]]:
+        """Return rows of a table that describes topics; they may share the pages of their texts."""
+        found = []
+        for row in rows:
+            self._room.take(sum(len(value) for value in row if isinstance(value, str | bytes)))
+            found.append(row)
+            if len(found) > _MOST_TOPICS:
+                raise DamageError(f"it has more than {_MOST_TOPICS} topics")
+        return found
 
 
 class FolderSource:
@@ -211,6 +226,26 @@ class FolderSource:
             for each in source.topics:
                 if (each.name, each.kind, each.encoding) == wanted:
                     yield from source.messages(each)
+
+
+def _in_order(connection: sqlite3.Connection, numbers: list[int]) -> Iterator[tuple[Any, Any]]:
+    """Yield time and data of the rows of topics."""
+    where = (
+        "FROM messages WHERE typeof(topic_id) = 'integer' "
+        f"AND topic_id IN ({','.join('?' * len(numbers))}) ORDER BY"
+    )
+    direct = f"SELECT timestamp, data {where} timestamp"
+    if not any(
+        "TEMP B-TREE" in detail
+        for *_, detail in connection.execute(f"EXPLAIN QUERY PLAN {direct}", numbers)
+    ):
+        yield from connection.execute(direct, numbers)
+        return
+    # Without an index, what is sorted goes to the disk: rows may share the pages of one message.
+    time = "CASE typeof(timestamp) WHEN 'integer' THEN timestamp END"
+    for at, number in connection.execute(f"SELECT {time}, _rowid_ {where} {time}", numbers):
+        row = connection.execute("SELECT data FROM messages WHERE _rowid_ = ?", (number,))
+        yield at, *(row.fetchone() or (None,))
 
 
 def _decompressed(message: bytes, room: Room) -> bytes:

@@ -1,15 +1,19 @@
 """Which row of a table each message belongs to: rows in the order of their stamps, one for each stamp."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
 from jointid.base.values import dataclass
 from jointid.recording.messages.collecting import Collected
+from jointid.recording.messages.joints import Column
 
 _LATE = (
     1_000_000_000  # ns: a message that comes later than this after a younger one begins another run
 )
 Integers = npt.NDArray[np.int64]
+_Part = tuple[npt.NDArray[np.intp], npt.NDArray[np.float64]]  # columns and values of a message
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,22 +87,23 @@ def _joined(
     shared = np.flatnonzero(equal | np.append(equal[1:], False))
     place = np.full(len(order), -1, dtype=np.int64)  # message → line of the small table
     place[order[shared]] = np.arange(len(shared))
-    columns = list(dict.fromkeys(c for block in collected.blocks for c in block.columns))
-    there = np.zeros((len(shared), len(columns)), dtype=np.bool_)
-    values = np.zeros((len(shared), len(columns)))
+    numbers: dict[Column, int] = {}
+    # Of each line its columns and values: a table of all would be mostly empty where many joints share a stamp.
+    parts: list[list[_Part]] = [[] for _ in shared]
     for block in collected.blocks:
+        last = {numbers.setdefault(c, len(numbers)): k for k, c in enumerate(block.columns)}
+        where = np.array(list(last), dtype=np.intp)
+        values = block.values[list(last.values())]
         lines = place[block.messages]
-        used = lines >= 0
-        where = np.array([columns.index(column) for column in block.columns], dtype=np.intp)
-        cells = np.ix_(lines[used], where)
-        there[cells] = True
-        values[cells] = block.values[:, used].T
+        for k in np.flatnonzero(lines >= 0):
+            parts[lines[k]].append((where, values[:, k]))
+    count = len(numbers)
     joined, dropped = np.zeros_like(equal), np.zeros_like(equal)
     start = 0
     for line in range(1, len(shared) + 1):
         if line < len(shared) and group[shared[line]] == group[shared[start]]:
             continue
-        _join_group(shared, slice(start, line), there, values, joined, dropped)
+        _join_group(shared, slice(start, line), parts, count, joined, dropped)
         start = line
     return joined, dropped
 
@@ -106,21 +111,25 @@ def _joined(
 def _join_group(
     shared: npt.NDArray[np.intp],
     lines: slice,
-    there: npt.NDArray[np.bool_],
-    values: npt.NDArray[np.float64],
+    parts: Sequence[Sequence[_Part]],
+    count: int,
     joined: npt.NDArray[np.bool_],
     dropped: npt.NDArray[np.bool_],
 ) -> None:
     """Decide on the messages of one stamp: all of them agree and join, or none does."""
-    seen, known = there[lines.start].copy(), values[lines.start].copy()
+    known = np.zeros(count)
+    seen = np.zeros(count, dtype=np.bool_)
     repeats = []
-    for line in range(lines.start + 1, lines.stop):
-        both = seen & there[line]
-        if not np.array_equal(known[both], values[line][both], equal_nan=True):
-            return
-        repeats.append(bool(both.sum() == there[line].sum()))
-        known[there[line]] = values[line][there[line]]
-        seen |= there[line]
+    for line in range(lines.start, lines.stop):
+        new = False
+        for where, values in parts[line]:
+            both = seen[where]
+            if not np.array_equal(known[where][both], values[both], equal_nan=True):
+                return
+            new = new or not both.all()
+            known[where] = values
+            seen[where] = True
+        repeats.append(not new)
     positions = shared[lines.start + 1 : lines.stop]
     joined[positions] = True
-    dropped[positions] = repeats
+    dropped[positions] = repeats[1:]

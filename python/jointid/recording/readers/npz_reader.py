@@ -1,6 +1,7 @@
 """Reading .npz files: arrays by name, never pickles."""
 
 import io
+import tokenize
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -114,6 +115,8 @@ class NpzTable:
             self._room.take(self._sizes.get(name, 0))
         try:
             value = self._archive[name]
+        except (SyntaxError, tokenize.TokenError):  # numpy parses it as Python
+            raise InputError("its header is damaged", place=self._place(name)) from None
         except _damages() as error:
             if "allow_pickle" in str(error):
                 raise InputError(
