@@ -16,8 +16,8 @@ import pytest
 import jointid as jid
 from jointid.base import unpacking
 from jointid.recording.headers import understood
-from jointid.recording.hierarchies import hdf5_chunks
-from jointid.recording.readers import csv_reader, csv_text
+from jointid.recording.hierarchies import datasets, hdf5_chunks
+from jointid.recording.readers import csv_reader, csv_text, twincat_scope
 from jointid.recording.readers.csv_dialect import BLANK, cells_of
 
 _HEAD = b"time_s,position,torque\n"
@@ -190,7 +190,10 @@ def test_a_struct_of_many_elements_is_left_out(tmp_path: Path) -> None:
     assert len(jid.load(path)) == 20
 
 
-@pytest.mark.parametrize("header", [b"(" * 70 + b"\n", b"{'descr': '<f8', 'shape': (\n"])
+@pytest.mark.parametrize(
+    "header",
+    [b"(" * 70 + b"\n", b"{'descr': '<f8', 'shape': (\n", b"{1: 2, 'descr': 3}\n", b"{[]: 1}\n"],
+)
 def test_a_header_that_is_not_python(header: bytes, tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     with zipfile.ZipFile(path, "w") as archive:
@@ -198,6 +201,41 @@ def test_a_header_that_is_not_python(header: bytes, tmp_path: Path) -> None:
             start = b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header
             archive.writestr(f"{name}.npy", start)
     assert "its header is damaged" in refused(path)
+
+
+@pytest.mark.parametrize("kind", ["m8", "M8"])
+def test_a_time_without_a_unit(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    time = np.arange(20, dtype="i8").view(kind)
+    np.savez(path, time=time, position=np.zeros(20), torque=np.zeros(20))
+    assert "dates or durations without a unit; seconds are expected" in refused(path)
+
+
+def test_rows_of_many_groups(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of an export with thousands of time columns, each row may end early: only whole ones are looked through."""
+    count = 40
+    names = ",".join(f"Name,c{k}" for k in range(count))
+    data = ",".join(["Data-Type,REAL64"] * count)
+    rows = "0,0\n" * 500 + ",".join(f"{k},0" for k in range(count)) + "\n"
+    path = tmp_path / "a.csv"
+    path.write_text(f"{names}\n{data}\n{rows}")
+    table = twincat_scope.ScopeTable(str(path), path.read_text(), ",")
+    looked: list[int] = []
+
+    class Rows(list[list[str]]):
+        def __getitem__(self, index: Any) -> Any:
+            looked.append(index)
+            return super().__getitem__(index)
+
+        def __iter__(self) -> Any:
+            looked.extend(range(len(self)))
+            return super().__iter__()
+
+    rows_of = Rows(table._all_cells)
+    assert len(table._lengths) == 501
+    monkeypatch.setitem(table.__dict__, "_all_cells", rows_of)
+    table._samples(table._groups[30])
+    assert looked == [500]
 
 
 # --- HDF5 ---
@@ -211,6 +249,34 @@ def _hdf5(path: Path, change: Callable[[Any], None]) -> Path:
         file["torque"] = np.cos(np.arange(20))
         change(file)
     return path
+
+
+def test_long_paths(tmp_path: Path) -> None:
+    """Of a group's name of 60 kB, each object below has its own copy, several times."""
+    message = refused(_hdf5(tmp_path / "a.h5", lambda file: file.create_group("a" * 1001)))
+    assert "the path of an object has 1001 characters; at most 1000 are read" in message
+
+
+def test_columns_of_a_shared_type_are_not_all_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = 0
+    real = datasets.Vector
+
+    def vector(**fields: Any) -> Any:
+        nonlocal made
+        made += 1
+        return real(**fields)
+
+    monkeypatch.setattr(datasets, "Vector", vector)
+    kind = np.dtype([(f"f{k}", "f8", (256,)) for k in range(20)])
+
+    def change(file: Any) -> None:
+        for k in range(20):
+            file.create_dataset(f"d{k}", (2,), kind)
+
+    assert "it has more than 10000 columns" in refused(_hdf5(tmp_path / "a.h5", change))
+    assert made <= 10_001
 
 
 def test_filters_that_believe_the_file_are_not_used(tmp_path: Path) -> None:
@@ -304,4 +370,4 @@ def test_matrices_of_many_columns(tmp_path: Path) -> None:
             file.create_dataset(f"m{number}", shape=(1000, 256), dtype="f4")
 
     message = refused(_hdf5(tmp_path / "a.h5", change))
-    assert "it has 10243 columns; at most 10000 are looked through" in message
+    assert "it has more than 10000 columns, the most that are looked through" in message

@@ -101,6 +101,17 @@ def test_a_filter_that_makes_less_is_refused(size: int, tmp_path: Path) -> None:
     assert "an LZF filter makes less than a chunk of 96 bytes" in _refused(path)
 
 
+def test_a_chunk_larger_than_its_file_is_refused(tmp_path: Path) -> None:
+    path = _file(tmp_path / "a.h5", chunks=(20,), compression="gzip")
+    with h5py.File(path) as file:
+        size = file["torque"].id.get_chunk_info(0).size
+    content = path.read_bytes()
+    known = struct.pack("<IIQQ", size, 0, 0, 0)  # of a chunk in the index: its size, mask and place
+    assert content.count(known) == 1
+    path.write_bytes(content.replace(known, struct.pack("<IIQQ", 2_600_000_000, 0, 0, 0)))
+    assert "a chunk says that it takes 2600000000 bytes of" in _refused(path)
+
+
 def test_all_chunks_together_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each may be far larger than what the dataset has of it, and all may be one place of the file."""
     monkeypatch.setattr(unpacking, "LEAST", 20_000)

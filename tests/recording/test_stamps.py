@@ -1,5 +1,6 @@
 """Time stamps as other programs write them: exact to a nanosecond, or refused."""
 
+import tracemalloc
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 
@@ -197,3 +198,28 @@ def test_dates_with_the_day_first_and_clock_times(
 ) -> None:
     found = stamps_of(cells, None)
     assert (found.seconds.tolist() if found else None) == seconds
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "2025-11-{d:02d} {h:02d}:{m:02d}:{s:02d}.5",
+        "{d:02d}.11.2025 {h:02d}:{m:02d}:{s:02d}",
+        "{d:02d}/11/2025 {h:02d}:{m:02d}:{s:02d}",
+        "{h:02d}:{m:02d}:{s:02d}.5",
+        "17299908{d:02d}{h:02d}{m:02d}{s:02d}123",
+    ],
+)
+def test_many_stamps_take_little_beside_their_texts(form: str) -> None:
+    cells = [
+        form.format(d=13 + k // 86400, h=k // 3600 % 24, m=k // 60 % 60, s=k % 60)
+        for k in range(20_000)
+    ]
+    stamps_of(cells[:10], None, "")
+    tracemalloc.start()
+    found = stamps_of(cells, None, "")
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert found is not None
+    assert len(found.seconds) == len(cells)
+    assert peak < 250 * len(cells)  # with a match and a second of each: 700

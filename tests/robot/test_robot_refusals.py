@@ -38,6 +38,24 @@ def test_a_file_that_is_no_urdf(
 
 
 @pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"<link name='a'/>" * 1001, "at most 1000 links"),
+        (b"<joint name='a'/>" * 1001, "at most 1000 joints"),
+        (b"<link " + b" ".join(b"a%d='1'" % k for k in range(101)) + b"/>", "at most 100 attrib"),
+        (b"<a>" * 50 + b"</a>" * 50, "at most 50 elements inside each other"),
+    ],
+)
+def test_a_urdf_on_which_pinocchio_ends_the_process(
+    content: bytes, reason: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_bytes(b"<robot name='a'>" + content + b"</robot>")
+    with pytest.raises(jid.InputError, match=reason):
+        jid.Robot.from_urdf(path)
+
+
+@pytest.mark.parametrize(
     ("facts", "reason"),
     [
         ("gear_ratios = [32]", r"^facts\.toml: gear_ratios is \[32\]: 2 numbers"),

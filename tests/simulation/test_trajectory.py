@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import tracemalloc
 from collections.abc import Callable
 from typing import Any
 
@@ -11,6 +12,7 @@ from scipy.interpolate import CubicSpline
 
 import jointid as jid
 from jointid.base.errors import InputError
+from jointid.simulation import trajectory
 
 Trajectory = jid.Trajectory
 TIMES = np.arange(0.0, 4.0, 1e-4)
@@ -68,6 +70,20 @@ def test_a_multisine_keeps_to_its_size_and_band() -> None:
     assert power[(frequency > 0.45) & (frequency < 4.05)].sum() > 0.999 * power.sum()
     # Schroeder's phases: far below the eight-fold peak of sines in step.
     assert np.abs(position - position.mean()).max() < 2.1 * math.sqrt(2.0) * position.std()
+
+
+def test_the_peak_is_found_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A motion file of 100 bytes may ask for 50 million sines."""
+    options: dict[str, Any] = {"lowest": 0.3, "highest": 4.0, "count": 3, "duration": 37.0}
+    whole = Trajectory.multisine(0.4, **options)
+    monkeypatch.setattr(trajectory, "_AT_ONCE", 100)
+    assert Trajectory.multisine(0.4, **options) == whole
+    monkeypatch.undo()
+    tracemalloc.start()
+    Trajectory.multisine(0.4, lowest=1.0, highest=2.0, count=1, duration=1e5)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 50_000_000  # at once, they are 130 MB
 
 
 @pytest.mark.parametrize(("distance", "peak"), [(1.2, 0.6), (-1.2, 0.6), (0.1, math.sqrt(0.2))])

@@ -1,7 +1,7 @@
 """Time stamps that no float holds: ISO 8601, integers since an epoch, seconds with nanoseconds beside them."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime
 from typing import Any
 
@@ -21,6 +21,7 @@ _NUMBER = r"(-?\d+)(?:[.,](\d+))?"
 _EPOCH = datetime(1970, 1, 1)
 _LARGE = 10**12  # smaller integers are exact as floats of seconds
 _LONGEST = 25  # digits: more are no stamps
+_KNOWN = 10_000  # seconds that are kept
 _WHOLE = r"(.*?)_?(tv_)?(?:secs?|seconds)"
 _PARTS = (
     (r"(.*?)_?(tv_)?(?:n(?:ano)?secs?|nanoseconds)", 1e9),
@@ -89,17 +90,17 @@ def stamps_of(cells: Sequence[str], unit: Unit | None, place: str = "") -> Stamp
         nanoseconds = _of_any_dates(cells)
         if nanoseconds is None:
             return None
-        first = nanoseconds[0]
         return Stamps(
-            seconds=np.array([each - first for each in nanoseconds], dtype=np.float64) / _SECOND,
+            seconds=_differences(nanoseconds) / _SECOND,
             first=cells[0].strip(),
         )
     numbers = _of_numbers(cells)
     if numbers is None:
         return None
     values, parts = numbers
-    differences = np.array([each - values[0] for each in values], dtype=np.float64)
-    return _with_unit(differences, parts, cells[0].strip(), float(values[0]) / parts, unit, place)
+    return _with_unit(
+        _differences(values), parts, cells[0].strip(), float(values[0]) / parts, unit, place
+    )
 
 
 def stamps_of_integers(
@@ -187,28 +188,26 @@ def with_fraction(whole: FloatArray, fraction: FloatArray, parts: float) -> Floa
     return np.asarray((whole - whole[0]) + (fraction - fraction[0]) / parts)
 
 
+def _differences(values: Sequence[int]) -> FloatArray:
+    first = values[0]
+    return np.fromiter((each - first for each in values), dtype=np.float64, count=len(values))
+
+
 def _of_any_dates(cells: Sequence[str]) -> list[int] | None:
     if re.fullmatch(_ISO, cells[0].strip()):
         return _of_dates(cells)
     if re.fullmatch(_CLOCK, cells[0].strip()):
         return _of_clocks(cells)
-    found = [re.fullmatch(_DAY_FIRST, cell.strip()) for cell in cells]
-    matches = [each for each in found if each]
-    if len(matches) < len(cells):
-        return None
-
-    def read(day: int, month: int) -> list[int] | None:
-        return _of_dates(
-            [
-                f"{each[4]}-{int(each[month]):02d}-{int(each[day]):02d} {each[5]:0>8}.{each[6] or 0}"
-                for each in matches
-            ]
-        )
-
-    day_first = read(1, 3)
-    if all(each[2] == "." for each in matches):
+    points = True
+    for cell in cells:
+        match = re.fullmatch(_DAY_FIRST, cell.strip())
+        if match is None:
+            return None
+        points = points and match[2] == "."
+    day_first = _of_dates(_iso(cells, 1, 3))
+    if points:
         return day_first
-    month_first = read(3, 1)
+    month_first = _of_dates(_iso(cells, 3, 1))
     if day_first is None or month_first is None:
         return day_first or month_first
     same = all(
@@ -218,9 +217,27 @@ def _of_any_dates(cells: Sequence[str]) -> list[int] | None:
     return day_first if same else None
 
 
+def _iso(cells: Iterable[str], day: int, month: int) -> Iterator[str]:
+    """Yield dates with the year last as ISO 8601, up to one that is none."""
+    for cell in cells:
+        match = re.fullmatch(_DAY_FIRST, cell.strip())
+        if match is None:
+            return
+        date = f"{match[4]}-{int(match[month]):02d}-{int(match[day]):02d}"
+        yield f"{date} {match[5]:0>8}.{match[6] or 0}"
+
+
+def _on_one_day(cells: Iterable[str]) -> Iterator[str]:
+    """Yield clock times as dates, up to one that is none."""
+    for cell in cells:
+        match = re.fullmatch(_CLOCK, cell.strip())
+        if match is None:
+            return
+        yield f"1970-01-01 {match[1]:0>8}.{match[2] or 0}"
+
+
 def _of_clocks(cells: Sequence[str]) -> list[int] | None:
-    matches = [re.fullmatch(_CLOCK, cell.strip()) for cell in cells]
-    found = _of_dates([f"1970-01-01 {each[1]:0>8}.{each[2] or 0}" for each in matches if each])
+    found = _of_dates(_on_one_day(cells))
     if found is None or len(found) < len(cells):
         return None
     days, before = 0, found[0]
@@ -232,8 +249,8 @@ def _of_clocks(cells: Sequence[str]) -> list[int] | None:
     return found
 
 
-def _of_dates(cells: Sequence[str]) -> list[int] | None:
-    seconds: dict[str, int] = {}  # of a date and time without fraction: few among many stamps
+def _of_dates(cells: Iterable[str]) -> list[int] | None:
+    seconds: dict[str, int] = {}  # of a date and time without fraction, which many stamps have
     zones: dict[str, int] = {"": 0}
     found = []
     for cell in cells:
@@ -247,6 +264,8 @@ def _of_dates(cells: Sequence[str]) -> list[int] | None:
                 since = datetime.fromisoformat(base) - _EPOCH
             except ValueError:  # 30 February
                 return None
+            if len(seconds) == _KNOWN:
+                seconds.clear()
             whole = seconds[base] = (since.days * 86400 + since.seconds) * _SECOND
         if zone not in zones:
             zones[zone] = _zone(zone)
@@ -265,11 +284,13 @@ def _zone(text: str) -> int:
 
 def _of_numbers(cells: Sequence[str]) -> tuple[list[int], int] | None:
     """Return numbers as integers, and how many of these make one of the file's unit."""
-    matches = [re.fullmatch(_NUMBER, cell.strip()) for cell in cells]
-    if not all(matches):
-        return None
-    pairs = [(each[1], each[2] or "") for each in matches if each]
-    digits = max(len(fraction) for _, fraction in pairs)
-    if digits > _LONGEST or max(len(whole) for whole, _ in pairs) > _LONGEST:
-        return None
-    return [int(whole + fraction.ljust(digits, "0")) for whole, fraction in pairs], 10**digits
+    digits = 0
+    for cell in cells:
+        match = re.fullmatch(_NUMBER, cell.strip())
+        if match is None:
+            return None
+        digits = max(digits, len(match[2] or ""))
+        if digits > _LONGEST or len(match[1]) > _LONGEST:
+            return None
+    parts = (cell.strip().replace(",", ".").partition(".") for cell in cells)
+    return [int(whole + fraction.ljust(digits, "0")) for whole, _, fraction in parts], 10**digits

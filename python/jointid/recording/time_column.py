@@ -50,6 +50,11 @@ def _of_raw(table: Table, column: Column, raw: npt.NDArray[Any], place: str) -> 
     if raw.ndim != 1 or not len(raw):
         return None
     if raw.dtype.kind in "mM":
+        if np.datetime_data(raw.dtype)[0] == "generic":
+            raise InputError(
+                "its numbers are dates or durations without a unit; seconds are expected",
+                place=table.place(column.index, 0),
+            )
         if (missing := np.isnat(raw)).any():
             raise InputError(
                 "the cell is empty; a time is expected",

@@ -12,6 +12,13 @@ import numpy as np
 from jointid.base.errors import InputError
 from jointid.robot.link_tree import LinkTree
 
+_MOST = {
+    "links": 1000,
+    "joints": 1000,
+    "attributes of an element": 100,
+    "elements inside each other": 50,
+}
+
 
 def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[float]) -> LinkTree:
     """Return the links that some joints of a URDF move; its other joints stand at zero.
@@ -122,9 +129,10 @@ def _xml(path: Path) -> str:
     except OSError as error:
         reason = f"it cannot be read: {error.strerror}"
         raise InputError(reason, place=str(path)) from None
-    tags: list[str] = []
+    seen = _Elements(path.name)
     parser = expat.ParserCreate()
-    parser.StartElementHandler = lambda tag, _: tags.append(tag)
+    parser.StartElementHandler = seen.start
+    parser.EndElementHandler = seen.end
     try:
         text = content.decode("utf-8")
         parser.Parse(content, True)
@@ -135,10 +143,39 @@ def _xml(path: Path) -> str:
     except expat.ExpatError as error:
         reason = f"no URDF: {expat.ErrorString(error.code)}, line {error.lineno}"
         raise InputError(reason, argument="path", value=path.name) from None
-    if tags[0] != "robot":
+    if seen.first != "robot":
         raise InputError(
-            f"no URDF: it begins with <{tags[0]}>, not with <robot>",
+            f"no URDF: it begins with <{seen.first}>, not with <robot>",
             argument="path",
             value=path.name,
         )
     return text
+
+
+class _Elements:
+    """What of a URDF is counted: pinocchio goes down a chain by recursion, and takes the cube of its links."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self.first = ""
+        self._depth = 0
+        self._counts = dict.fromkeys(("link", "joint"), 0)
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        self.first = self.first or tag
+        self._depth += 1
+        self._refuse(len(attributes), "attributes of an element")
+        self._refuse(self._depth, "elements inside each other")
+        if tag in self._counts:
+            self._counts[tag] += 1
+            self._refuse(self._counts[tag], f"{tag}s")
+
+    def end(self, _: str) -> None:
+        self._depth -= 1
+
+    def _refuse(self, count: int, what: str) -> None:
+        most = _MOST[what]
+        if count > most:
+            raise InputError(
+                f"a URDF with at most {most} {what} is expected", argument="path", value=self._name
+            )

@@ -1,7 +1,12 @@
 """The joints that headers name, and which column is which signal of which joint."""
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
+import jointid as jid
+from jointid.recording.wide import finding_joints
 from jointid.recording.wide.finding_joints import joint_headers
 
 
@@ -111,3 +116,24 @@ def test_side_and_pattern_of_a_column() -> None:
     ]
     assert [each.header for each in found["3"]] == ["motor_position_rad", "motor_torque_Nm"]
     assert [each.meaning.side for each in found["3"] if each.meaning] == ["motor", "motor"]
+
+
+def test_a_robot_of_many_joints_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each joint looks through all headers; they are understood once."""
+    names = [f"joint_{k}.{signal}" for k in range(257) for signal in ("position", "torque")]
+    path = tmp_path / "a.csv"
+    rows = "\n".join(",".join([f"{k / 1000}", *["0"] * len(names)]) for k in range(20))
+    path.write_text(f"time,{','.join(names)}\n{rows}\n")
+    with pytest.raises(jid.InputError, match="a robot of 257 joints; at most 256 are read"):
+        jid.load_robot(path)
+    asked: list[int] = []
+    real = finding_joints._numbered
+
+    def numbered(index: int, header: str) -> Any:
+        asked.append(index)
+        return real(index, header)
+
+    monkeypatch.setattr(finding_joints, "_numbered", numbered)
+    finding_joints._joints.cache_clear()
+    assert len(jid.load_robot(path, joints=list(range(8))).names) == 8
+    assert len(asked) == len(names) + 1

@@ -3,18 +3,21 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 from jointid.base.values import dataclass
 from jointid.recording.hierarchies import hdf5_chunks
+from jointid.recording.table import MOST_COLUMNS
 
 _LONGEST = 1_000_000  # bytes of an attribute
 _LARGE_FILE, _LARGE = (
     20_000_000,
     200_000_000,
 )  # bytes; a small file's texts may be no more than large
+_LONGEST_PATH = 1000  # characters
 _WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
 _MATLAB_NUMBERS = (
     *("double", "single", "logical"),
@@ -71,6 +74,8 @@ def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
 
     Raises
     ------
+    InputError
+        An object's path or an attribute is far too long. More columns than may be looked through are cut.
     Exception
         Whatever h5py raises for damaged bytes.
     """
@@ -82,6 +87,11 @@ def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
     def visit(path: str, thing: Any) -> None:
         if path.startswith("#"):  # MATLAB's own: contents of cells and objects
             return
+        if len(path) > _LONGEST_PATH:  # of a group's long name, each object below it has its own
+            raise InputError(
+                f"the path of an object has {len(path)} characters; at most {_LONGEST_PATH} are read",
+                place=str(file.filename),
+            )
         kind = _attribute(thing, "MATLAB_class")
         if isinstance(thing, h5py.Dataset):
             if kind and kind not in _MATLAB_NUMBERS:
@@ -90,7 +100,7 @@ def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
             elif thing.external or thing.is_virtual:
                 left_out.append(f"{path} ({'external' if thing.external else 'virtual'})")
             else:
-                found.extend(_vectors(path, thing))
+                found.extend(islice(_vectors(path, thing), MOST_COLUMNS + 1 - len(found)))
         elif "MATLAB_sparse" in thing.attrs or (kind and kind != "struct"):
             left_out.append(f"{path} ({kind or 'object'})")
 

@@ -65,7 +65,10 @@ def take(dataset: Any, room: Room) -> None:
             len(values) < 3 or values[2] < size
         ):  # as much as is made, and no more
             raise ValueError(f"an LZF filter makes less than a chunk of {size} bytes")
+    most = dataset.file.id.get_filesize()
     for chunk, place in _chunks(dataset):
+        if chunk.size > most:  # the library would reserve as much
+            raise ValueError(f"a chunk says that it takes {chunk.size} bytes of {most}")
         held = _held(dataset, chunk, place, filters, size)
         if held is not None and held != size:
             least = "more than" if held > size else f"{held} of"

@@ -61,7 +61,7 @@ class Hdf5Table:
             raise self._damage(error) from None
         if len(vectors) > MOST_COLUMNS:
             raise InputError(
-                f"it has {len(vectors)} columns; at most {MOST_COLUMNS} are looked through",
+                f"it has more than {MOST_COLUMNS} columns, the most that are looked through",
                 place=str(path),
             )
         if not vectors:

@@ -12,7 +12,10 @@ from jointid.recording.messages.joints import is_joint_kind
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
 _TRIED = 16  # messages whose stamps are compared before a topic is read
-_MOST_TOPICS = 256  # that are compared: for each, much of the file may be looked through
+_MOST_TOPICS, _LEAST_TOPICS = 256, 16  # that are compared
+_PASSED = (
+    10_000_000  # messages of all that may be looked through for them: for each, those of the file
+)
 
 
 def with_companions(source: Source, chosen: Topic, collected: Collected) -> Collected:
@@ -39,9 +42,11 @@ def with_companions(source: Source, chosen: Topic, collected: Collected) -> Coll
         and topic.count == len(collected.stamps)
         and topic.encoding in READ
     ]
-    for topic in others[:_MOST_TOPICS]:
+    messages = sum(topic.count or 0 for topic in source.topics)
+    compared = min(max(_PASSED // max(messages, 1), _LEAST_TOPICS), _MOST_TOPICS)
+    for topic in others[:compared]:
         blocks += _blocks(source, topic, collected)
-    return replace(collected, blocks=tuple(blocks), not_compared=max(0, len(others) - _MOST_TOPICS))
+    return replace(collected, blocks=tuple(blocks), not_compared=max(0, len(others) - compared))
 
 
 def _blocks(source: Source, topic: Topic, collected: Collected) -> list[Block]:

@@ -23,6 +23,8 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.recording.wide.robot_signals import ROBOT_SIGNALS, checked_ratios
 from jointid.recording.wide.sides import JOINT, at_joint
 
+_MOST_JOINTS = 256
+
 
 @reads_open_files
 def load_robot(
@@ -96,6 +98,13 @@ def load_robot(
     if not known:
         raise nothing_named(table, "all" if joints is None else joints, "joints")
     names = _wanted(joints, known, table.header_place)
+    if len(names) > _MOST_JOINTS:
+        raise InputError(
+            f"a robot of {len(names)} joints; at most {_MOST_JOINTS} are read",
+            argument="joints",
+            place=table.header_place,
+            remedy="name those that belong together",
+        )
     wanted = named_extra(extra)
     tables = [JointTable(table, each, columns or {}, wanted) for each in names]
     fields = []

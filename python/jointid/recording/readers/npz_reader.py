@@ -115,7 +115,7 @@ class NpzTable:
             self._room.take(self._sizes.get(name, 0))
         try:
             value = self._archive[name]
-        except (SyntaxError, tokenize.TokenError):  # numpy parses it as Python
+        except (SyntaxError, TypeError, tokenize.TokenError):  # numpy parses it as Python
             raise InputError("its header is damaged", place=self._place(name)) from None
         except _damages() as error:
             if "allow_pickle" in str(error):

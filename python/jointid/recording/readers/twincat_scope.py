@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
@@ -188,7 +189,10 @@ class ScopeTable:
         if self._table is not None:
             time, values = self._table[:, group.time], self._table[:, index]
         else:
-            cells = [row for row in self._all_cells if len(row) > group.time and row[group.time]]
+            long = np.flatnonzero(
+                self._lengths > group.time
+            )  # of many groups, few rows may have all
+            cells = [row for row in map(self._all_cells.__getitem__, long) if row[group.time]]
             stamps = [row[group.time] for row in cells]
             values = self._column(cells, index)
             exact = _exact(stamps) if stamps and looks_exact(stamps[0]) else None
@@ -201,6 +205,10 @@ class ScopeTable:
     @cached_property
     def _all_cells(self) -> list[list[str]]:
         return [self._cells(row) for row in self._rows]
+
+    @cached_property
+    def _lengths(self) -> npt.NDArray[np.intp]:
+        return np.fromiter(map(len, self._all_cells), dtype=np.intp, count=len(self._all_cells))
 
     def _column(self, rows: list[list[str]], index: int) -> FloatArray:
         found = [self._number(row[index] if index < len(row) else "") for row in rows]

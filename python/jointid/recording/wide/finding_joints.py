@@ -1,8 +1,9 @@
 """The joints that a table's headers name: numbered (``motor_position_3_rad``) or named (``elbow.position [rad]``)."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 from jointid.base.values import dataclass
 from jointid.recording.headers import LONGEST, parsed
@@ -50,7 +51,7 @@ class JointHeader:
     meaning: Meaning | None
 
 
-def joint_headers(headers: Sequence[str]) -> dict[str, list[JointHeader]]:
+def joint_headers(headers: Sequence[str]) -> Mapping[str, Sequence[JointHeader]]:
     """Return the joints of a table, each with its columns, in the order in which they first appear.
 
     A joint is what has a position, a link's position counts. The number of a joint is an index in brackets
@@ -63,6 +64,11 @@ def joint_headers(headers: Sequence[str]) -> dict[str, list[JointHeader]]:
     ----------
     headers : sequence of str
     """
+    return _joints(tuple(headers))
+
+
+@lru_cache(maxsize=4)  # each joint of a robot asks
+def _joints(headers: tuple[str, ...]) -> Mapping[str, Sequence[JointHeader]]:
     found: dict[str, list[JointHeader]] = {}
     for index, header in enumerate(headers):
         if len(header) > LONGEST:
