@@ -116,6 +116,22 @@ def test_the_lines_of_a_packed_text_count_as_texts(
     assert ("unpacked it is larger than" in refused(path)) is packed
 
 
+@pytest.mark.parametrize("end", [b"\n", b"\r\n"])
+def test_the_limit_of_texts_can_be_raised(
+    end: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(csv_text, "_LEAST_AS_TEXTS", 1000)
+    monkeypatch.setattr(unpacking, "TIMES", 0)
+    path = tmp_path / "a.csv.gz"
+    rows = (b'%d,"0",%d' % (k, k % 7) for k in range(100))
+    path.write_bytes(gzip.compress(end.join([b"time [ms],position,torque", *rows, b""])))
+    assert "unpacked it is larger than" in refused(path)
+    # 11 characters and 110 bytes for each line, 64 of a cell once more
+    assert len(jid.load(path, unpacked=20_000)) == 100
+    monkeypatch.setattr(csv_text, "_USUAL", 100)
+    assert len(jid.load(path)) == 100
+
+
 def test_the_place_of_a_row_makes_no_list(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(_HEAD + b"0,1,2\r\n\n# pause\r3,4,5\n \n6,7,x")

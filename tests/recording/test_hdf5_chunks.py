@@ -57,6 +57,69 @@ def test_whole_chunks_are_read(name: str, kind: str, tmp_path: Path) -> None:
     assert np.array_equal(_torque(path), values)
 
 
+@pytest.mark.parametrize("name", PACKED)
+def test_texts_of_any_length_beside_the_numbers(name: str, tmp_path: Path) -> None:
+    """In memory a text is an address of 8 bytes, in the file one of 16."""
+    text = h5py.string_dtype()
+    kind = np.dtype(
+        [
+            ("time", "f8"),
+            ("position", "f8"),
+            ("torque", "f8"),
+            ("inner", [("state", text)]),
+            ("more", text, (2,)),
+        ]
+    )
+    values = np.zeros(_ROWS, kind)
+    values["time"], values["torque"] = _TIME, _TORQUE
+    values["inner"]["state"], values["more"] = "moving", "still"
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file.create_dataset("log", data=values, chunks=(12,), **PACKED[name])
+    assert np.array_equal(_torque(path), _TORQUE)
+
+
+@pytest.mark.parametrize("latest", [True, False])
+@pytest.mark.parametrize("packed", [True, False])
+@pytest.mark.parametrize("written", [True, False])
+def test_places_that_the_library_tells_wrong(
+    latest: bool, packed: bool, written: bool, tmp_path: Path
+) -> None:
+    """Of rows of chunks that may grow to the right, HDF5 2.0 tells other places; some may not be stored."""
+    path = tmp_path / "a.h5"
+    values = np.sin(np.arange(3 * 53.0).reshape(3, 53))
+    with h5py.File(path, "w", **({"libver": "latest"} if latest else {})) as file:
+        file["time"] = np.arange(53) * 1e-3
+        file["position"] = np.arange(53.0)
+        options = {"compression": "gzip"} if packed else {}
+        torque = file.create_dataset(
+            "torque", (3, 53), "f8", chunks=(1, 10), maxshape=(3, None), **options
+        )
+        torque[:, :] = values
+        if not written:
+            values[:] = 0.0
+            del file["torque"]
+            file.create_dataset(
+                "torque", (3, 53), "f8", chunks=(1, 10), maxshape=(3, None), **options
+            )
+    found = jid.load(path, columns={"torque": "torque(:,2)"})
+    assert np.array_equal(np.asarray(found.torque), values[1])
+
+
+def test_the_whole_limit_may_be_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unpacking, "LEAST", 4 * 8 * _ROWS)
+    monkeypatch.setattr(unpacking, "TIMES", 0)
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        for name in ("time", "position", "torque"):
+            values = _TIME if name == "time" else _TORQUE
+            file.create_dataset(name, data=values, chunks=(5,), compression="gzip")
+    assert len(jid.load(path)) == _ROWS
+    with h5py.File(path, "a") as file:
+        file.create_dataset("velocity", data=_TORQUE, chunks=(5,), compression="gzip")
+    assert len(jid.load(path)) == _ROWS
+
+
 def test_chunks_without_their_filters_are_read(tmp_path: Path) -> None:
     """A writer may leave out a filter that makes a chunk larger; its number in a mask says so."""
 

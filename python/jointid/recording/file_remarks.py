@@ -33,9 +33,8 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
             found.append(f"{count} messages {what}")
     topics = metadata.get("topics_not_compared")
     if isinstance(topics, int) and topics:
-        found.append(
-            f"{topics} topics are not compared with this one: too many have as many messages"
-        )
+        what = "1 topic is" if topics == 1 else f"{topics} topics are"
+        found.append(f"{what} not compared with this one: too many have as many messages")
     dropped = metadata.get("dropped_rows")
     if isinstance(dropped, int) and dropped:
         rows = "1 damaged row is" if dropped == 1 else f"{dropped} damaged rows are"

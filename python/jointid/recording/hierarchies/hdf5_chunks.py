@@ -4,20 +4,27 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 
 _DEFLATE, _SHUFFLE, _CHECKSUM, _LZF = 1, 2, 3, 32000  # HDF5's numbers of filters
 _SUM = 4  # bytes of a checksum
+_REFERENCE = 16  # bytes of one to a text of any length
 # What these make depends on numbers in the file that the library does not check.
 _UNREAD = {4: "szip", 5: "N-bit", 6: "scale-offset"}
 _TIMES = (
     4  # what all chunks of a dataset may hold, of what there is room for: their edges are not read
 )
+
+
+class _Chunk(NamedTuple):
+    size: int
+    filter_mask: int
 
 
 def take(dataset: Any, room: Room) -> None:
@@ -36,15 +43,15 @@ def take(dataset: Any, room: Room) -> None:
         A chunk is damaged: it does not hold what a chunk does, or cannot be unpacked. The library reads what is
         in memory behind one that holds less.
     """
+    before = room.left
     room.take(max(dataset.nbytes, 8 * dataset.size))  # as numbers are converted
     if dataset.chunks is None:
         return
-    size = (
-        math.prod(dataset.chunks) * dataset.id.get_type().get_size()
-    )  # may be more than the dataset
-    if size > room.left:  # one after the other, so that they are not counted together
+    element, known = _stored(dataset.id.get_type())
+    size = math.prod(dataset.chunks) * element  # may be more than the dataset
+    if size > max(room.left, dataset.nbytes):  # one after the other, not counted together
         room.take(size)
-    if size * dataset.id.get_num_chunks() > _TIMES * room.left:
+    if size * dataset.id.get_num_chunks() > _TIMES * before:
         room.take(size * dataset.id.get_num_chunks())
     settings = dataset.id.get_create_plist()
     described = [settings.get_filter(number) for number in range(settings.get_nfilters())]
@@ -70,7 +77,7 @@ def take(dataset: Any, room: Room) -> None:
         if chunk.size > most:  # the library would reserve as much
             raise ValueError(f"a chunk says that it takes {chunk.size} bytes of {most}")
         held = _held(dataset, chunk, place, filters, size)
-        if held is not None and held != size:
+        if known and held is not None and held != size:
             least = "more than" if held > size else f"{held} of"
             raise ValueError(f"a chunk holds {least} {size} bytes")
 
@@ -82,8 +89,11 @@ def _held(
     used = [code for k, code in enumerate(filters) if not chunk.filter_mask >> k & 1]
     if set(used) - {_DEFLATE, _SHUFFLE, _CHECKSUM}:
         return None
+    # The last chunks of a dimension may be left as they are, which h5py does not tell.
+    edges = zip(place, dataset.chunks, dataset.shape, strict=True)
+    plain = chunk.size == size and any(start + length > end for start, length, end in edges)
     if _DEFLATE not in used:
-        return int(chunk.size) - _SUM * used.count(_CHECKSUM)
+        return size if plain else int(chunk.size) - _SUM * used.count(_CHECKSUM)
     packed = dataset.id.read_direct_chunk(place)[1]
     before, behind = used[: used.index(_DEFLATE)], used[used.index(_DEFLATE) :]
     sums = _SUM * before.count(_CHECKSUM)
@@ -91,26 +101,49 @@ def _held(
     try:
         return len(zlib.decompressobj().decompress(packed, size + sums + 1)) - sums
     except zlib.error:
-        # The last chunks of a dimension may be left as they are, which h5py does not tell.
-        edges = zip(place, dataset.chunks, dataset.shape, strict=True)
-        if chunk.size == size and any(start + length > end for start, length, end in edges):
+        if plain:
             return size
         raise
 
 
-def _chunks(dataset: Any) -> list[tuple[Any, tuple[int, ...]]]:
-    """Return what is known of each chunk, and where it begins."""
+def _stored(kind: Any) -> tuple[int, bool]:
+    """Return how many bytes an element takes in the file, and whether that is sure."""
+    import h5py
+
+    size = int(kind.get_size())
+    if isinstance(kind, h5py.h5t.TypeCompoundID):
+        parts = [kind.get_member_type(k) for k in range(kind.get_nmembers())]
+        stored = [_stored(part) for part in parts]
+        more = sum(
+            each - int(part.get_size()) for (each, _), part in zip(stored, parts, strict=True)
+        )
+        return size + more, all(known for _, known in stored)
+    if isinstance(kind, h5py.h5t.TypeArrayID):
+        part = kind.get_super()
+        each, known = _stored(part)
+        return size // int(part.get_size()) * each, known
+    if isinstance(kind, h5py.h5t.TypeStringID) and kind.is_variable_str():
+        return _REFERENCE, True
+    return size, not isinstance(kind, h5py.h5t.TypeReferenceID | h5py.h5t.TypeVlenID)
+
+
+def _chunks(dataset: Any) -> Iterator[tuple[Any, tuple[int, ...]]]:
+    """Yield size and filters of each chunk that is stored, and where it begins."""
     if hasattr(dataset.id, "chunk_iter"):
         found: list[Any] = []
         dataset.id.chunk_iter(found.append)
-        if all(_begins_at(dataset, chunk) for chunk in found):  # some versions tell other places
-            return [(chunk, tuple(chunk.chunk_offset)) for chunk in found]
-    # By its place, a chunk is looked for among all of them, which takes long where they are many.
-    places = product(*map(range, [0] * dataset.ndim, dataset.shape, dataset.chunks))
-    known = ((dataset.id.get_chunk_info_by_coord(place), place) for place in places)
-    return [(chunk, place) for chunk, place in known if chunk.byte_offset is not None]
+        if all(_begins_at(dataset, chunk.chunk_offset) for chunk in found):
+            yield from ((chunk, tuple(chunk.chunk_offset)) for chunk in found)
+            return
+    # Some versions tell other places, also where they are asked for one. Only by reading it a chunk is sure.
+    for place in product(*map(range, [0] * dataset.ndim, dataset.shape, dataset.chunks)):
+        with suppress(
+            OSError, RuntimeError, ValueError
+        ):  # it is not stored, or cannot be read later
+            mask, packed = dataset.id.read_direct_chunk(place)
+            yield _Chunk(len(packed), mask), place
 
 
-def _begins_at(dataset: Any, chunk: Any) -> bool:
-    place = chunk.chunk_offset
-    return all(start % length == 0 for start, length in zip(place, dataset.chunks, strict=True))
+def _begins_at(dataset: Any, place: Sequence[int]) -> bool:
+    known = zip(place, dataset.chunks, dataset.shape, strict=True)
+    return all(start % length == 0 and start < end for start, length, end in known)

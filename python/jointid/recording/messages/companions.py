@@ -12,7 +12,7 @@ from jointid.recording.messages.joints import is_joint_kind
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
 _TRIED = 16  # messages whose stamps are compared before a topic is read
-_MOST_TOPICS, _LEAST_TOPICS = 256, 16  # that are compared
+_MOST_TOPICS, _LEAST_TOPICS = 256, 64  # that are compared
 _PASSED = (
     10_000_000  # messages of all that may be looked through for them: for each, those of the file
 )

@@ -18,7 +18,7 @@ from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
 _ENDING = re.compile(r"\.(db3|mcap)(\.zstd)?$", re.IGNORECASE)
 _MOST_TOPICS = 10_000
-_LONGEST_DEFAULT = 100  # characters
+_LONGEST_DEFAULT = 1000  # characters
 _STEPS, _STEPS_A_BYTE, _STEPS_AT_ONCE = 1000, 20, 1000  # a row takes some 30, and more bytes
 _ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0
 
@@ -82,7 +82,7 @@ class SqliteSource:
         return connection
 
     def _check_tables(self, connection: sqlite3.Connection) -> None:
-        """Refuse views and computed columns: they make as many rows as they like, of any size."""
+        """Refuse what makes as many rows as it likes, of any size."""
         for name in ("topics", "messages", "message_definitions"):
             other = connection.execute(
                 "SELECT COUNT(*) FROM sqlite_master WHERE name = ? COLLATE NOCASE "
@@ -90,13 +90,16 @@ class SqliteSource:
                 (name,),
             )
             # A default stands in each row that ends before its column.
-            computed = connection.execute(
-                "SELECT COUNT(*) FROM pragma_table_xinfo(?) "
-                "WHERE hidden <> 0 OR length(dflt_value) > ?",
-                (name, _LONGEST_DEFAULT),
-            )
-            if other.fetchone()[0] or computed.fetchone()[0]:
+            computed, long = connection.execute(
+                "SELECT SUM(hidden <> 0), SUM(length(dflt_value) > ?) FROM pragma_table_xinfo(?)",
+                (_LONGEST_DEFAULT, name),
+            ).fetchone()
+            if other.fetchone()[0] or computed:
                 raise DamageError(f"it is not a ROS 2 bag: {name} is not a plain table")
+            if long:
+                raise DamageError(
+                    f"a column of {name} has a default of more than {_LONGEST_DEFAULT} characters"
+                )
 
     def _topics(self) -> tuple[Topic, ...]:
         connection = self._connected()
@@ -107,7 +110,7 @@ class SqliteSource:
             counts = dict(
                 connection.execute(
                     "SELECT topic_id, COUNT(*) FROM messages "
-                    "WHERE typeof(topic_id) = 'integer' GROUP BY topic_id"
+                    "WHERE typeof(topic_id) IN ('integer', 'real') GROUP BY topic_id"
                 )
             )
             definitions = self._definitions(connection)
@@ -231,7 +234,7 @@ class FolderSource:
 def _in_order(connection: sqlite3.Connection, numbers: list[int]) -> Iterator[tuple[Any, Any]]:
     """Yield time and data of the rows of topics."""
     where = (
-        "FROM messages WHERE typeof(topic_id) = 'integer' "
+        "FROM messages WHERE typeof(topic_id) IN ('integer', 'real') "
         f"AND topic_id IN ({','.join('?' * len(numbers))}) ORDER BY"
     )
     direct = f"SELECT timestamp, data {where} timestamp"

@@ -1,5 +1,6 @@
 """Which row of a table each message belongs to: rows in the order of their stamps, one for each stamp."""
 
+from bisect import bisect_right
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,13 +8,14 @@ import numpy.typing as npt
 
 from jointid.base.values import dataclass
 from jointid.recording.messages.collecting import Collected
-from jointid.recording.messages.joints import Column
 
 _LATE = (
     1_000_000_000  # ns: a message that comes later than this after a younger one begins another run
 )
 Integers = npt.NDArray[np.int64]
-_Part = tuple[npt.NDArray[np.intp], npt.NDArray[np.float64]]  # columns and values of a message
+# Lines, columns, and values of each line.
+_Part = tuple[Integers, npt.NDArray[np.intp], npt.NDArray[np.float64]]
+_CELLS = 8_000_000  # of a table: 72 MB
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,53 +85,72 @@ def _joined(
     collected: Collected, order: npt.NDArray[np.intp], equal: npt.NDArray[np.bool_]
 ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
     """Return which messages, in order, join the row of the one before, and which of them only repeat."""
-    group = np.cumsum(~equal) - 1  # of equal stamps
     shared = np.flatnonzero(equal | np.append(equal[1:], False))
-    place = np.full(len(order), -1, dtype=np.int64)  # message → line of the small table
+    place = np.full(len(order), -1, dtype=np.int64)  # message → line of the tables
     place[order[shared]] = np.arange(len(shared))
-    numbers: dict[Column, int] = {}
-    # Of each line its columns and values: a table of all would be mostly empty where many joints share a stamp.
-    parts: list[list[_Part]] = [[] for _ in shared]
+    numbers = {
+        column: number
+        for number, column in enumerate(
+            dict.fromkeys(c for block in collected.blocks for c in block.columns)
+        )
+    }
+    parts: list[_Part] = []
     for block in collected.blocks:
-        last = {numbers.setdefault(c, len(numbers)): k for k, c in enumerate(block.columns)}
-        where = np.array(list(last), dtype=np.intp)
-        values = block.values[list(last.values())]
         lines = place[block.messages]
-        for k in np.flatnonzero(lines >= 0):
-            parts[lines[k]].append((where, values[:, k]))
-    count = len(numbers)
+        if (used := lines >= 0).any():
+            where = np.array([numbers[column] for column in block.columns], dtype=np.intp)
+            parts.append((lines[used], where, block.values[:, used].T))
     joined, dropped = np.zeros_like(equal), np.zeros_like(equal)
-    start = 0
-    for line in range(1, len(shared) + 1):
-        if line < len(shared) and group[shared[line]] == group[shared[start]]:
-            continue
-        _join_group(shared, slice(start, line), parts, count, joined, dropped)
-        start = line
+    most = max(1, _CELLS // max(1, len(numbers)))  # lines of a table
+    starts = [*np.flatnonzero(~equal[shared]).tolist(), len(shared)]
+    first = 0
+    while first < len(starts) - 1:
+        last = max(first + 1, bisect_right(starts, starts[first] + most) - 1)
+        start, end = starts[first], starts[last]
+        if end - start <= most:  # more are of one stamp: no robot has so many joints
+            there, values = _table(parts, start, end, len(numbers))
+            for k in range(first, last):
+                lines_of = slice(starts[k], starts[k + 1])
+                _join_group(shared, lines_of, start, there, values, joined, dropped)
+        first = last
     return joined, dropped
+
+
+def _table(
+    parts: Sequence[_Part], start: int, end: int, count: int
+) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
+    """Return which columns some lines have, and their values."""
+    there = np.zeros((end - start, count), dtype=np.bool_)
+    values = np.zeros((end - start, count))
+    for lines, where, given in parts:
+        inside = (lines >= start) & (lines < end)
+        if inside.any():
+            cells = np.ix_(lines[inside] - start, where)
+            there[cells] = True
+            values[cells] = given[inside]
+    return there, values
 
 
 def _join_group(
     shared: npt.NDArray[np.intp],
     lines: slice,
-    parts: Sequence[Sequence[_Part]],
-    count: int,
+    start: int,
+    there: npt.NDArray[np.bool_],
+    values: npt.NDArray[np.float64],
     joined: npt.NDArray[np.bool_],
     dropped: npt.NDArray[np.bool_],
 ) -> None:
     """Decide on the messages of one stamp: all of them agree and join, or none does."""
-    known = np.zeros(count)
-    seen = np.zeros(count, dtype=np.bool_)
+    first = lines.start - start
+    seen, known = there[first].copy(), values[first].copy()
     repeats = []
-    for line in range(lines.start, lines.stop):
-        new = False
-        for where, values in parts[line]:
-            both = seen[where]
-            if not np.array_equal(known[where][both], values[both], equal_nan=True):
-                return
-            new = new or not both.all()
-            known[where] = values
-            seen[where] = True
-        repeats.append(not new)
+    for line in range(first + 1, lines.stop - start):
+        both = seen & there[line]
+        if not np.array_equal(known[both], values[line][both], equal_nan=True):
+            return
+        repeats.append(bool(both.sum() == there[line].sum()))
+        known[there[line]] = values[line][there[line]]
+        seen |= there[line]
     positions = shared[lines.start + 1 : lines.stop]
     joined[positions] = True
-    dropped[positions] = repeats[1:]
+    dropped[positions] = repeats

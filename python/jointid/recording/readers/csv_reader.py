@@ -21,7 +21,7 @@ from jointid.recording.readers.csv_dialect import (
 )
 from jointid.recording.readers.csv_layout import SEARCHED, is_comment, layout_of
 from jointid.recording.readers.csv_stream import each_line, even_rows, plain_numbers
-from jointid.recording.readers.csv_text import count_texts, text_of
+from jointid.recording.readers.csv_text import Texts, text_of
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
 from jointid.recording.saved import CSV_MARK, saved_attributes
@@ -59,6 +59,7 @@ class CsvTable:
 
     def __init__(self, path: Path, text: str = "") -> None:
         self.source = str(path)
+        self._texts = Texts(path)
         self._content = text or text_of(path)
         ending: Mapping[str, Any] | None = None  # of a session's file
         if self._content.startswith(CSV_MARK):
@@ -173,7 +174,7 @@ class CsvTable:
     @cached_property
     def _line_numbers(self) -> list[int]:
         """1-based line number of each row; blank lines are no rows."""
-        count_texts(Path(self.source), self._content)
+        self._texts.count(self._content)
         below = _lines(self._content)[self._below :]
         return [number for number, line in enumerate(below, self._below + 1) if _is_row(line)]
 
@@ -195,7 +196,7 @@ class CsvTable:
         return [_INNER.join(row).replace(",", ".") for row in zip(*cells, strict=True)]
 
     def _columns(self, columns: Sequence[int]) -> list[list[str]]:
-        count_texts(Path(self.source), self._content, len(self._rows) * len(columns))
+        self._texts.count(self._content, len(self._rows) * len(columns))
         found: list[list[str]] = [[] for _ in columns]
         for row, number in zip(self._rows, self._line_numbers, strict=True):
             cells = self._cells(row, number)
@@ -222,7 +223,7 @@ class CsvTable:
 
     def _cells(self, line: str, number: int) -> list[str]:
         if len(line) > _LONG:
-            count_texts(Path(self.source), line, len(line) // 2)
+            self._texts.count(line, len(line) // 2)
         try:
             return cells_of(line, self._separator)
         except csv.Error as error:

@@ -12,7 +12,8 @@ from jointid.base.unpacking import Room
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"
 _LEAST = 100_000_000  # bytes that the numbers of any packed text may take
-_LEAST_AS_TEXTS = 250_000_000  # the same, where its lines and cells become texts of Python
+# The same, where its lines and cells become texts of Python; of a larger file, so many times what is over it.
+_LEAST_AS_TEXTS, _USUAL, _TIMES_AS_TEXTS = 250_000_000, 3_000_000, 200
 _LINE, _CELL = 110, 64  # bytes that each takes as a text, beside a line's characters
 # Characters on which Latin-1 and Windows-1252 agree.
 # Characters that make all of a text take 4 or 2 bytes each.
@@ -43,27 +44,35 @@ def text_of(path: Path) -> str:
     return text
 
 
-def count_texts(path: Path, text: str, cells: int = 0) -> None:
-    """Count what a packed file takes whose lines become separate texts; a plain file may hold what it likes.
+class Texts:
+    """What a packed file may take whose lines become separate texts; a plain one may hold what it likes.
 
     Parameters
     ----------
     path : Path
-    text : str
-        What the file holds.
-    cells : int, optional
-        Cells that become separate texts, too.
-
-    Raises
-    ------
-    InputError
-        The file holds more than it may.
     """
-    if not path.name.lower().endswith(".gz"):
-        return
-    copied = 1 + ("\r" in text) + (cells > 0)  # lines of one kind, the lines, their cells
-    lines = text.count("\n") + text.count("\r")
-    Room(path, least=_LEAST_AS_TEXTS).take(copied * len(text) + _LINE * lines + _CELL * cells)
+
+    def __init__(self, path: Path) -> None:
+        self._room: Room | None = None
+        if path.name.lower().endswith(".gz"):
+            more = max(0, path.stat().st_size - _USUAL) * _TIMES_AS_TEXTS
+            self._room = Room(path, least=_LEAST_AS_TEXTS + more)
+
+    def count(self, text: str, cells: int = 0) -> None:
+        """Count a text that is cut into lines, and so many of its cells if these become separate texts, too.
+
+        Raises
+        ------
+        InputError
+            The file holds more than it may.
+        """
+        if self._room is None:
+            return
+        pairs = text.count("\r\n")
+        lines = text.count("\n") + text.count("\r") - pairs
+        copied = 1 + ("\r" in text) + (cells > 0)  # lines of one kind, the lines, their cells
+        self._room.again()
+        self._room.take(copied * len(text) + _LINE * lines + _CELL * cells)
 
 
 def _decoded(path: Path, content: bytes) -> str:

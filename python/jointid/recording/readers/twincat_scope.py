@@ -15,7 +15,7 @@ from jointid.base.values import dataclass
 from jointid.recording.headers import understood
 from jointid.recording.order_statistics import median
 from jointid.recording.readers.csv_dialect import number_of
-from jointid.recording.readers.csv_text import count_texts
+from jointid.recording.readers.csv_text import Texts
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import Stamps, looks_exact, stamps_of
 from jointid.recording.units import UNITS
@@ -76,12 +76,15 @@ class ScopeTable:
 
     def __init__(self, source: str, text: str, separator: str) -> None:
         self.source = source
-        count_texts(Path(source), text, text.count(separator))
+        self._texts, self._text = Texts(Path(source)), text
+        self._texts.count(text)
         lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         self._separator = separator
         keys: dict[str, list[str]] = {}
         name_line = first = -1
-        for k, line in enumerate(lines[:_BLOCK]):
+        block = lines[:_BLOCK]
+        self._texts.count("", sum(line.count(separator) for line in block))
+        for k, line in enumerate(block):
             cells = self._cells(line)
             if len(cells) > 1 and all(self._number(cell) is not None for cell in cells[:2]):
                 first = k
@@ -204,6 +207,7 @@ class ScopeTable:
 
     @cached_property
     def _all_cells(self) -> list[list[str]]:
+        self._texts.count(self._text, self._text.count(self._separator))
         return [self._cells(row) for row in self._rows]
 
     @cached_property
