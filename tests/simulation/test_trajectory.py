@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 import jointid as jid
 from jointid.base.errors import InputError
-from jointid.simulation import trajectory
+from jointid.simulation import sums_of_sines
 
 Trajectory = jid.Trajectory
 TIMES = np.arange(0.0, 4.0, 1e-4)
@@ -76,7 +76,7 @@ def test_the_peak_is_found_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     """A motion file of 100 bytes may ask for 50 million sines."""
     options: dict[str, Any] = {"lowest": 0.3, "highest": 4.0, "count": 3, "duration": 37.0}
     whole = Trajectory.multisine(0.4, **options)
-    monkeypatch.setattr(trajectory, "_AT_ONCE", 100)
+    monkeypatch.setattr(sums_of_sines, "_AT_ONCE", 100)
     assert Trajectory.multisine(0.4, **options) == whole
     monkeypatch.undo()
     tracemalloc.start()

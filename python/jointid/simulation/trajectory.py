@@ -12,6 +12,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.recording import Recording
+from jointid.simulation.sums_of_sines import peak_of_sines
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -25,7 +26,6 @@ _MAKE: dict[str, Callable[..., _core.Trajectory]] = {
 
 _PLACES = ("distance", "offset")
 _FARTHEST = 1e6  # rad, m or N·m; beyond, errors of a simulation have no finite square
-_AT_ONCE = 1_000_000  # samples of all sines, of which a few arrays are made
 _MOST_SINES = 5e7  # samples of all sines, to find the peak of a multisine
 
 
@@ -134,7 +134,7 @@ class Trajectory:
                 value=float(duration),
             )
         # Sampled finely enough that the peak is found to a few thousandths.
-        peak = _peak(rate, phase, duration, int(20 * high * duration) + 2)
+        peak = peak_of_sines(rate, phase, duration, int(20 * high * duration) + 2)
         size = _extent("amplitude", amplitude) / peak
         start = offset - size * float(np.sin(phase).sum())
         return cls._sines(
@@ -354,19 +354,6 @@ def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
         raise InputError("a number is expected", argument=f"Trajectory.{name}", value=value)
     return float(value)
-
-
-def _peak(rate: FloatArray, phase: FloatArray, duration: float, count: int) -> float:
-    """Return how far a sum of sines goes from where it starts, of so many samples; a part of them at a time."""
-    step, part = duration / (count - 1), max(1, _AT_ONCE // len(rate))
-    first, largest = np.sin(phase).sum(), 0.0
-    for start in range(0, count, part):
-        time = np.arange(start, min(start + part, count)) * step
-        if start + part >= count:
-            time[-1] = duration
-        shape = np.sin(np.outer(time, rate) + phase).sum(axis=1) - first
-        largest = max(largest, float(np.abs(shape).max()))
-    return largest
 
 
 def _extent(name: str, value: object) -> float:

@@ -1,0 +1,31 @@
+"""How far sums of sines go."""
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+_AT_ONCE = 1_000_000  # samples of all sines, of which a few arrays are made
+
+
+def peak_of_sines(rate: FloatArray, phase: FloatArray, duration: float, count: int) -> float:
+    """Return how far a sum of sines goes from where it starts; a part of its samples at a time.
+
+    Parameters
+    ----------
+    rate, phase : ndarray, shape (n,)
+        Of each sine [rad/s], [rad].
+    duration : float
+        [s]
+    count : int
+        Samples from 0 to `duration`, at least 2.
+    """
+    step, part = duration / (count - 1), max(1, _AT_ONCE // len(rate))
+    first, largest = np.sin(phase).sum(), 0.0
+    for start in range(0, count, part):
+        time = np.arange(start, min(start + part, count)) * step
+        if start + part >= count:
+            time[-1] = duration
+        shape = np.sin(np.outer(time, rate) + phase).sum(axis=1) - first
+        largest = max(largest, float(np.abs(shape).max()))
+    return largest
