@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy.typing as npt
 
-from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 from jointid.recording.headers import parsed
 from jointid.recording.hierarchies import hdf5_chunks
 from jointid.recording.hierarchies.datasets import Vector, values_of, vectors_of
 from jointid.recording.hierarchies.groups import chosen_vectors
+from jointid.recording.hierarchies.hdf5_file import opened
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.table import MOST_COLUMNS
 
@@ -51,14 +51,8 @@ class Hdf5Table:
         path.open("rb").close()  # h5py would say less of a file that cannot be read
         if not h5py.is_hdf5(path):
             raise InputError("the file is not an HDF5 file, or is truncated", place=str(path))
-        try:
-            with h5py.File(path, "r", locking=False) as file:
-                vectors, left_out = vectors_of(file, self._room)
-        except InputError:
-            raise
-        # HDF5 documents no errors for damaged bytes.
-        except Exception as error:
-            raise self._damage(error) from None
+        with opened(path) as file:
+            vectors, left_out = vectors_of(file, self._room)
         if len(vectors) > MOST_COLUMNS:
             raise InputError(
                 f"it has more than {MOST_COLUMNS} columns, the most that are looked through",
@@ -117,21 +111,11 @@ class Hdf5Table:
         return f"{self.source}, dataset {self.headers[column]!r}, index {row}"
 
     def _read(self, columns: Sequence[int]) -> list[npt.NDArray[Any]]:
-        import h5py
-
-        try:
-            with h5py.File(self._path, "r", locking=False) as file:
-                for dataset in {self._vectors[column].path for column in columns} - self._taken:
-                    hdf5_chunks.take(file[dataset], self._room)
-                    self._taken.add(dataset)
-                return [values_of(file, self._vectors[column]) for column in columns]
-        except InputError:
-            raise
-        except Exception as error:
-            raise self._damage(error) from None
-
-    def _damage(self, error: Exception) -> InputError:
-        return InputError(f"the file is damaged ({reason_of(error)})", place=str(self._path))
+        with opened(self._path) as file:
+            for dataset in {self._vectors[column].path for column in columns} - self._taken:
+                hdf5_chunks.take(file[dataset], self._room)
+                self._taken.add(dataset)
+            return [values_of(file, self._vectors[column]) for column in columns]
 
 
 def _not_read(left_out: Sequence[str]) -> str:
