@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refused
 
 import jointid as jid
 from jointid.base import unpacking
@@ -21,14 +22,6 @@ from jointid.recording.readers import csv_reader, csv_text, twincat_scope
 from jointid.recording.readers.csv_dialect import BLANK, cells_of
 
 _HEAD = b"time_s,position,torque\n"
-
-
-def refused(path: Path, load: Callable[[Path], object] = jid.load) -> str:
-    with pytest.raises(jid.InputError) as caught:
-        load(path)
-    assert "\n" not in str(caught.value)
-    assert path.name in str(caught.value)
-    return str(caught.value)
 
 
 # --- Text ---

@@ -7,11 +7,11 @@ import bz2
 import sqlite3
 import struct
 import tracemalloc
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refused
 
 import jointid as jid
 from jointid.base import unpacking
@@ -21,14 +21,6 @@ from jointid.recording.messages.collecting import Collected
 from jointid.recording.messages.decoding import Block
 from jointid.recording.messages.mcap_source import McapSource
 from jointid.recording.messages.rows import rows_of
-
-
-def refused(path: Path, load: Callable[[Path], object] = jid.load) -> str:
-    with pytest.raises(jid.InputError) as caught:
-        load(path)
-    assert "\n" not in str(caught.value)
-    assert path.name in str(caught.value)
-    return str(caught.value)
 
 
 def _field(name: bytes, value: bytes) -> bytes:
