@@ -31,6 +31,7 @@ def _batch(name: str, start: int, count: int, progress: str) -> None:
     from fuzz.trying import faults
 
     warnings.simplefilter("ignore")
+    warnings.simplefilter("error", RuntimeWarning)  # of NumPy: what is said is said of the file
     with Path(progress).open("r+b") as file, mmap.mmap(file.fileno(), 8) as shared:
         wrong = faults(name, start, count, lambda case: struct.pack_into("q", shared, 0, case))
     spent = resource.getrusage(resource.RUSAGE_SELF)

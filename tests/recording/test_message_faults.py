@@ -41,6 +41,15 @@ def test_an_effort_that_ends_can_be_left_out(tmp_path: Path) -> None:
     assert len(jid.load(path, joint="elbow", columns={"torque": None})) == 50
 
 
+@pytest.mark.parametrize("large", [1e200, 1.7e308, -1.7e308])
+def test_a_damaged_position_says_nothing_of_publishers(large: float) -> None:
+    position = np.sin(np.arange(40.0))
+    position[[20, 22, 25]] = large
+    position[26] = -large
+    with np.errstate(all="raise"):
+        assert jump_between_publishers(position) is None
+
+
 @pytest.mark.parametrize("every", [1, 2, 3])
 def test_two_publishers_of_one_joint_are_refused(every: int, tmp_path: Path) -> None:
     states = []

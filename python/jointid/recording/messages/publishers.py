@@ -29,13 +29,14 @@ def jump_between_publishers(position: FloatArray) -> float | None:
     True
     """
     count, jump = 0, 0.0
-    for start in range(0, len(position), _BLOCK):  # of a long log no copies
-        steps = np.diff(position[start : start + _BLOCK])
-        there, back = steps[:-1], steps[1:]
-        size = np.abs(there)
-        returns = (size > _SMALLEST) & (there * back < 0.0)
-        returns &= np.abs(there + back) < _RETURN * size
-        count += int(np.count_nonzero(returns))
-        if returns.any():
-            jump = float(np.median(size[returns]))
+    with np.errstate(all="ignore"):  # positions too large to subtract are refused later
+        for start in range(0, len(position), _BLOCK):  # of a long log no copies
+            steps = np.diff(position[start : start + _BLOCK])
+            there, back = steps[:-1], steps[1:]
+            size = np.abs(there)
+            returns = (size > _SMALLEST) & (np.sign(there) * np.sign(back) < 0.0)
+            returns &= np.abs(there + back) < _RETURN * size
+            count += int(np.count_nonzero(returns))
+            if returns.any():
+                jump = float(np.median(size[returns]))
     return jump if count > max(_SHARE * len(position), 8.0) else None
