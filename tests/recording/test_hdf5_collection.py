@@ -62,6 +62,21 @@ def test_no_collection_starts_while_a_log_is_read(path: Path) -> None:
     assert during == []
 
 
+def test_no_collection_starts_while_a_file_is_recognised(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    collecting = []
+    recognise = h5py.is_hdf5
+
+    def noted(file: Path) -> object:
+        collecting.append(gc.isenabled())
+        return recognise(file)
+
+    monkeypatch.setattr(h5py, "is_hdf5", noted)
+    jid.load(path, units={"time": "s", "position": "rad"})
+    assert set(collecting) == {False}
+
+
 def test_collection_goes_on_when_the_last_file_is_closed(path: Path) -> None:
     with opened(path):
         assert not gc.isenabled()

@@ -6,36 +6,22 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Lock
 from typing import Any
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 
 
-class _Pause:
-    """Garbage collection paused by any number of blocks in any threads, until the last one ends."""
-
-    def __init__(self) -> None:
-        self._lock = Lock()
-        self._blocks = 0
-        self._resume = False
-
-    def __enter__(self) -> None:
-        with self._lock:
-            if self._blocks == 0:
-                self._resume = gc.isenabled()
-                gc.disable()
-            self._blocks += 1
-
-    def __exit__(self, *_: object) -> None:
-        with self._lock:
-            self._blocks -= 1
-            if self._blocks == 0 and self._resume:
-                gc.enable()
-
-
-_no_garbage_collection = _Pause()
+@contextmanager
+def _without_garbage_collection() -> Iterator[None]:
+    """Pause it; where several threads do, it goes on when the first one ends."""
+    resume = gc.isenabled()
+    try:
+        gc.disable()
+        yield
+    finally:
+        if resume:
+            gc.enable()
 
 
 @contextmanager
@@ -57,15 +43,22 @@ def opened(path: Path) -> Iterator[Any]:
     Raises
     ------
     InputError
-        The file is damaged: whatever is raised inside the block, as HDF5 documents no errors for damaged bytes.
+        The file is no HDF5 file, or is damaged: whatever is raised inside the block, as HDF5 documents no errors
+        for damaged bytes.
+    OSError
+        The file cannot be read.
     ModuleNotFoundError
         h5py is not installed.
     """
     import h5py
 
+    path.open("rb").close()  # h5py would say less of a file that cannot be read
     try:
-        with _no_garbage_collection, h5py.File(path, "r", locking=False) as file:
-            yield file
+        with _without_garbage_collection():
+            if not h5py.is_hdf5(path):
+                raise InputError("the file is not an HDF5 file, or is truncated", place=str(path))
+            with h5py.File(path, "r", locking=False) as file:
+                yield file
     except InputError:
         raise
     except Exception as error:

@@ -42,15 +42,10 @@ class Hdf5Table:
     saved: Mapping[str, Any] | None = None
 
     def __init__(self, path: Path, group: str | None) -> None:
-        import h5py
-
         self._path = path
         self._room = Room(path)
         self._taken: set[str] = set()
         self.source = self.header_place = str(path)
-        path.open("rb").close()  # h5py would say less of a file that cannot be read
-        if not h5py.is_hdf5(path):
-            raise InputError("the file is not an HDF5 file, or is truncated", place=str(path))
         with opened(path) as file:
             vectors, left_out = vectors_of(file, self._room)
         if len(vectors) > MOST_COLUMNS:
