@@ -4,7 +4,7 @@ import gzip
 import io
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +71,15 @@ def refusal(path: Path, **arguments: Any) -> str:
     with pytest.raises(InputError) as caught:
         load(path, **arguments)
     assert not _PYTHON.search(caught.value.reason), caught.value.reason
+    return str(caught.value)
+
+
+def refused(path: Path, load: Callable[[Path], object] = load) -> str:
+    """Return the one sentence that another way of loading says, which names the file."""
+    with pytest.raises(InputError) as caught:
+        load(path)
+    assert "\n" not in str(caught.value)
+    assert path.name in str(caught.value)
     return str(caught.value)
 
 

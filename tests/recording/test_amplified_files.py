@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from refusals import refused
+from recording_files import refused
 
 import jointid as jid
 from jointid.base import unpacking

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from refusals import refused
+from recording_files import refused
 
 import jointid as jid
 from jointid.base import unpacking
@@ -224,7 +224,7 @@ def test_rows_are_sorted_by_their_numbers(
     connection.close()
     asked: list[str] = []
     source = ros2_source.SqliteSource(path)
-    connected = source._connected
+    connected = source._file.connected
     assert source.topics[0].count == 20
 
     def traced() -> sqlite3.Connection:
@@ -232,7 +232,7 @@ def test_rows_are_sorted_by_their_numbers(
         connection.set_trace_callback(asked.append)
         return connection
 
-    monkeypatch.setattr(source, "_connected", traced)
+    monkeypatch.setattr(source._file, "connected", traced)
     source._topics()
     found = list(source.messages(source.topics[0]))
     assert found == [(k, b"\0\1\0\0" + bytes([3 * k % 20])) for k in range(20)]

@@ -14,12 +14,12 @@ from jointid.base.unpacking import Room
 from jointid.recording.messages.definitions import normal_kind
 from jointid.recording.messages.mcap_source import McapSource
 from jointid.recording.messages.packed import of_zstandard
+from jointid.recording.messages.sqlite_file import SqliteFile
+from jointid.recording.messages.sqlite_tables import check_tables
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
 _ENDING = re.compile(r"\.(db3|mcap)(\.zstd)?$", re.IGNORECASE)
 _MOST_TOPICS = 10_000
-_LONGEST_DEFAULT = 1000  # characters
-_STEPS, _STEPS_A_BYTE, _STEPS_AT_ONCE = 1000, 20, 1000  # a row takes some 30, and more bytes
 _ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0
 
 
@@ -37,23 +37,22 @@ class SqliteSource:
     """
 
     def __init__(self, path: Path) -> None:
-        path.open("rb").close()  # SQLite would say less of a file that cannot be read
-        self._path = path
-        self._room = Room(path)
-        self.incomplete = ""
+        self._file = SqliteFile(path)
+        self._room = Room(path, self._file.size)
+        self.incomplete = self._file.incomplete
         self._numbers: dict[tuple[str, str, str], list[int]] = {}
         try:
             self.topics = self._topics()
         except (sqlite3.Error, UnicodeDecodeError, TypeError, AttributeError) as error:
             raise DamageError(
-                f"it is not a ROS 2 bag in SQLite, or is damaged ({reason_of(error)})"
+                f"it is not a ROS 2 bag in SQLite, or is damaged ({self._file.reason(error)})"
             ) from None
 
     def messages(self, topic: Topic) -> Iterator[Message]:
         """Yield the messages of a topic, in the order of their log times."""
         numbers = self._numbers[topic.name, topic.kind, topic.encoding]
         self._room.again()
-        connection = self._connected()
+        connection = self._file.connected()
         try:
             for time, message in _in_order(connection, numbers):
                 if not isinstance(time, int) or not isinstance(message, bytes):
@@ -64,47 +63,14 @@ class SqliteSource:
                     self._room.take(len(message))
                 yield time, message
         except sqlite3.Error as error:
-            raise DamageError(f"it is damaged ({reason_of(error)})") from None
+            raise DamageError(f"it is damaged ({self._file.reason(error)})") from None
         finally:
             connection.close()
 
-    def _connected(self) -> sqlite3.Connection:
-        # Not written to, not even by SQLite's own recovery.
-        connection = sqlite3.connect(
-            f"{self._path.resolve().as_uri()}?mode=ro&immutable=1", uri=True
-        )
-        # Nothing that a table holds is larger than the file; SQLite's own texts may be.
-        longest = min(max(self._path.stat().st_size, 1_000_000), 1_000_000_000)
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
-        # Pages that name each other have rows without an end.
-        steps = iter(range(_STEPS + self._path.stat().st_size * _STEPS_A_BYTE // _STEPS_AT_ONCE))
-        connection.set_progress_handler(lambda: next(steps, None) is None, _STEPS_AT_ONCE)
-        return connection
-
-    def _check_tables(self, connection: sqlite3.Connection) -> None:
-        """Refuse what makes as many rows as it likes, of any size."""
-        for name in ("topics", "messages", "message_definitions"):
-            other = connection.execute(
-                "SELECT COUNT(*) FROM sqlite_master WHERE name = ? COLLATE NOCASE "
-                "AND type IN ('table', 'view') AND NOT (type = 'table' AND rootpage > 0)",
-                (name,),
-            )
-            # A default stands in each row that ends before its column.
-            computed, long = connection.execute(
-                "SELECT SUM(hidden <> 0), SUM(length(dflt_value) > ?) FROM pragma_table_xinfo(?)",
-                (_LONGEST_DEFAULT, name),
-            ).fetchone()
-            if other.fetchone()[0] or computed:
-                raise DamageError(f"it is not a ROS 2 bag: {name} is not a plain table")
-            if long:
-                raise DamageError(
-                    f"a column of {name} has a default of more than {_LONGEST_DEFAULT} characters"
-                )
-
     def _topics(self) -> tuple[Topic, ...]:
-        connection = self._connected()
+        connection = self._file.connected()
         try:
-            self._check_tables(connection)
+            check_tables(connection, self._file.size)
             rows = connection.execute("SELECT id, name, type, serialization_format FROM topics")
             described = self._few(rows)
             counts = dict(
@@ -141,7 +107,8 @@ class SqliteSource:
                     "FROM message_definitions"
                 )
             )
-        except sqlite3.OperationalError:  # bags before ROS 2 Iron hold no definitions
+        except sqlite3.OperationalError as error:  # bags before ROS 2 Iron hold no definitions
+            self._file.reason(error)
             return {}
         return {normal_kind(kind): (form, text) for kind, form, text in rows}
 

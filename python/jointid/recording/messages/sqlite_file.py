@@ -1,0 +1,91 @@
+"""An SQLite file that is read with limits, and never written to, not even by SQLite's own recovery."""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from jointid.base.error_text import reason_of
+
+_STEPS, _STEPS_A_BYTE, _STEPS_AT_ONCE = 1000, 20, 1000  # a row takes some 30, and more bytes
+_UNFINISHED = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # how a journal begins that is to be put back
+
+
+class SqliteFile:
+    """An SQLite file.
+
+    Parameters
+    ----------
+    path : Path
+
+    Attributes
+    ----------
+    size : int
+        Bytes.
+    incomplete : str
+        What a recorder left beside it that was killed; else empty. It is not read: a log that was copied with
+        another state of the file would take messages away, and a journal may name any file of the machine,
+        which SQLite would remove.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        path.open("rb").close()  # SQLite would say less of a file that cannot be read
+        self._path = path.resolve()
+        self.size = path.stat().st_size
+        self.incomplete = _left_beside(self._path)
+        self._exhausted = False
+
+    def connected(self) -> sqlite3.Connection:
+        """Return a new connection.
+
+        Raises
+        ------
+        sqlite3.Error
+            It is no SQLite file; later, that it is damaged or takes far too long.
+        """
+        connection = sqlite3.connect(f"{self._path.as_uri()}?mode=ro&immutable=1", uri=True)
+        # Nothing that a table holds is larger than the file; SQLite's own texts may be.
+        longest = min(max(self.size, 1_000_000), 1_000_000_000)
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
+        # Pages that name each other have rows without an end.
+        steps = iter(range(_STEPS + self.size * _STEPS_A_BYTE // _STEPS_AT_ONCE))
+        connection.set_progress_handler(lambda: self._ends(steps), _STEPS_AT_ONCE)
+        return connection
+
+    def _ends(self, steps: Iterator[int]) -> bool:
+        self._exhausted = next(steps, None) is None
+        return self._exhausted
+
+    def reason(self, error: Exception) -> str:
+        """Return why it cannot be read, with what a recorder left beside it.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            It was Ctrl-C that stopped SQLite.
+        """
+        code = getattr(error, "sqlite_errorcode", None)
+        if (
+            code == sqlite3.SQLITE_INTERRUPT and not self._exhausted
+        ):  # it hides what ends our function
+            raise KeyboardInterrupt
+        return "; ".join(filter(None, (reason_of(error), self.incomplete)))
+
+
+def _left_beside(path: Path) -> str:
+    log, journal = (path.with_name(f"{path.name}-{each}") for each in ("wal", "journal"))
+    with suppress(OSError):
+        if log.stat().st_size:
+            return (
+                f"its last messages may be in {log.name}, which is not read; "
+                f"sqlite3 {path.name} \"VACUUM INTO 'whole.db3'\" makes one file of both"
+            )
+    with suppress(OSError), journal.open("rb") as file:
+        if file.read(len(_UNFINISHED)) == _UNFINISHED:
+            return f"its last write was not finished; what {journal.name} holds of before it is not put back"
+    return ""

@@ -1,0 +1,72 @@
+"""What the tables of a ROS 2 bag in SQLite must be, so that little is made of a small file."""
+
+import sqlite3
+from collections.abc import Sequence
+
+from jointid.recording.messages.topic import DamageError
+
+_READ = {
+    "topics": ("id", "name", "type", "serialization_format"),
+    "messages": ("topic_id", "timestamp"),  # whose data are read one by one
+    "message_definitions": ("topic_type", "encoding", "encoded_message_definition"),
+}
+_LONGEST_DEFAULT = 1000  # characters
+
+
+def check_tables(connection: sqlite3.Connection, size: int) -> None:
+    """Refuse tables of which SQLite makes as many rows as it likes, of any size.
+
+    Parameters
+    ----------
+    connection : sqlite3.Connection
+    size : int
+        Bytes of the file.
+
+    Raises
+    ------
+    DamageError
+        A table is a view or computed, or holds more than the file.
+    sqlite3.Error
+        The file is damaged.
+    """
+    for name, read in _READ.items():
+        other = connection.execute(
+            "SELECT COUNT(*) FROM sqlite_master WHERE name = ? COLLATE NOCASE "
+            "AND type IN ('table', 'view') AND NOT (type = 'table' AND rootpage > 0)",
+            (name,),
+        )
+        # A default stands in each row that ends before its column.
+        computed, long = connection.execute(
+            "SELECT SUM(hidden <> 0), SUM(length(dflt_value) > ?) FROM pragma_table_xinfo(?)",
+            (_LONGEST_DEFAULT, name),
+        ).fetchone()
+        if other.fetchone()[0] or computed:
+            raise DamageError(f"it is not a ROS 2 bag: {name} is not a plain table")
+        if long:
+            raise DamageError(
+                f"a column of {name} has a default of more than {_LONGEST_DEFAULT} characters"
+            )
+        for column in _passed_over(connection, name, read):
+            quoted = '"' + column.replace('"', '""') + '"'
+            (held,) = connection.execute(
+                f"SELECT TOTAL(CASE typeof({quoted}) WHEN 'blob' THEN length({quoted}) "
+                f"WHEN 'text' THEN ? ELSE 0 END) FROM {name}",
+                (size,),  # the length of a text is known when it is read
+            ).fetchone()
+            if held > size:
+                raise DamageError(
+                    f"column {column!r} of {name} stands before {read[-1]!r} and may hold more than the file"
+                )
+
+
+def _passed_over(connection: sqlite3.Connection, table: str, read: Sequence[str]) -> list[str]:
+    """Return the columns before the last one that is read; there are none in a bag of ROS 2.
+
+    SQLite goes from page to page to what stands behind a long value, as often as it says. These are no steps.
+    """
+    columns = connection.execute(
+        "SELECT lower(name), pk AND type = 'INTEGER' COLLATE NOCASE FROM pragma_table_xinfo(?)",
+        (table,),
+    ).fetchall()
+    last = max((k for k, (name, _) in enumerate(columns) if name in read), default=0)
+    return [name for name, is_key in columns[:last] if name not in read and not is_key]
