@@ -13,6 +13,7 @@ from recording_files import refused
 
 import jointid as jid
 from jointid.recording.messages.sqlite_file import SqliteFile
+from jointid.recording.messages.sqlite_tables import check_tables
 
 pytest.importorskip("rosbags")
 _COUNT = 40
@@ -74,15 +75,15 @@ def test_messages_in_a_log_are_said_with_the_way_to_them(bag: Path, tmp_path: Pa
     assert len(recording) == _COUNT - 15
     said = recording.metadata["incomplete"]
     assert said == (
-        f"its last messages may be in {path.name}-wal, which is not read; "
-        f"sqlite3 {path.name} \"VACUUM INTO 'whole.db3'\" makes one file of both"
+        f"its last messages may be in {path.name}-wal, which is not read: "
+        "SQLite joins the two when it opens a copy of both"
     )
     assert _contents(path.parent) == before
-    with closing(sqlite3.connect(path)) as connection:  # what the sentence advises
-        connection.execute(f"VACUUM INTO '{path.with_name('whole.db3')}'")
-    whole = jid.load(path.with_name("whole.db3"))
-    assert len(whole) == _COUNT
-    assert "incomplete" not in whole.metadata
+    copy = _copied(path, tmp_path / "whole", "-wal")
+    with closing(sqlite3.connect(copy)) as connection:  # as docs/robot_logs.md says
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    assert len(jid.load(copy)) == _COUNT
+    assert _said(copy) is None
 
 
 def test_a_log_with_all_messages_is_named_in_the_error(bag: Path, tmp_path: Path) -> None:
@@ -142,7 +143,7 @@ def test_ctrl_c_while_sqlite_works(interrupted: Path) -> None:
         jid.load(interrupted)
 
 
-def _behind(path: Path, value: bytes | str, count: int) -> Path:
+def _behind(path: Path, value: bytes | str, count: int, column: str = '"a""b"') -> Path:
     """Write a bag whose rows begin with another column."""
     with closing(sqlite3.connect(path)) as connection:
         connection.execute(
@@ -151,9 +152,10 @@ def _behind(path: Path, value: bytes | str, count: int) -> Path:
         connection.execute(
             "INSERT INTO topics VALUES (1, '/a', 'sensor_msgs/msg/JointState', 'cdr')"
         )
-        connection.execute('CREATE TABLE messages ("a""b", topic_id, timestamp, data)')
+        connection.execute(f"CREATE TABLE messages ({column}, topic_id, timestamp, data)")
         connection.executemany(
-            "INSERT INTO messages VALUES (?, 1, ?, x'0001')", [(value, k) for k in range(count)]
+            "INSERT INTO messages VALUES (?, 1, ?, x'0001')",
+            ((f"{k}{value}" if isinstance(value, str) else value, k) for k in range(count)),
         )
         connection.commit()
     return path
@@ -186,10 +188,50 @@ def test_columns_that_hold_more_than_the_file(value: bytes | str, tmp_path: Path
     path = _behind(tmp_path / "a.db3", value, 200)
     _many_rows_of_few_pages(path)
     said = refused(path)
-    assert "column 'a\"b' of messages stands before 'timestamp' and may hold more" in said
+    assert 'column "a""b" of messages stands before \'timestamp\' and may hold more' in said
 
 
 def test_a_column_of_numbers_or_few_bytes_before_the_topic(tmp_path: Path) -> None:
     for number, value in enumerate((b"few", 7)):
         path = _behind(tmp_path / f"{number}.db3", value, 20)  # type: ignore[arg-type]
         assert "stands before" not in refused(path)
+
+
+@pytest.mark.parametrize("key", ["id INTEGER PRIMARY KEY DESC", "id INT PRIMARY KEY", "id TEXT"])
+def test_a_key_that_is_no_row_number_may_hold_anything(key: str, tmp_path: Path) -> None:
+    path = _behind(tmp_path / "a.db3", "a" * 3000, 200, key)
+    _many_rows_of_few_pages(path)
+    assert 'column "id" of messages stands before' in refused(path)
+
+
+def test_a_row_number_is_not_looked_through(bag: Path) -> None:
+    asked: list[str] = []
+    with closing(SqliteFile(bag).connected()) as connection:
+        connection.set_trace_callback(asked.append)
+        check_tables(connection, bag.stat().st_size)
+    assert not [each for each in asked if "TOTAL" in each]
+
+
+def _with_views(path: Path, name: str, text: str, count: int) -> Path:
+    """Add views to a bag."""
+    with closing(sqlite3.connect(path, isolation_level=None)) as connection:
+        connection.execute("PRAGMA writable_schema = ON")
+        connection.executemany(
+            "INSERT INTO sqlite_master VALUES ('view', ?, ?, 0, ?)",
+            [
+                (f"{name}{k}", f"{name}{k}", f"CREATE VIEW {name}{k} AS {text}")
+                for k in range(count)
+            ],
+        )
+    return path
+
+
+def test_a_schema_of_many_statements_or_long_ones(bag: Path) -> None:
+    """SQLite makes 50 times as much of a statement, before a table is asked for."""
+    copy = _copied(bag, bag.parent / "long")
+    many = _with_views(bag, "v", "SELECT 1", 20)
+    jid.load(many)
+    _with_views(many, "w", "SELECT 1", 300)
+    assert "interrupted" in refused(many)
+    long = _with_views(copy, "v", f"SELECT {'1,' * 15_000}1", 1)
+    assert "malformed database schema" in refused(long)

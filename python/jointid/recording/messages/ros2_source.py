@@ -5,6 +5,7 @@ import shutil
 import sqlite3
 import weakref
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
@@ -52,20 +53,18 @@ class SqliteSource:
         """Yield the messages of a topic, in the order of their log times."""
         numbers = self._numbers[topic.name, topic.kind, topic.encoding]
         self._room.again()
-        connection = self._file.connected()
         try:
-            for time, message in _in_order(connection, numbers):
-                if not isinstance(time, int) or not isinstance(message, bytes):
-                    raise DamageError("it is damaged (a row holds no message)")
-                if message.startswith(_ZSTANDARD):
-                    message = _decompressed(message, self._room)
-                else:
-                    self._room.take(len(message))
-                yield time, message
+            with closing(self._file.connected()) as connection:
+                for time, message in _in_order(connection, numbers):
+                    if not isinstance(time, int) or not isinstance(message, bytes):
+                        raise DamageError("it is damaged (a row holds no message)")
+                    if message.startswith(_ZSTANDARD):
+                        message = _decompressed(message, self._room)
+                    else:
+                        self._room.take(len(message))
+                    yield time, message
         except sqlite3.Error as error:
             raise DamageError(f"it is damaged ({self._file.reason(error)})") from None
-        finally:
-            connection.close()
 
     def _topics(self) -> tuple[Topic, ...]:
         connection = self._file.connected()

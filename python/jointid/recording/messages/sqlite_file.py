@@ -7,7 +7,9 @@ from pathlib import Path
 
 from jointid.base.error_text import reason_of
 
-_STEPS, _STEPS_A_BYTE, _STEPS_AT_ONCE = 1000, 20, 1000  # a row takes some 30, and more bytes
+# A row takes some 30, and more than 12 bytes.
+_STEPS, _STEPS_A_BYTE, _STEPS_AT_ONCE = 1000, 8, 1000
+_LONGEST_STATEMENT, _SCHEMA_STEPS = 20_000, 1000  # of a schema; a bag's takes 60 steps
 _UNFINISHED = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # how a journal begins that is to be put back
 
 
@@ -49,12 +51,22 @@ class SqliteFile:
             It is no SQLite file; later, that it is damaged or takes far too long.
         """
         connection = sqlite3.connect(f"{self._path.as_uri()}?mode=ro&immutable=1", uri=True)
-        # Nothing that a table holds is larger than the file; SQLite's own texts may be.
-        longest = min(max(self.size, 1_000_000), 1_000_000_000)
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
-        # Pages that name each other have rows without an end.
-        steps = iter(range(_STEPS + self.size * _STEPS_A_BYTE // _STEPS_AT_ONCE))
-        connection.set_progress_handler(lambda: self._ends(steps), _STEPS_AT_ONCE)
+        try:
+            # Nothing that a table holds is larger than the file; SQLite's own texts may be.
+            longest = min(max(self.size, 1_000_000), 1_000_000_000)
+            connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
+            # SQLite parses each statement of the schema, of which there may be any number.
+            before = connection.setlimit(sqlite3.SQLITE_LIMIT_SQL_LENGTH, _LONGEST_STATEMENT)
+            schema = iter(range(_SCHEMA_STEPS // 100))
+            connection.set_progress_handler(lambda: self._ends(schema), 100)
+            connection.execute("SELECT COUNT(*) FROM sqlite_master")
+            connection.setlimit(sqlite3.SQLITE_LIMIT_SQL_LENGTH, before)
+            # Pages that name each other have rows without an end.
+            steps = iter(range(_STEPS + self.size * _STEPS_A_BYTE // _STEPS_AT_ONCE))
+            connection.set_progress_handler(lambda: self._ends(steps), _STEPS_AT_ONCE)
+        except BaseException:
+            connection.close()
+            raise
         return connection
 
     def _ends(self, steps: Iterator[int]) -> bool:
@@ -70,9 +82,8 @@ class SqliteFile:
             It was Ctrl-C that stopped SQLite.
         """
         code = getattr(error, "sqlite_errorcode", None)
-        if (
-            code == sqlite3.SQLITE_INTERRUPT and not self._exhausted
-        ):  # it hides what ends our function
+        # SQLite hides what ends our function.
+        if code == sqlite3.SQLITE_INTERRUPT and not self._exhausted:
             raise KeyboardInterrupt
         return "; ".join(filter(None, (reason_of(error), self.incomplete)))
 
@@ -82,8 +93,8 @@ def _left_beside(path: Path) -> str:
     with suppress(OSError):
         if log.stat().st_size:
             return (
-                f"its last messages may be in {log.name}, which is not read; "
-                f"sqlite3 {path.name} \"VACUUM INTO 'whole.db3'\" makes one file of both"
+                f"its last messages may be in {log.name}, which is not read: "
+                "SQLite joins the two when it opens a copy of both"
             )
     with suppress(OSError), journal.open("rb") as file:
         if file.read(len(_UNFINISHED)) == _UNFINISHED:

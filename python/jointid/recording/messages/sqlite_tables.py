@@ -47,15 +47,14 @@ def check_tables(connection: sqlite3.Connection, size: int) -> None:
                 f"a column of {name} has a default of more than {_LONGEST_DEFAULT} characters"
             )
         for column in _passed_over(connection, name, read):
-            quoted = '"' + column.replace('"', '""') + '"'
             (held,) = connection.execute(
-                f"SELECT TOTAL(CASE typeof({quoted}) WHEN 'blob' THEN length({quoted}) "
-                f"WHEN 'text' THEN ? ELSE 0 END) FROM {name}",
+                f"SELECT TOTAL(CASE typeof({column}) WHEN 'blob' THEN length({column}) "
+                f"WHEN 'text' THEN ? ELSE 0 END) FROM {name} NOT INDEXED",
                 (size,),  # the length of a text is known when it is read
             ).fetchone()
             if held > size:
                 raise DamageError(
-                    f"column {column!r} of {name} stands before {read[-1]!r} and may hold more than the file"
+                    f"column {column} of {name} stands before {read[-1]!r} and may hold more than the file"
                 )
 
 
@@ -64,9 +63,16 @@ def _passed_over(connection: sqlite3.Connection, table: str, read: Sequence[str]
 
     SQLite goes from page to page to what stands behind a long value, as often as it says. These are no steps.
     """
-    columns = connection.execute(
-        "SELECT lower(name), pk AND type = 'INTEGER' COLLATE NOCASE FROM pragma_table_xinfo(?)",
-        (table,),
-    ).fetchall()
-    last = max((k for k, (name, _) in enumerate(columns) if name in read), default=0)
-    return [name for name, is_key in columns[:last] if name not in read and not is_key]
+    columns = [
+        name
+        for (name,) in connection.execute("SELECT lower(name) FROM pragma_table_xinfo(?)", (table,))
+    ]
+    last = max((k for k, name in enumerate(columns) if name in read), default=0)
+    quoted = ('"' + name.replace('"', '""') + '"' for name in columns[:last] if name not in read)
+    return [name for name in quoted if not _is_row_number(connection, table, name)]
+
+
+def _is_row_number(connection: sqlite3.Connection, table: str, column: str) -> bool:
+    """Whether a column is another name of the row's number, which holds nothing else."""
+    code = {step[1] for step in connection.execute(f"EXPLAIN SELECT {column} FROM {table}")}
+    return "Column" not in code and not code.isdisjoint({"Rowid", "IdxRowid"})
