@@ -183,25 +183,25 @@ def _many_rows_of_few_pages(path: Path) -> None:
     path.write_bytes(content + first)
 
 
-@pytest.mark.parametrize("value", [bytes(3000), "a" * 3000])
+@pytest.mark.parametrize("value", [bytes(3000), "a" * 3000, "\0" * 3000])
 def test_columns_that_hold_more_than_the_file(value: bytes | str, tmp_path: Path) -> None:
     path = _behind(tmp_path / "a.db3", value, 200)
     _many_rows_of_few_pages(path)
     said = refused(path)
-    assert 'column "a""b" of messages stands before \'timestamp\' and may hold more' in said
+    assert 'column "a""b" of messages, before \'timestamp\', holds more than the file' in said
 
 
-def test_a_column_of_numbers_or_few_bytes_before_the_topic(tmp_path: Path) -> None:
-    for number, value in enumerate((b"few", 7)):
+def test_a_column_of_little_before_the_topic(tmp_path: Path) -> None:
+    for number, value in enumerate((b"few", 7, "\0a text")):
         path = _behind(tmp_path / f"{number}.db3", value, 20)  # type: ignore[arg-type]
-        assert "stands before" not in refused(path)
+        assert "holds more" not in refused(path)
 
 
 @pytest.mark.parametrize("key", ["id INTEGER PRIMARY KEY DESC", "id INT PRIMARY KEY", "id TEXT"])
 def test_a_key_that_is_no_row_number_may_hold_anything(key: str, tmp_path: Path) -> None:
     path = _behind(tmp_path / "a.db3", "a" * 3000, 200, key)
     _many_rows_of_few_pages(path)
-    assert 'column "id" of messages stands before' in refused(path)
+    assert 'column "id" of messages, before' in refused(path)
 
 
 def test_a_row_number_is_not_looked_through(bag: Path) -> None:
@@ -209,7 +209,7 @@ def test_a_row_number_is_not_looked_through(bag: Path) -> None:
     with closing(SqliteFile(bag).connected()) as connection:
         connection.set_trace_callback(asked.append)
         check_tables(connection, bag.stat().st_size)
-    assert not [each for each in asked if "TOTAL" in each]
+    assert not [each for each in asked if "typeof" in each]
 
 
 def _with_views(path: Path, name: str, text: str, count: int) -> Path:

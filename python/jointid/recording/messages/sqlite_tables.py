@@ -47,15 +47,17 @@ def check_tables(connection: sqlite3.Connection, size: int) -> None:
                 f"a column of {name} has a default of more than {_LONGEST_DEFAULT} characters"
             )
         for column in _passed_over(connection, name, read):
-            (held,) = connection.execute(
-                f"SELECT TOTAL(CASE typeof({column}) WHEN 'blob' THEN length({column}) "
-                f"WHEN 'text' THEN ? ELSE 0 END) FROM {name} NOT INDEXED",
-                (size,),  # the length of a text is known when it is read
-            ).fetchone()
-            if held > size:
-                raise DamageError(
-                    f"column {column} of {name} stands before {read[-1]!r} and may hold more than the file"
-                )
+            held = 0
+            sizes = connection.execute(  # a blob's is known without reading it
+                f"SELECT CASE typeof({column}) WHEN 'blob' THEN length({column}) "
+                f"WHEN 'text' THEN length(CAST({column} AS BLOB)) ELSE 0 END FROM {name} NOT INDEXED"
+            )
+            for (each,) in sizes:
+                held += each
+                if held > size:
+                    raise DamageError(
+                        f"column {column} of {name}, before {read[-1]!r}, holds more than the file"
+                    )
 
 
 def _passed_over(connection: sqlite3.Connection, table: str, read: Sequence[str]) -> list[str]:
