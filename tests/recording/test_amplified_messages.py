@@ -7,6 +7,7 @@ import bz2
 import sqlite3
 import struct
 import tracemalloc
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -112,7 +113,8 @@ def _db3(path: Path, rows: list[bytes], **other: str) -> Path:
 
 
 def _has_fts4() -> bool:
-    options = sqlite3.connect(":memory:").execute("PRAGMA compile_options").fetchall()
+    with closing(sqlite3.connect(":memory:")) as connection:
+        options = connection.execute("PRAGMA compile_options").fetchall()
     return ("ENABLE_FTS4",) in options or ("ENABLE_FTS3",) in options
 
 
