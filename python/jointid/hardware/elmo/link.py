@@ -79,12 +79,15 @@ class ElmoLink:
             The bus does not take it.
         """
         message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
-        self.foreign.sent(self.clock.now(), identifier, payload)
+        begun = self.clock.now()
+        self.foreign.sent(begun, identifier, payload)
         try:
             self._bus.send(message, timeout=0.01)
         except (can.CanError, OSError) as error:  # some interfaces let the system's errors through
             raise DriveFaultError("bus", f"a frame could not be sent: {error}") from error
         when = self.clock.now()  # behind the sending, which may have had to wait for the processor
+        if not self.stamped:  # nor does the answer tell how long we waited behind it
+            when = 0.5 * (begun + when)
         if self.tap is not None:
             self.tap(when, identifier, payload, True)
         return when
