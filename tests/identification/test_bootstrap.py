@@ -33,9 +33,9 @@ def test_minima_inside_a_box_meet_their_conditions() -> None:
 
 
 def test_its_errors_are_like_those_reported(estimate: jid.Estimate) -> None:
-    began = time.perf_counter()
+    began = time.process_time()
     found = estimate.bootstrap()
-    assert time.perf_counter() - began < 1.0
+    assert time.process_time() - began < 1.0
     assert found.samples.shape == (1000, 4)
     for p in found.parameters.values():
         assert p.ratio is not None

@@ -230,16 +230,16 @@ def test_decimal_commas_keep_every_bit(
 
 
 def test_a_million_rows_load_in_seconds(tmp_path: Path) -> None:
-    """Rows are numbers in bulk, never one by one: 60 s is far above what it takes, 1 to 4 s."""
+    """Rows are numbers in bulk, never one by one: 60 s of the processor are far above what it takes, 1 to 4 s."""
     count = 1_000_000
     row = "{:.3f},0.12345,-1.5,2.25\n"
     text = GOOD[0] + "\n" + "".join(map(row.format, np.arange(count) * 1e-3))
     for name, content in (("a", text), ("b", text.replace(",", ";").replace(".", ","))):
         path = tmp_path / f"{name}.csv"
         path.write_text(content)
-        begin = time.monotonic()
+        begin = time.process_time()
         assert len(load(path)) == count
-        assert time.monotonic() - begin < 60.0
+        assert time.process_time() - begin < 60.0
 
 
 def test_gzip_of_a_foreign_dialect(tmp_path: Path) -> None:
