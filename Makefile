@@ -8,6 +8,8 @@ SHELL := bash
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip
 INSTALL := $(PIP) install --quiet --no-input --disable-pip-version-check
+# Python compiles what is imported; most of what the tools bring never is.
+TOOLS := $(INSTALL) --no-compile --group
 STRICT := -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON -Ccmake.define.JOINTID_PRECOMPILED=$(if $(shell command -v ccache),OFF,ON)
 
 # What the installed package is made of; outside a git checkout (an unpacked sdist) whatever is there.
@@ -192,22 +194,22 @@ tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of th
 
 .venv/.test-tools: .venv/.created pyproject.toml
 	@echo "Installing what the tests need"
-	@$(INSTALL) --group test
+	@$(TOOLS) test
 	@touch $@
 
 .venv/.lint-tools: .venv/.created pyproject.toml
 	@echo "Installing ruff, mypy, clang-format and the stub generator"
-	@$(INSTALL) --group lint
+	@$(TOOLS) lint
 	@touch $@
 
 .venv/.docs-tools: .venv/.created pyproject.toml
 	@echo "Installing Sphinx, its theme and its reader of Markdown"
-	@$(INSTALL) --group docs
+	@$(TOOLS) docs
 	@touch $@
 
 .venv/.bench-tools: .venv/.created pyproject.toml
 	@echo "Installing the libraries that the benchmark times"
-	@$(INSTALL) --group bench
+	@$(TOOLS) bench
 	@touch $@
 
 ifeq ($(IN_PLACE),)
