@@ -188,7 +188,7 @@ def test_ctrl_c_ends_it_at_once_and_writes_nothing(
     asked: list[float] = []
 
     def ask() -> None:
-        asked.append(time.process_time())
+        asked.append(time.monotonic())
         os.kill(os.getpid(), signal.SIGINT)
 
     timer = threading.Timer(1.0, ask)
@@ -198,7 +198,7 @@ def test_ctrl_c_ends_it_at_once_and_writes_nothing(
         assert main(words) == 130
     finally:
         timer.cancel()
-    assert time.process_time() - asked[0] < 0.5
+    assert time.monotonic() - asked[0] < 0.5
     assert capsys.readouterr().err == "jointid: interrupted\n"
     assert not Path("motion.toml").exists()
 
