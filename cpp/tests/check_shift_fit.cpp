@@ -28,7 +28,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using signals::Signal;
 
-constexpr double kCycle = 1e-3;
+constexpr double kSampling = 1e-3;
 constexpr Index kSamples = 6000;
 constexpr Index kHalf = 6;
 
@@ -43,7 +43,7 @@ double motion(double t, Index column) {
 
 /// A signal that is late, its windows and the columns that it is a sum of.
 struct Late {
-  VectorXd time = VectorXd::LinSpaced(kSamples, 0.0, kCycle*(kSamples - 1));
+  VectorXd time = VectorXd::LinSpaced(kSamples, 0.0, kSampling*(kSamples - 1));
   VectorXd signal = VectorXd(kSamples);
   std::unique_ptr<bool[]> usable = std::make_unique<bool[]>(kSamples);
   signals::SmoothWindows windows;
@@ -124,13 +124,13 @@ CHECK_CASE("shift: windows keep clear of unusable samples and changes of directi
     const auto at = static_cast<std::size_t>(i);
     const bool inner =
         i > 0 && i + 1 < found.between.size() && wanted[at + 1] - wanted[at - 1] == 2 * kHalf;
-    CHECK_CLOSE(found.between[i], inner ? 1.0 / (2 * kHalf * kCycle) : 0.0, 1e-9);
+    CHECK_CLOSE(found.between[i], inner ? 1.0 / (2 * kHalf * kSampling) : 0.0, 1e-9);
   }
   CHECK_CLOSE(signals::mean_rates(view(late.time), found).maxCoeff(), 1.0, 1e-12);
-  CHECK_CLOSE(
-      signals::curvature_weight(kHalf, kCycle)
-          .dot(VectorXd::LinSpaced(2 * kHalf + 1, -kHalf * kCycle, kHalf * kCycle).cwiseAbs2()),
-      2.0, 1e-9);
+  CHECK_CLOSE(signals::curvature_weight(kHalf, kSampling)
+                  .dot(VectorXd::LinSpaced(2 * kHalf + 1, -kHalf * kSampling, kHalf * kSampling)
+                           .cwiseAbs2()),
+              2.0, 1e-9);
   CHECK_REFUSED(signals::smooth_windows(late.stretch(), {kHalf, 3, 0, true}), "beyond its stretch");
 }
 
@@ -164,23 +164,23 @@ CHECK_CASE("shift: columns are the means of what friction may be; a jump is half
   CHECK_CLOSE(found.col(8).minCoeff(), 1.0, 1e-12);
   choice.jumping.emplace(view(late.time));  // by a period at each sample
   const MatrixXd earlier = signals::balance_columns(late.stretch(), windows, choice);
-  CHECK_CLOSE((found - earlier).col(0).maxCoeff(), 0.5 * kCycle, 1e-12);
+  CHECK_CLOSE((found - earlier).col(0).maxCoeff(), 0.5 * kSampling, 1e-12);
   CHECK_CLOSE((found - earlier).rightCols(24).cwiseAbs().maxCoeff(), 0.0, 0.0);
 }
 
 CHECK_CASE("shift: windows are as long as the noise of the acceleration asks for") {
   VectorXd signal(kSamples);
-  for (Index i = 0; i < kSamples; ++i) signal[i] = motion(kCycle * static_cast<double>(i), 1);
-  CHECK(signals::half_length(view(signal), kCycle, false) == 6);
+  for (Index i = 0; i < kSamples; ++i) signal[i] = motion(kSampling * static_cast<double>(i), 1);
+  CHECK(signals::half_length(view(signal), kSampling, false) == 6);
   std::uint64_t state = 11;
   for (auto& one : signal) {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;
     one += 0.02 * (static_cast<double>(state >> 11U) * 0x1p-53 - 0.5);
   }
-  const auto noisy = signals::half_length(view(signal), kCycle, false);
+  const auto noisy = signals::half_length(view(signal), kSampling, false);
   CHECK_WITH(noisy > 6 && noisy < 56, std::to_string(noisy));
   for (auto& one : signal) one = std::round(one * 20.0) / 20.0;  // a counter's steps
-  CHECK(signals::half_length(view(signal), kCycle, true) > noisy);
+  CHECK(signals::half_length(view(signal), kSampling, true) > noisy);
 }
 
 CHECK_CASE("noise: what a torque repeats two samples earlier shows at that lag") {
