@@ -110,7 +110,7 @@ void check_equal(const Names& names, Residual residual, const WindowOptions& win
   CHECK_WITH(worst <= 1.0, names.back() + ": " + std::to_string(worst) + " of what is allowed");
 }
 
-CHECK_CASE("compressed: equal to the direct sum on random candidates and at the optimum") {
+THREADED_CASE("compressed: equal to the direct sum on random candidates and at the optimum") {
   for (const auto residual : {Residual::sensor, Residual::torque}) {
     check_equal(kCoulomb, residual, {0, 0.02}, 2000);
     check_equal(kStribeck, residual, {0, 0.02}, 2000);
@@ -118,15 +118,15 @@ CHECK_CASE("compressed: equal to the direct sum on random candidates and at the 
   }
 }
 
-CHECK_CASE("compressed: equal with two shapes") {
+THREADED_CASE("compressed: equal with two shapes") {
   check_equal(kGeneral, Residual::sensor, {0, 0.05}, 400);
 }
 
-CHECK_CASE("compressed: equal with running integrals") {
+THREADED_CASE("compressed: equal with running integrals") {
   check_equal(kStribeck, Residual::sensor, {0, 0.05, 1.0, true}, 1000);
 }
 
-CHECK_CASE("compressed: running integrals go on from one block of rows to the next") {
+THREADED_CASE("compressed: running integrals go on from one block of rows to the next") {
   base::Pool pool(2);
   const auto direct = penalty_of(kStribeck, Residual::sensor, {0, 0.001, 1.0, true}, 0.5, 20'000);
   const auto domain = domain_of(direct);
@@ -170,7 +170,7 @@ CHECK_CASE("compressed: bounds that ask for too many sums are left to the direct
   CHECK(contains(compressed.reason(), "bounds of stribeck_velocity and stribeck_exponent"));
 }
 
-CHECK_CASE("compressed: accurate and never negative where the penalty all but vanishes") {
+THREADED_CASE("compressed: accurate and never negative where the penalty all but vanishes") {
   base::Pool pool(1);
   const auto direct = penalty_of(kStribeck, Residual::torque, {0, 0.02}, 0.0);
   const auto domain = domain_of(direct);
@@ -191,7 +191,7 @@ CHECK_CASE("compressed: accurate and never negative where the penalty all but va
   }
 }
 
-CHECK_CASE("compressed: the same bits for any number of threads") {
+THREADED_CASE("compressed: the same bits for any number of threads") {
   const auto direct = penalty_of(kStribeck, Residual::sensor, {0, 0.02}, 0.5, 20'000);
   const auto domain = domain_of(direct);
   std::vector<double> values;
@@ -247,7 +247,7 @@ CHECK_CASE("compressed: refuses shapes it was not made for, and says why it is n
                 "domain must have 7 parameters");
 }
 
-CHECK_CASE("compressed: finds the same optimum, by elimination and near a start") {
+THREADED_CASE("compressed: finds the same optimum, by elimination and near a start") {
   base::Pool pool(2);
   for (const auto residual : {Residual::sensor, Residual::torque}) {
     const auto direct = penalty_of(kStribeck, residual);

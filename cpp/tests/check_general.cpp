@@ -141,7 +141,7 @@ CHECK_CASE("general: speeds below all pieces are at rest, those beyond all decay
   CHECK(std::count(row.begin(), row.end(), 0.0) == static_cast<std::ptrdiff_t>(row.size()) - 1);
 }
 
-CHECK_CASE("general: equal to the direct sum, with narrow, wide and fixed shapes") {
+THREADED_CASE("general: equal to the direct sum, with narrow, wide and fixed shapes") {
   const auto direct = penalty_of(false, {0, 0.02});
   check_equal(direct, {0.05, 1.5, 0.5, 4.0}, "default");
   check_equal(direct, {1e-4, 10.0, 0.3, 4.0}, "wide");
@@ -149,12 +149,12 @@ CHECK_CASE("general: equal to the direct sum, with narrow, wide and fixed shapes
   check_equal(direct, {0.1, 0.1, 0.5, 4.0}, "fixed velocity");
 }
 
-CHECK_CASE("general: equal with both directions apart, and with running integrals") {
+THREADED_CASE("general: equal with both directions apart, and with running integrals") {
   check_equal(penalty_of(true, {0, 0.02}), {0.05, 1.5, 0.5, 4.0}, "directions");
   check_equal(penalty_of(false, {0, 0.05, 1.0, true}), {0.05, 1.5, 0.5, 4.0}, "running");
 }
 
-CHECK_CASE("general: parts over threads give the same bits as one thread") {
+THREADED_CASE("general: parts over threads give the same bits as one thread") {
   const auto direct = penalty_of(false, {0, 0.02}, 250'000);
   const auto domain = domain_of(direct, {0.05, 1.5, 0.5, 4.0});
   const auto candidates = candidates_of(domain, 20);

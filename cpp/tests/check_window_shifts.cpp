@@ -54,7 +54,7 @@ std::shared_ptr<const identify::MaskedRecording> masked(const Recording& recordi
 
 }  // namespace
 
-CHECK_CASE("window shifts: as by windows that are cut anew, whatever the threads") {
+THREADED_CASE("window shifts: as by windows that are cut anew, whatever the threads") {
   const Recording recording = drifting();
   const auto run = masked(recording);
   // An even number of windows, so that both others nest.
