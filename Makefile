@@ -107,7 +107,7 @@ sdist: .venv/.test-tools  ## dist/jointid-VERSION.tar.gz
 	@$(BIN)/python -m build -qq --sdist --outdir dist .
 
 # In an environment that holds nothing but what pyproject.toml asks for.
-dist/.wheel: .venv/.test-tools $(SOURCES)
+dist/.wheel: .venv/.build-tools $(SOURCES)
 	@echo "Building the sdist and a wheel from it, warnings are errors (a minute or two)"
 	@rm -rf dist/jointid-* build/wheel
 	@$(BIN)/python -m build -qq $(STRICT) $(CHECKS_TOO) --outdir dist .
@@ -190,6 +190,10 @@ tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of th
 	  echo "Making .venv with $$($$python --version)"; \
 	  $$python -m venv .venv
 	@$(INSTALL) --upgrade 'pip>=25.1'  # dependency groups
+	@touch $@
+
+.venv/.build-tools: .venv/.created pyproject.toml
+	@$(TOOLS) build
 	@touch $@
 
 .venv/.test-tools: .venv/.created pyproject.toml

@@ -11,6 +11,7 @@ from documents import ROOT
 pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
 STAMPS = (
     ".venv/.created",
+    ".venv/.build-tools",
     ".venv/.test-tools",
     ".venv/.lint-tools",
     ".venv/.installed",
