@@ -52,7 +52,7 @@ _SCENARIOS = {
     "command report": (2, 0, 7),
     "command new": (2, 0, 7),
     "command demo": (2, 0, 7),
-    "command sweep": (3, 21, 11),
+    "command sweep": (3, 21, 7),  # of 18 or 19 calls, as busy as the machine is: 10 to 14 faults
     "command sweep drawn": (_NEVER, 16, 0),
     "command design": (2, 0, 7),
     "command design drawn": (_NEVER, 12, 0),
