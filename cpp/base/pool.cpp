@@ -8,9 +8,7 @@
 
 namespace jointid::base {
 
-namespace {
-
-unsigned checked(int threads) {
+unsigned processors(int threads) {
   if (threads < 0 || threads > 1024) {
     throw InputError("must be 0 (all) to 1024", "threads", as_value(threads));
   }
@@ -18,9 +16,7 @@ unsigned checked(int threads) {
                      : std::max(1U, std::thread::hardware_concurrency());
 }
 
-}  // namespace
-
-Pool::Pool(int threads, Poll poll) : wanted_(checked(threads)), poll_(std::move(poll)) {}
+Pool::Pool(int threads, Poll poll) : wanted_(processors(threads)), poll_(std::move(poll)) {}
 
 void Pool::start() {
   workers_.reserve(wanted_);

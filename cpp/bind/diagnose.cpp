@@ -1,4 +1,4 @@
-#include "bind/recording.hpp"
+#include "bind/beside.hpp"
 #include "diagnose/inspection.hpp"
 
 namespace jointid::bind {
@@ -73,13 +73,17 @@ void bind_diagnose(py::module_& m) {
         for (const auto& [values, rule, spikes] : channels) {
           subject.channels.push_back({signal(values), rule, spikes});
         }
-        const py::gil_scoped_release nogil;
-        return with_pool(time.size(), threads,
-                         [&](base::Pool* pool) { return diagnose::inspect(subject, pool); });
+        py::list kept;
+        for (const Array* each : {&time, &position, &velocity}) kept.append(*each);
+        for (const auto& each : channels) kept.append(std::get<0>(each));
+        return Beside(time.size(), threads, [subject, kept](base::Pool* pool) {
+          return diagnose::inspect(subject, pool);
+        });
       },
       py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
       py::arg("velocity_derived"), py::arg("period"), py::arg("channels"), py::arg("threads") = 0,
-      "Look at a recording's signals; a channel is a signal, its rule, and whether to look for "
+      "Begin to look at a recording's signals; a channel is a signal, its rule, and whether to "
+      "look for "
       "spikes.");
 }
 

@@ -1,7 +1,9 @@
 #include "identify/penalty/penalty.hpp"
 
+#include <cmath>
 #include <utility>
 
+#include "bind/beside.hpp"
 #include "bind/recording.hpp"
 #include "diagnose/ripple.hpp"
 #include "identify/compressed/compressed_penalty.hpp"
@@ -311,23 +313,25 @@ void bind_penalty(py::module_& m) {
             });
           },
           py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
-          py::arg("threads") = 0, "The minimum within bounds near a start.")
-      .def(
-          "ripple",
-          [](const PenaltyParts& parts, const Eigen::VectorXd& theta, double gear_ratio, int halves,
-             int threads) {
-            const auto spectrum = [&] {
-              const py::gil_scoped_release nogil;
-              return with_pool(parts.samples(), threads, [&](base::Pool* pool) {
-                return diagnose::ripple_spectrum(parts, theta, gear_ratio, halves, pool);
-              });
-            }();
-            return py::make_tuple(spectrum.windows, spectrum.power, spectrum.multiple);
-          },
-          py::arg("theta"), py::kw_only(), py::arg("gear_ratio"), py::arg("halves"),
-          py::arg("threads") = 0,
-          "Number of windows, sum of squared mean residuals, and the magnitude of their sum over "
-          "each half multiple of the motor's angle.");
+          py::arg("threads") = 0, "The minimum within bounds near a start.");
+  m.def(
+      "ripple",
+      [](const Recordings& recordings, const std::vector<std::string>& terms,
+         const WindowOptions& windows, Residual residual, bool mask_standstill, double gear_ratio,
+         const std::vector<std::string>& per_recording, const Eigen::VectorXd& theta, int halves,
+         int threads) {
+        return Beside(samples_of(recordings), threads, [=](base::Pool* pool) {
+          const PenaltyParts parts(all_masked(recordings, mask_standstill, pool), terms, windows,
+                                   residual, gear_ratio, per_recording);
+          auto found = diagnose::ripple_spectrum(parts, theta, std::abs(gear_ratio), halves, pool);
+          return std::make_tuple(found.windows, found.power, std::move(found.multiple));
+        });
+      },
+      py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
+      py::arg("residual"), py::arg("mask_standstill"), py::arg("gear_ratio"),
+      py::arg("per_recording"), py::arg("theta"), py::arg("halves"), py::arg("threads") = 0,
+      "Begin to sum over short windows: their number, the sum of squared mean residuals, and the "
+      "magnitude of their sum over each half multiple of the motor's angle.");
   m.def(
       "window_shifts",
       [](const Penalty& penalty, const Recordings& recordings,
@@ -335,8 +339,7 @@ void bind_penalty(py::module_& m) {
          const std::vector<std::string>& per_recording, Eigen::VectorXd lower,
          Eigen::VectorXd upper, const Eigen::VectorXd& best, int threads) {
         const search::Domain domain{std::move(lower), std::move(upper)};
-        const py::gil_scoped_release nogil;
-        return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
+        return Beside(samples_of(recordings), threads, [=, &penalty](base::Pool* pool) {
           auto found =
               identify::window_shifts(penalty, all_masked(recordings, mask_standstill, pool), terms,
                                       gear_ratio, per_recording, domain, best, pool);
@@ -345,8 +348,9 @@ void bind_penalty(py::module_& m) {
       },
       py::arg("penalty"), py::kw_only(), py::arg("recordings"), py::arg("terms"),
       py::arg("mask_standstill"), py::arg("gear_ratio"), py::arg("per_recording"), py::arg("lower"),
-      py::arg("upper"), py::arg("best"), py::arg("threads") = 0,
-      "The minima with each window halved and with neighbours joined in pairs; None where there "
+      py::arg("upper"), py::arg("best"), py::arg("threads") = 0, py::keep_alive<0, 1>(),
+      "Begin to look for the minima with each window halved and with neighbours joined in pairs; "
+      "None where there "
       "are no such windows.");
 }
 

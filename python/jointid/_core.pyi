@@ -15,6 +15,7 @@ __all__: list[str] = [
     "Agreement",
     "BalanceColumn",
     "BalanceNoise",
+    "Beside",
     "Clustered",
     "CompensatedPid",
     "CompressedPenalty",
@@ -102,6 +103,7 @@ __all__: list[str] = [
     "position_noise",
     "refine_separable",
     "repeated_noise",
+    "ripple",
     "roll_out_servos",
     "roughness",
     "shape",
@@ -183,6 +185,9 @@ class Model:
     def name(self) -> str: ...
     @property
     def terms(self) -> list[str]: ...
+
+class Beside:
+    def result(self) -> typing.Any: ...
 
 class Hold(enum.Enum):
     linear = ...
@@ -446,14 +451,6 @@ class PenaltyParts:
         *,
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
-    def ripple(
-        self,
-        theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        *,
-        gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
-        halves: typing.SupportsInt | typing.SupportsIndex,
-        threads: typing.SupportsInt | typing.SupportsIndex = 0,
-    ) -> tuple[int, float, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]: ...
     @property
     def window_count(self) -> int: ...
 
@@ -2667,7 +2664,7 @@ def inspect(
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]
     ],
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> Inspection: ...
+) -> Beside: ...
 def is_parameter(name: str) -> bool: ...
 def leading_coefficient(
     windows: collections.abc.Sequence[SmoothWindows],
@@ -2788,6 +2785,19 @@ def repeated_noise(
         ]
     ],
 ) -> RepeatedNoise | None: ...
+def ripple(
+    *,
+    recordings: collections.abc.Sequence[Recording],
+    terms: collections.abc.Sequence[str],
+    windows: WindowOptions,
+    residual: Residual,
+    mask_standstill: bool,
+    gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+    per_recording: collections.abc.Sequence[str],
+    theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    halves: typing.SupportsInt | typing.SupportsIndex,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> Beside: ...
 def roll_out_servos(
     loops: collections.abc.Sequence[ServoLoop],
     logs: collections.abc.Sequence[
@@ -2859,10 +2869,7 @@ def window_shifts(
     upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     best: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> tuple[
-    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
-    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
-]: ...
+) -> Beside: ...
 
 __avx2__: bool
 __version__: str

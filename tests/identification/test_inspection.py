@@ -20,7 +20,7 @@ def seen(signal: Any, rule: _core.SpikeRule, **other: Any) -> Any:
         "velocity_derived": False,
         "period": 1e-3,
     } | other
-    return _core.inspect(channels=[(np.asarray(signal), rule, True)], **fields)
+    return _core.inspect(channels=[(np.asarray(signal), rule, True)], **fields).result()
 
 
 def staircase(step: float, height: float, at: int = 2100) -> Any:
@@ -116,7 +116,7 @@ def moved_at(factor: float, back: float = 0.0, steps: int = 0) -> int:
         velocity_derived=False,
         period=1e-3,
         channels=[],
-    )
+    ).result()
     return int(found.jump)
 
 
@@ -141,7 +141,7 @@ def jump_of(factor: float, finest: float) -> int:
         velocity_derived=False,
         period=1e-3,
         channels=[],
-    )
+    ).result()
     return int(found.jump)
 
 
@@ -154,14 +154,15 @@ def test_a_jump_is_large_beside_the_usual_and_the_finest_step() -> None:
 
 
 def agreement(position: Any, velocity: Any, time: Any = TIME) -> Any:
-    return _core.inspect(
+    found = _core.inspect(
         time=time,
         position=position,
         velocity=velocity,
         velocity_derived=False,
         period=1e-3,
         channels=[],
-    ).agreement
+    ).result()
+    return found.agreement
 
 
 def test_scale_and_lag_are_found_together() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -23,6 +23,7 @@ from jointid.identification.inference.inference import (
     parameters_of,
     statistics_of,
 )
+from jointid.identification.inference.measuring_again import Shifts
 from jointid.identification.inference.own_noise import own_systematic
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import (
@@ -37,8 +38,9 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.engine import Balance
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
-from jointid.identification.warnings.inspection import inspect
+from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
+from jointid.identification.warnings.ripple import begin as begin_ripple
 from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import column_sizes, columns_with, size
 from jointid.problem.problem import Problem
@@ -58,7 +60,8 @@ def infer(
     domain: SearchDomain,
     best: Array,
     balance: Balance | None,
-    shifts: tuple[Array | None, Array | None],
+    inspections: tuple[Inspected, ...],
+    other_windows: Callable[[], Shifts],
     beside: Mapping[str, Array | None],
     convergence: Convergence | None,
     status: str,
@@ -75,8 +78,9 @@ def infer(
     ----------
     balance : tuple or None
         What the penalty's `balance_at` returns at the minimum; None: computed here.
-    shifts : tuple of ndarray or None
-        Change of each parameter when the windows are halved and doubled.
+    inspections : tuple of Inspected
+    other_windows : callable
+        Returns the change of each parameter when the windows are halved and doubled.
     refinements : Refinements
         What was done to the data before the search.
     beside : mapping of str to ndarray or None
@@ -87,9 +91,7 @@ def infer(
         Whether the causes of a misfit are looked for. Default True.
     """
     threads = problem.threads
-    # First, before arrays of one value per window are allocated, and these are freed early: a recording
-    # of an hour fills the memory.
-    inspections = tuple(inspect(run, threads) for run in problem.recordings)
+    # Arrays of one value per window are freed early: a recording of an hour fills the memory.
     value, residual, jacobian, columns = balance or penalty.balance_at(best)
     sizes = column_sizes(jacobian)
     noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
@@ -118,6 +120,8 @@ def infer(
     spread = with_undivided(spread, kept, free, names, groups)
     instant = refinements.sensor_instant
     unknown = 1.0 if instant is None else instant.unknown
+    shifts = other_windows()
+    spectrum = begin_ripple(problem, best)  # of the threads that are begun, one at a time
     counted = admissible_shifts(penalty, shifts)
     parts = systematic_errors(kept, len(best), triangle, lacking, counted, unknown)
     del lacking
@@ -206,6 +210,7 @@ def infer(
             bounds_from_data=domain.from_data,
             guessed_sign=domain.guessed_sign,
             inspections=inspections,
+            spectrum=spectrum,
             at_best=at_best,
             causes=causes,
             cause_of=partial(_cause_of, problem, penalty, parameters, torque_level),

@@ -168,8 +168,9 @@ def identified(
             unfit=unfit,
             **options,
         )
+        inspected = prepared.inspected()
         outcome = run_search(search, prepared.penalty, prepared.domain)
-        estimate = prepared.estimate(search, outcome, started, attribute)
+        estimate = prepared.estimate(search, outcome, started, attribute, inspected)
         reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
         if not reason or fitted in unfit:
             return estimate

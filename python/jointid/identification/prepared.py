@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,6 +26,7 @@ from jointid.identification.drift import may_drift, without_drift
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
+from jointid.identification.inference.measuring_again import Shifts
 from jointid.identification.inference.own_noise import measured_once_more
 from jointid.identification.inference.residual_side import of_residual_side
 from jointid.identification.refinements.refinements import (
@@ -44,6 +45,7 @@ from jointid.identification.search.own_duplicates import refuse_duplicates
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
 from jointid.identification.search.stated_bounds import known_parameters
+from jointid.identification.warnings.inspection import Inspected, inspect
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
@@ -88,8 +90,17 @@ class Prepared:
     refinements: Refinements
     selection: Selection | None = None
 
+    def inspected(self) -> tuple[Inspected, ...]:
+        """Begin to inspect the recordings' signals: where they are short, beside what follows."""
+        return tuple(inspect(run, self.problem.threads) for run in self.problem.recordings)
+
     def estimate(
-        self, search: Search, outcome: Outcome, started: float, attribute: bool = True
+        self,
+        search: Search,
+        outcome: Outcome,
+        started: float,
+        attribute: bool = True,
+        inspected: tuple[Inspected, ...] = (),
     ) -> Estimate:
         """Return the estimate of a search's outcome: intervals, checks, warnings.
 
@@ -102,11 +113,14 @@ class Prepared:
         attribute : bool
             Whether the causes of a misfit are looked for. Where they are not, the estimate's source finds them
             later; but where a drift may have to be taken away they are looked for in any case. Default True.
+        inspected : tuple of Inspected
+            What `inspected` has begun. Default: it is begun here.
         """
-        estimate = self._inferred(search, outcome, started, attribute)
+        inspected = inspected or self.inspected()
+        estimate = self._inferred(search, outcome, started, attribute, inspected=inspected)
         left = not attribute and is_misfit(estimate.windows, estimate.residuals)
         if left and may_drift(self.problem, self.penalty, estimate.parameters):
-            return self.estimate(search, outcome, started)
+            return self.estimate(search, outcome, started, inspected=inspected)
         steady = without_drift(self.problem, self.penalty, estimate)
         fitted = self
         known: tuple[Cause, ...] = ()
@@ -115,7 +129,9 @@ class Prepared:
             penalty = penalty_as_fitted(problem, self.windows, self.domain)
             other = replace(self, problem=problem, penalty=penalty)
             found = run_search(search, other.penalty, other.domain)
-            again = other._inferred(search, found, started, known=(drift,))
+            again = other._inferred(
+                search, found, started, known=(drift,), inspected=other.inspected()
+            )
             if again.residuals.rms < _STEADIER * estimate.residuals.rms:
                 estimate, fitted, known = again, other, (drift,)
         source = EstimateSource(
@@ -150,6 +166,8 @@ class Prepared:
         started: float,
         attribute: bool = True,
         known: tuple[Cause, ...] = (),
+        *,
+        inspected: tuple[Inspected, ...],
     ) -> Estimate:
         """Return the estimate at one minimum; `known` are causes that were taken away before it."""
         domain = self.domain
@@ -161,7 +179,8 @@ class Prepared:
             domain=domain,
             best=best,
             balance=known_there,
-            shifts=self._window_shifts(best),
+            inspections=inspected,
+            other_windows=self._window_shifts(best),
             beside={
                 "residual_side": of_residual_side(self.problem, self.windows, domain, best),
                 "given": of_given_facts(self.problem, self.windows, domain, best),
@@ -214,13 +233,13 @@ class Prepared:
             "bounds_from_data": list(self.domain.from_data),
         }
 
-    def _window_shifts(self, best: Array) -> tuple[Array | None, Array | None]:
-        """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
+    def _window_shifts(self, best: Array) -> Callable[[], Shifts]:
+        """Begin to look at windows halved and doubled: what is returned waits for the changes of the parameters."""
         problem, penalty, domain = self.problem, self.penalty, self.domain
         lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
         if penalty.cumulative or not penalty.is_linear:  # their rows are no sums
-            return self._refitted_shifts(lower, upper, best)
-        halved, doubled = _core.window_shifts(
+            return functools.partial(self._refitted_shifts, lower, upper, best)
+        work = _core.window_shifts(
             penalty,
             recordings=problem.in_core,
             terms=list(problem.choice.terms),
@@ -232,10 +251,15 @@ class Prepared:
             best=best,
             threads=problem.threads,
         )
-        return (
-            None if halved is None else halved - best,
-            None if doubled is None else doubled - best,
-        )
+
+        def shifts() -> Shifts:
+            halved, doubled = work.result()
+            return (
+                None if halved is None else halved - best,
+                None if doubled is None else doubled - best,
+            )
+
+        return shifts
 
     def _refitted_shifts(
         self, lower: Array, upper: Array, best: Array

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field
 from typing import TypeVar
 
@@ -24,7 +24,7 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts)
+Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts, _core.Beside)
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
@@ -84,7 +84,30 @@ class Problem:
         """
         return self._cut(_core.PenaltyParts, windows, residual)
 
-    def _cut(self, made: type[Made], windows: Windows, residual: str | None = None) -> Made:
+    def ripple(self, theta: Array, halves: int, period: float) -> _core.Beside:
+        """Begin to hold the torque's residual against multiples of half the motor's angle, over windows of a period.
+
+        Parameters
+        ----------
+        theta : ndarray, shape (p,)
+        halves : int
+            How many multiples.
+        period : float
+            [s]
+
+        Raises
+        ------
+        InputError
+            Windows that cannot be cut; the result may raise it, too.
+        """
+        # Without a first stage instruments are the torque's residual: what they need is not summed.
+        own = self.choice.residual
+        begun = functools.partial(_core.ripple, theta=theta, halves=halves)
+        return self._cut(begun, period, "torque" if own == "instruments" else own)
+
+    def _cut(
+        self, made: Callable[..., Made], windows: Windows, residual: str | None = None
+    ) -> Made:
         options = self.window_options(windows)
         recordings = self.in_core  # its errors are values already
         try:

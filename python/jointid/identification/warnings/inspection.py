@@ -22,14 +22,21 @@ class Inspected:
     Attributes
     ----------
     recording : Recording
-    found : Inspection
+    work : Beside
+        The core's look at them.
     channels : tuple of str
         The signals looked at, in the order of `found.facts` and `found.spikes`.
     """
 
     recording: Recording
-    found: _core.Inspection
+    work: _core.Beside
     channels: tuple[str, ...]
+
+    @property
+    def found(self) -> _core.Inspection:
+        """What the signals show; it waits for the core."""
+        found: _core.Inspection = self.work.result()
+        return found
 
     def counts(self, name: str) -> _core.SignalFacts:
         """Counts of one signal."""
@@ -46,7 +53,7 @@ class Inspected:
 
 
 def inspect(recording: Recording, threads: int = 0) -> Inspected:
-    """Inspect all signals of a recording."""
+    """Begin to inspect all signals of a recording."""
     signals = {
         name: signal
         for name in _CHANNELS
@@ -54,7 +61,7 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         and not (name == "velocity" and recording.velocity_derived)
     }
     rules = {"position": _core.SpikeRule.position} | dict.fromkeys(DRIVE, _core.SpikeRule.command)
-    found = _core.inspect(
+    work = _core.inspect(
         time=recording.time,
         position=recording.position,
         velocity=recording.velocity,
@@ -66,7 +73,7 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         ],
         threads=threads,
     )
-    return Inspected(recording=recording, found=found, channels=tuple(signals))
+    return Inspected(recording=recording, work=work, channels=tuple(signals))
 
 
 def spike_of(recording: Recording, sensor: Array) -> _core.Spike:
@@ -78,5 +85,6 @@ def spike_of(recording: Recording, sensor: Array) -> _core.Spike:
         velocity_derived=recording.velocity_derived,
         period=recording.sample_period,
         channels=[(sensor, _core.SpikeRule.other, True)],
-    )
-    return found.spikes[0]
+    ).result()
+    spike: _core.Spike = found.spikes[0]
+    return spike

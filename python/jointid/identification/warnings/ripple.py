@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured
@@ -14,7 +16,10 @@ from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_advice import add_ripple
 from jointid.identification.warnings.undetermined import wide, with_partners
+from jointid.problem.problem import Problem
 from jointid.recording.order_statistics import median
+
+Array = NDArray[np.float64]
 
 RIPPLE = FindingType(
     code="ripple",
@@ -38,21 +43,26 @@ class _Peak:
     share: float
 
 
-def _highest_peak(evidence: Evidence, gear: float) -> _Peak | None:
+def begin(problem: Problem, best: Array) -> _core.Beside | None:
+    """Begin to look for it at some parameters, beside other work; None where there is no gear, or no short window."""
+    if abs(problem.choice.gear_ratio) == 1.0 or problem.recordings[0].kind == "prismatic":
+        return None
+    period = min(recording.sample_period for recording in problem.recordings)
+    try:
+        return problem.ripple(best, _HALVES, _FINE * period)
+    except InputError:
+        return None
+
+
+def _highest_peak(work: _core.Beside) -> _Peak | None:
     """The multiple of the motor's angle that explains most of the residual over windows of two samples.
 
     Windows of fast motion average the highest multiple away, and are left out.
     """
-    period = min(recording.sample_period for recording in evidence.recordings)
     try:
-        # Without a first stage instruments are the torque's residual: what they need is not summed.
-        own = evidence.problem.choice.residual
-        fine = evidence.problem.parts(_FINE * period, "torque" if own == "instruments" else own)
+        windows, power, sums = work.result()
     except InputError:
         return None
-    windows, power, sums = fine.ripple(
-        evidence.best, gear_ratio=gear, halves=_HALVES, threads=evidence.problem.threads
-    )
     if windows < 50:
         return None
     shares = 2.0 * sums**2 / (windows * max(power, 1e-300))
@@ -68,10 +78,7 @@ def _highest_peak(evidence: Evidence, gear: float) -> _Peak | None:
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
-    if gear == 1.0 or evidence.recordings[0].kind == "prismatic":
-        return
-    peak = _highest_peak(evidence, gear)
+    peak = None if evidence.spectrum is None else _highest_peak(evidence.spectrum)
     if peak is not None:
         cause = evidence.cause_of("ripple", f"{peak.multiple:g}", min(peak.share, 1.0))
         harmful = cause is None or cause.harmful
