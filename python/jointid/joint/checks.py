@@ -50,6 +50,8 @@ def is_number(value: object) -> bool:
 
 def finite_number(owner: str, field: str, value: Any) -> float:
     """Return a field's value as a float, or refuse it."""
+    if type(value) is float and math.isfinite(value):  # nearly always
+        return value
     if not is_number(value):
         raise InputError("a number is expected", argument=field, value=value, place=owner)
     try:
@@ -70,7 +72,7 @@ def check_flag(owner: str, field: str, value: object) -> None:
 
 def check_mapping(owner: str, field: str, value: object) -> None:
     """Refuse a value that is not a mapping."""
-    if not isinstance(value, Mapping):
+    if type(value) is not dict and not isinstance(value, Mapping):
         raise InputError(
             "a mapping from names to values is expected", argument=field, value=value, place=owner
         )
@@ -110,11 +112,10 @@ def set_numbers(
 ) -> None:
     """Convert fields of a frozen instance to checked floats; None stays where it is the default."""
     kind: type = type(instance)
-    for name, optional in _optional(kind).items():
-        if name not in names:
-            continue
+    optional = _optional(kind)
+    for name in names:
         value = getattr(instance, name)
-        if value is not None or not optional:
+        if value is not None or not optional[name]:
             object.__setattr__(instance, name, convert(owner, name, value))
 
 

@@ -24,6 +24,7 @@ ModelName = Literal["coulomb_viscous", "stribeck", "stribeck_general", "auto"]
 AUTO = "auto"
 """Name of a model that `identify` chooses from the recordings; as good as no name."""
 
+_GRAVITIES, _LOADS = get_args(Gravity), (None, *get_args(Load))
 _GRAVITY_ORDER = 1.0
 _LISTS = ("ripple", "harmonics", "per_recording")
 
@@ -95,10 +96,10 @@ class Model:
         if self.name is not None:
             check_choice("", "name", self.name, (*_core.model_names(), AUTO))
         if self.gravity is not None:
-            check_choice("", "gravity", self.gravity, get_args(Gravity))
+            check_choice("", "gravity", self.gravity, _GRAVITIES)
         if self.asymmetric is not None:
             check_flag("", "asymmetric", self.asymmetric)
-        if self.load_friction not in (None, *get_args(Load)):
+        if self.load_friction not in _LOADS:
             check_flag("", "load_friction", self.load_friction)
         for name in ("ripple", "harmonics"):
             if getattr(self, name) is not None:
@@ -236,14 +237,18 @@ class ResolvedModel:
 
     def __str__(self) -> str:
         """Return the name and the fields that differ from their defaults, as text that `Model.parse` reads."""
-        usual = ResolvedModel()
-        stated = {item.name: getattr(self, item.name) for item in fields(self)}
-        switched = {n: v for n, v in stated.items() if n == "name" or v != getattr(usual, n)}
-        return str(Model(**switched))
+        return _text(self)
 
 
 FIELDS = tuple(item.name for item in fields(Model))
 """Names of a model's fields."""
+
+
+@functools.lru_cache(maxsize=64)
+def _text(model: ResolvedModel) -> str:
+    usual = ResolvedModel()
+    stated = {item.name: getattr(model, item.name) for item in fields(model)}
+    return str(Model(**{n: v for n, v in stated.items() if n == "name" or v != getattr(usual, n)}))
 
 
 @functools.lru_cache(maxsize=64)

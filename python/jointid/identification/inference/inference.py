@@ -25,9 +25,9 @@ from jointid.problem.window_table import WindowTable, r_squared, relative_residu
 
 Array = NDArray[np.float64]
 
-# Not in the intervals: what another choice would give, and what the recording knows nothing of.
-_BESIDE = ("residual_side", "given")
 _LIMITED = ("sampling",)  # known limits of an error, not its standard error
+# Not in the intervals by themselves: also what another choice would give, and what the recording knows nothing of.
+_APART = ("residual_side", "given", *_LIMITED)
 _NORMAL = 1.959964  # standard errors of a 95 % interval
 
 
@@ -134,13 +134,16 @@ def parameters_of(
     )
     prismatic = problem.recordings[0].kind == "prismatic"
     own = problem.choice.model.resolved.terms
+    values, lower, upper = best.tolist(), domain.lower.tolist(), domain.upper.tolist()
+    sizes = {part: each.tolist() for part, each in parts.items()}
+    moved = [None if shift is None else shift.tolist() for shift in shifts]
     result = {}
     for name, described in _terms_and_shapes(penalty).items():
         i = domain.names.index(name)
-        value, error, vary = float(best[i]), errors.get(i), not domain.fixed(name)
-        systematic = {part: float(sizes[i]) for part, sizes in parts.items()}
+        value, error, vary = values[i], errors.get(i), not domain.fixed(name)
+        systematic = {part: each[i] for part, each in sizes.items()}
         half = None if error is None else _half_width(factors[i] * error, systematic)
-        halved, doubled = (None if s is None or not vary else float(s[i]) for s in shifts)
+        halved, doubled = (None if each is None or not vary else each[i] for each in moved)
         result[name] = ParameterEstimate(
             name=name,
             meaning=described.meaning,
@@ -149,8 +152,8 @@ def parameters_of(
             value=value,
             stderr=error,
             interval=None if half is None else (value - half, value + half),
-            min=float(domain.lower[i]),
-            max=float(domain.upper[i]),
+            min=lower[i],
+            max=upper[i],
             vary=vary,
             at_bound=freedom.at_bound[i],
             shift_halved=halved,
@@ -165,7 +168,7 @@ def _half_width(chance: float, systematic: Mapping[str, float]) -> float:
 
     An error within known limits is at worst at one of them: the rest is then held against that limit.
     """
-    shown = (size for part, size in systematic.items() if part not in (*_BESIDE, *_LIMITED))
+    shown = (size for part, size in systematic.items() if part not in _APART)
     half = math.hypot(chance, _NORMAL * math.hypot(*shown))
     limit = sum(systematic.get(part, 0.0) for part in _LIMITED)
     return limited_half_width(half / _NORMAL, limit) if limit > 0.0 else half
