@@ -14,9 +14,13 @@ namespace jointid::simulate {
 namespace {
 
 using Wide = base::Lanes<kSideBySide / 2>;
+#ifdef JOINTID_ONE_WIDTH
+using Narrow = Wide;
+#else
 using Narrow = base::Lanes<kSideBySide / 4>;  ///< no lane is idle where half as many run
-constexpr double kOutOfBounds = 1e12;         // radians: no motion, a loop that diverges
-constexpr std::size_t kBlock = 64;            // control periods between looks at the cancel flag
+#endif
+constexpr double kOutOfBounds = 1e12;  // radians: no motion, a loop that diverges
+constexpr std::size_t kBlock = 64;     // control periods between looks at the cancel flag
 
 std::int64_t rounded(double value) {
   return static_cast<std::int64_t>(std::floor(value + 0.5));
