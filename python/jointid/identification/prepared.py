@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,9 +26,9 @@ from jointid.identification.drift import may_drift, without_drift
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
-from jointid.identification.inference.measuring_again import Shifts
 from jointid.identification.inference.own_noise import measured_once_more
 from jointid.identification.inference.residual_side import of_residual_side
+from jointid.identification.inference.window_choice import other_windows
 from jointid.identification.refinements.refinements import (
     Refinements,
     without_creep,
@@ -49,7 +49,7 @@ from jointid.identification.warnings.inspection import Inspected, inspect
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
-from jointid.problem.constant_torque import balanced, with_fixed_offset
+from jointid.problem.constant_torque import balanced
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
@@ -180,7 +180,7 @@ class Prepared:
             best=best,
             balance=known_there,
             inspections=inspected,
-            other_windows=self._window_shifts(best),
+            other_windows=other_windows(self.problem, self.penalty, domain, self.windows, best),
             beside={
                 "residual_side": of_residual_side(self.problem, self.windows, domain, best),
                 "given": of_given_facts(self.problem, self.windows, domain, best),
@@ -232,54 +232,6 @@ class Prepared:
             "ga": None if search.method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
         }
-
-    def _window_shifts(self, best: Array) -> Callable[[], Shifts]:
-        """Begin to look at windows halved and doubled: what is returned waits for the changes of the parameters."""
-        problem, penalty, domain = self.problem, self.penalty, self.domain
-        lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
-        if penalty.cumulative or not penalty.is_linear:  # their rows are no sums
-            return functools.partial(self._refitted_shifts, lower, upper, best)
-        work = _core.window_shifts(
-            penalty,
-            recordings=problem.in_core,
-            terms=list(problem.choice.terms),
-            mask_standstill=problem.mask_standstill,
-            gear_ratio=problem.choice.gear_ratio,
-            per_recording=list(problem.choice.per_recording),
-            lower=lower,
-            upper=upper,
-            best=best,
-            threads=problem.threads,
-        )
-
-        def shifts() -> Shifts:
-            halved, doubled = work.result()
-            return (
-                None if halved is None else halved - best,
-                None if doubled is None else doubled - best,
-            )
-
-        return shifts
-
-    def _refitted_shifts(
-        self, lower: Array, upper: Array, best: Array
-    ) -> tuple[Array | None, Array | None]:
-        """Return the same by windows that are cut anew."""
-        problem = self.problem
-        options = problem.window_options(self.windows)
-        shifts: list[Array | None] = []
-        for factor in (0.5, 2.0):
-            try:
-                other = problem.parts(options.replace(factor=options.factor * factor))
-            except InputError:  # fewer windows than parameters, or longer than the recording
-                shifts.append(None)
-                continue
-            if other.window_count == self.penalty.window_count:
-                shifts.append(None)
-                continue
-            found = other.refit(lower, upper, best, threads=problem.threads)
-            shifts.append(found - best)
-        return shifts[0], shifts[1]
 
 
 def _of_instant(instant: SensorInstant | None) -> dict[str, Any]:
