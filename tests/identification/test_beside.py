@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -105,3 +106,23 @@ def test_long_work_is_done_at_once_and_says_at_once_what_it_met() -> None:
     )
     with pytest.raises(jid.InputError, match="window"):
         ripple(prepare(run, None, model="coulomb_viscous"), _core.WindowOptions(duration=1e6))
+
+
+def test_several_recordings_are_looked_at_one_after_the_other(
+    well_excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not by as many threads as there are recordings, whatever `threads` says."""
+    begun, fetched = [], []
+
+    def counted(run: jid.Recording, threads: int = 0) -> Any:
+        begun.append(run)
+        work = SimpleNamespace(result=lambda: fetched.append(len(begun)))
+        return SimpleNamespace(work=work)
+
+    monkeypatch.setattr("jointid.identification.prepared.inspect", counted)
+    single = prepare(well_excited, jid.thesis_joint())
+    single.inspected()
+    assert (len(begun), fetched) == (1, [])
+    halves = [well_excited.crop(stop=6.0), well_excited.crop(start=6.0)]
+    prepare(halves, jid.thesis_joint()).inspected()
+    assert (len(begun), fetched) == (3, [2, 3])

@@ -121,7 +121,6 @@ def infer(
     instant = refinements.sensor_instant
     unknown = 1.0 if instant is None else instant.unknown
     shifts = other_windows()
-    spectrum = begin_ripple(problem, best)  # of the threads that are begun, one at a time
     counted = admissible_shifts(penalty, shifts)
     parts = systematic_errors(kept, len(best), triangle, lacking, counted, unknown)
     del lacking
@@ -152,6 +151,8 @@ def infer(
         columns = penalty.linear_columns(best)
     at_best = regressor(penalty, columns, threads)
     del columns
+    # Where its arrays have gone: of a long recording the ripple is looked for at once.
+    spectrum = begin_ripple(problem, best)
     parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)
     statistics = statistics_of(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])

@@ -91,8 +91,13 @@ class Prepared:
     selection: Selection | None = None
 
     def inspected(self) -> tuple[Inspected, ...]:
-        """Begin to inspect the recordings' signals: where they are short, beside what follows."""
-        return tuple(inspect(run, self.problem.threads) for run in self.problem.recordings)
+        """Begin to inspect the signals: of a single recording, which is short, beside what follows."""
+        begun = []
+        for run in self.problem.recordings:
+            begun.append(inspect(run, self.problem.threads))
+            if len(self.problem.recordings) > 1:  # not as many threads as recordings
+                begun[-1].work.result()
+        return tuple(begun)
 
     def estimate(
         self,

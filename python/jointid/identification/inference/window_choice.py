@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -28,7 +27,8 @@ def other_windows(
     """
     lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
     if penalty.cumulative or not penalty.is_linear:  # their rows are no sums
-        return functools.partial(_refitted, problem, penalty, windows, lower, upper, best)
+        found = _refitted(problem, penalty, windows, lower, upper, best)
+        return lambda: found
     work = _core.window_shifts(
         penalty,
         recordings=problem.in_core,

@@ -26,11 +26,14 @@ class Inspected:
         The core's look at them.
     channels : tuple of str
         The signals looked at, in the order of `found.facts` and `found.spikes`.
+    threads : int
+        For a further look; 0: all.
     """
 
     recording: Recording
     work: _core.Beside
     channels: tuple[str, ...]
+    threads: int = 0
 
     @property
     def found(self) -> _core.Inspection:
@@ -73,10 +76,10 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         ],
         threads=threads,
     )
-    return Inspected(recording=recording, work=work, channels=tuple(signals))
+    return Inspected(recording=recording, work=work, channels=tuple(signals), threads=threads)
 
 
-def spike_of(recording: Recording, sensor: Array) -> _core.Spike:
+def spike_of(recording: Recording, sensor: Array, threads: int) -> _core.Spike:
     """The largest spike of a reading in place of the recorded one."""
     found = _core.inspect(
         time=recording.time,
@@ -85,6 +88,7 @@ def spike_of(recording: Recording, sensor: Array) -> _core.Spike:
         velocity_derived=recording.velocity_derived,
         period=recording.sample_period,
         channels=[(sensor, _core.SpikeRule.other, True)],
+        threads=threads,
     ).result()
     spike: _core.Spike = found.spikes[0]
     return spike

@@ -80,7 +80,7 @@ def _without_kicks(inspected: Inspected) -> _core.Spike:
     if not kept.any():
         return spike
     smooth = np.interp(recording.time, recording.time[kept], recording.sensor[kept])
-    return spike_of(recording, smooth)
+    return spike_of(recording, smooth, inspected.threads)
 
 
 CHECK = Check(_find, (SPIKES, JUMPS))
