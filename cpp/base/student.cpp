@@ -177,8 +177,8 @@ double chi_square_quantile(double tail, double freedom) {
   const double cube = 1.0 - 1.0 / (9.0 * a) + normal_quantile(tail) / (3.0 * std::sqrt(a));
   double logarithm = base::log(a) + 3.0 * base::log(cube);
   if (cube < 0.3) {
-    logarithm = (target + base::log(a) + stirling_rest(a) + (a - 0.5) * base::log(a) - a +
-                 0.5 * base::log(2.0 * kPi)) /
+    logarithm = (base::log(1.0 - tail) + base::log(a) + stirling_rest(a) +
+                 (a - 0.5) * base::log(a) - a + 0.5 * base::log(2.0 * kPi)) /
                 a;
   }
   for (int step = 0; step < kSteps; ++step) {

@@ -32,6 +32,7 @@ CHECK_CASE("distributions: table values") {
   CHECK_CLOSE(base::student_quantile(0.975, kInfinity), 1.9599639845400545, 4e-15);
   CHECK_CLOSE(base::normal_quantile(1e-300), 37.047096299361201, 1e-13);
   CHECK_CLOSE(base::chi_square_quantile(0.05, 3.0), 7.814727903251178, 1e-14);
+  CHECK_CLOSE(base::chi_square_quantile(0.1875, 0.1), 0.018538742158788785, 1e-12);
   CHECK_CLOSE(base::covering_half_width(0.95, 0.0), 1.9599639845400545, 4e-15);
 }
 

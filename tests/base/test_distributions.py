@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy import optimize, special
 
@@ -39,6 +39,8 @@ def test_student_is_scipy_s(probability: float, freedom: float) -> None:
     there = float(special.stdtrit(freedom, probability))
     if not math.isfinite(there) or abs(found) > 1e150 or abs(probability - 0.5) < 1e-2:
         return  # where SciPy overflows, or loses digits: held by the next test
+    if min(probability, 1.0 - probability) < 1e-100:
+        return  # of 2 to 6 degrees of freedom SciPy 1.17 is off by a factor: held by the next test
     assert found == pytest.approx(there, rel=1e-11)
 
 
@@ -75,6 +77,7 @@ def test_student_without_end_is_normal() -> None:
 
 @settings(max_examples=500, deadline=None, derandomize=True)
 @given(probabilities, st.floats(-1.0, 5.0).map(lambda exponent: 10.0**exponent))
+@example(0.1875, 0.1)
 def test_chi_square_is_scipy_s(tail: float, freedom: float) -> None:
     found = _core.chi_square_quantile(tail, freedom)
     if tail <= 0.5:

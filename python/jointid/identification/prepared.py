@@ -28,7 +28,7 @@ from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
 from jointid.identification.inference.own_noise import measured_once_more
 from jointid.identification.inference.residual_side import of_residual_side
-from jointid.identification.inference.window_choice import other_windows
+from jointid.identification.inference.systematic import other_windows
 from jointid.identification.refinements.refinements import (
     Refinements,
     without_creep,
