@@ -66,6 +66,7 @@ def inspected(recording: Any = RUN, counts: Any = None, **found: Any) -> SimpleN
     }
     return SimpleNamespace(
         recording=recording,
+        threads=0,
         channels=tuple(known),
         counts=known.__getitem__,
         stale_share=lambda name: known[name].stale / known[name].moving if name in known else 0.0,
