@@ -14,9 +14,7 @@ namespace jointid::simulate {
 namespace {
 
 using Wide = base::Lanes<kSideBySide / 2>;
-#ifdef JOINTID_ONE_WIDTH
-using Narrow = Wide;
-#else
+#ifndef JOINTID_ONE_WIDTH
 using Narrow = base::Lanes<kSideBySide / 4>;  ///< no lane is idle where half as many run
 #endif
 constexpr double kOutOfBounds = 1e12;  // radians: no motion, a loop that diverges
@@ -165,8 +163,10 @@ void run_group(const Scenario& scenario, const Wanted& reference, std::span<cons
                std::span<Outcome> outcomes, Kept kept, const base::Cancel& cancel) {
   if (setups.size() == 1) {
     run<double>(scenario, reference, setups, outcomes, kept, cancel);
+#ifndef JOINTID_ONE_WIDTH
   } else if (setups.size() <= Narrow::width) {
     run<Narrow>(scenario, reference, setups, outcomes, kept, cancel);
+#endif
   } else {
     run<Wide>(scenario, reference, setups, outcomes, kept, cancel);
   }
