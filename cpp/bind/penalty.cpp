@@ -315,6 +315,32 @@ void bind_penalty(py::module_& m) {
           py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
           py::arg("threads") = 0, "The minimum within bounds near a start.");
   m.def(
+      "begin_search",
+      [](const Recordings& recordings, const std::vector<std::string>& terms,
+         const WindowOptions& windows, Residual residual, bool mask_standstill, double gear_ratio,
+         const std::vector<std::string>& per_recording, const std::vector<Eigen::Index>& free,
+         Eigen::VectorXd lower, Eigen::VectorXd upper, int threads) {
+        const std::int64_t samples = samples_of(recordings);
+        if (!Beside::has_room(samples, threads)) return std::optional<Beside>{};
+        const search::Domain domain{std::move(lower), std::move(upper)};
+        const auto make = [=](base::Pool*) {
+          auto penalty =
+              std::make_unique<Penalty>(all_masked(recordings, mask_standstill, nullptr), terms,
+                                        windows, residual, gear_ratio, per_recording);
+          if (residual == Residual::instruments) penalty->project_reading(free);
+          return penalty;
+        };
+        return std::make_optional<Beside>(samples, threads, make, [=](const Penalty& penalty) {
+          base::Pool alone(1);
+          return CompressedPenalty(penalty, domain, alone);
+        });
+      },
+      py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
+      py::arg("residual"), py::arg("mask_standstill"), py::arg("gear_ratio"),
+      py::arg("per_recording"), py::arg("free"), py::arg("lower"), py::arg("upper"),
+      py::arg("threads") = 0,
+      "Begin to make a penalty whose reading is projected, and its compressed form.");
+  m.def(
       "ripple",
       [](const Recordings& recordings, const std::vector<std::string>& terms,
          const WindowOptions& windows, Residual residual, bool mask_standstill, double gear_ratio,

@@ -68,7 +68,9 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
 void bind_recording(py::module_& m) {
   py::class_<Beside>(m, "Beside", "Work that was begun, while the interpreter goes on.")
       .def("result", &Beside::result,
-           "Wait for its end, and return what it found, or raise what it met.");
+           "Wait for its end, and return what it found, or raise what it met.")
+      .def("further", &Beside::further,
+           "The same of what it found when it went on; None if it did not.");
   enumeration<Hold>(m, "Hold", "The torque signal between samples.",
                     {{"zero_order", Hold::zero_order}, {"linear", Hold::linear}});
   using Array = SharedRecording::Array;

@@ -73,6 +73,7 @@ __all__: list[str] = [
     "Trajectory",
     "TrialResult",
     "WindowOptions",
+    "begin_search",
     "chi_square_quantile",
     "circle",
     "clustered",
@@ -187,6 +188,7 @@ class Model:
     def terms(self) -> list[str]: ...
 
 class Beside:
+    def further(self) -> typing.Any: ...
     def result(self) -> typing.Any: ...
 
 class Hold(enum.Enum):
@@ -2604,6 +2606,20 @@ class Excitation:
     @property
     def joints(self) -> list[DrawnJoint]: ...
 
+def begin_search(
+    *,
+    recordings: collections.abc.Sequence[Recording],
+    terms: collections.abc.Sequence[str],
+    windows: WindowOptions,
+    residual: Residual,
+    mask_standstill: bool,
+    gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+    per_recording: collections.abc.Sequence[str],
+    free: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> Beside | None: ...
 def chi_square_quantile(
     tail: typing.SupportsFloat | typing.SupportsIndex,
     freedom: typing.SupportsFloat | typing.SupportsIndex,

@@ -119,7 +119,7 @@ def test_several_recordings_are_looked_at_one_after_the_other(
         work = SimpleNamespace(result=lambda: fetched.append(len(begun)))
         return SimpleNamespace(work=work)
 
-    monkeypatch.setattr("jointid.identification.prepared.inspect", counted)
+    monkeypatch.setattr("jointid.identification.warnings.inspection.inspect", counted)
     single = prepare(well_excited, jid.thesis_joint())
     single.inspected()
     assert (len(begun), fetched) == (1, [])

@@ -64,8 +64,9 @@ def with_instruments(
                 remedy=Action("call", {"residual": "sensor"}),
             )
     if stated or not reason:
-        free = [index for index, each in enumerate(known) if each.vary]
-        penalty.project_reading(free, threads=problem.threads)
+        if penalty.first_stage is None:
+            free = [index for index, each in enumerate(known) if each.vary]
+            penalty.project_reading(free, threads=problem.threads)
         stage = penalty.first_stage
         reason = WEAK_READING if stage is not None and stage.weak else ""
     if stated or not reason:

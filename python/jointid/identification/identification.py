@@ -166,10 +166,11 @@ def identified(
             threads=search.threads,
             choose=True,
             unfit=unfit,
+            ahead=search.method != "separable",
             **options,
         )
         inspected = prepared.inspected()
-        outcome = run_search(search, prepared.penalty, prepared.domain)
+        outcome = run_search(search, prepared.penalty, prepared.domain, prepared.ahead)
         estimate = prepared.estimate(search, outcome, started, attribute, inspected)
         reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
         if not reason or fitted in unfit:

@@ -39,13 +39,13 @@ from jointid.identification.refinements.sensor_instant import (
     without_early_reading,
 )
 from jointid.identification.refinements.slow_motion import checked_speed
+from jointid.identification.search.ahead import Ahead
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
-from jointid.identification.search.own_duplicates import refuse_duplicates
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
 from jointid.identification.search.stated_bounds import known_parameters
-from jointid.identification.warnings.inspection import Inspected, inspect
+from jointid.identification.warnings.inspection import Inspected, inspect_each
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
@@ -80,6 +80,10 @@ class Prepared:
         What was done to the data, and why.
     selection : Selection or None
         How the model was chosen; None if it was named.
+    ahead : Ahead or None
+        What was begun of the penalty's compressed form.
+    looked : tuple of Inspected
+        Of each recording, where the look at its signals was begun; else empty.
     """
 
     problem: Problem
@@ -89,15 +93,12 @@ class Prepared:
     given: tuple[Recording, ...]
     refinements: Refinements
     selection: Selection | None = None
+    ahead: Ahead | None = None
+    looked: tuple[Inspected, ...] = ()
 
     def inspected(self) -> tuple[Inspected, ...]:
-        """Begin to inspect the signals: of a single recording, which is short, beside what follows."""
-        begun = []
-        for run in self.problem.recordings:
-            begun.append(inspect(run, self.problem.threads))
-            if len(self.problem.recordings) > 1:  # not as many threads as recordings
-                begun[-1].work.result()
-        return tuple(begun)
+        """Begin to inspect the signals, unless that was begun before."""
+        return self.looked or inspect_each(self.problem.recordings, self.problem.threads)
 
     def estimate(
         self,
@@ -274,6 +275,7 @@ def prepare(
     on_time: bool = False,
     measure: bool = True,
     instant: bool = True,
+    ahead: bool = False,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
 
@@ -291,6 +293,9 @@ def prepare(
         Whether delays beside those of `shift` are looked for. Default True.
     instant : bool
         Whether it is measured when the sensor is sampled, against the steps of a held torque. Default True.
+    ahead : bool
+        Whether penalty, compressed penalty and the look at the signals are begun beside, where they can be.
+        Default False.
 
     Raises
     ------
@@ -325,7 +330,8 @@ def prepare(
         threads=whole_number("threads", threads, 0, 1024),
     )
     speed = checked_speed(min_speed)
-    selection = None
+    selection, begun = None, None
+    looked: tuple[Inspected, ...] = ()
     try:
         if choose and not merged.named:
             problem, delays, selection = chosen_without_delays(
@@ -334,20 +340,28 @@ def prepare(
         elif on_time:
             delays = {}
         else:
+            if ahead and not (shift or speed):
+                begun = Ahead.begin(problem, windows, parameters)
             problem, delays = without_delays(problem, shift, measure=measure)
-        problem, penalty, slow_motion = without_creep(problem, windows, speed)
+        cut = Problem.penalty if begun is None else begun.penalty
+        problem, penalty, slow_motion = without_creep(problem, windows, speed, cut)
         sensor_instant = None
         if instant:
             problem, penalty, sensor_instant = without_early_reading(problem, penalty, windows)
-        known = known_parameters(tuple(penalty.names), problem.joint, parameters)
+        if begun is not None:
+            looked = inspect_each(problem.recordings, problem.threads)
+        names = tuple(penalty.names)
+        if begun is not None and begun.names == names:
+            known = begun.known
+        else:
+            known = known_parameters(names, problem.joint, parameters)
         problem, penalty = with_instruments(problem, penalty, known, windows, residual is not None)
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed, known)
-        refuse_duplicates(
-            penalty,
-            domain,
-            problem.choice.model.resolved.terms,
-            functools.partial(measured_once_more, problem),
-        )
+        own = problem.choice.model.resolved.terms
+        if own.each:
+            from jointid.identification.search.own_duplicates import refuse_duplicates
+
+            refuse_duplicates(penalty, domain, own, functools.partial(measured_once_more, problem))
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)
@@ -362,6 +376,8 @@ def prepare(
             delays=delays, slow_motion=slow_motion, sensor_instant=sensor_instant
         ),
         selection=selection,
+        ahead=begun,
+        looked=looked,
     )
 
 

@@ -24,7 +24,7 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts, _core.Beside)
+Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts, _core.Beside, _core.Beside | None)
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
@@ -104,6 +104,27 @@ class Problem:
         own = self.choice.residual
         begun = functools.partial(_core.ripple, theta=theta, halves=halves)
         return self._cut(begun, period, "torque" if own == "instruments" else own)
+
+    def begin_search(
+        self, windows: Windows, free: list[int], lower: Array, upper: Array
+    ) -> _core.Beside | None:
+        """Begin to make the penalty, to project its reading, and to compress it; None where that would not be beside.
+
+        Parameters
+        ----------
+        windows : int, float, str, WindowOptions or None
+        free : list of int
+            Parameters that vary.
+        lower, upper : ndarray, shape (p,)
+            Of which those of the shapes are used.
+
+        Raises
+        ------
+        InputError
+            Input that cannot be used; the result may raise it, too.
+        """
+        begun = functools.partial(_core.begin_search, free=free, lower=lower, upper=upper)
+        return self._cut(begun, windows)
 
     def _cut(
         self, made: Callable[..., Made], windows: Windows, residual: str | None = None

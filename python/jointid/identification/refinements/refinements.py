@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from jointid import _core
@@ -59,7 +59,10 @@ def without_delays(
 
 
 def without_creep(
-    problem: Problem, windows: Windows, min_speed: float | None
+    problem: Problem,
+    windows: Windows,
+    min_speed: float | None,
+    cut: Callable[[Problem, Windows], _core.Penalty] = Problem.penalty,
 ) -> tuple[Problem, _core.Penalty, SlowMotion | None]:
     """Return the problem without slow motion that contradicts, its penalty, and that slow motion.
 
@@ -75,7 +78,7 @@ def without_creep(
     """
     if min_speed:
         problem = _faster(problem, windows, min_speed)
-    penalty = problem.penalty(windows)
+    penalty = cut(problem, windows)
     if min_speed is not None:
         return problem, penalty, None
     slow = contradicting(problem, penalty)

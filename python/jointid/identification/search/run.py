@@ -14,6 +14,7 @@ from jointid import _core
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.estimate.statistics import Convergence
+from jointid.identification.search.ahead import Ahead
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.engine import Engine, Outcome
 from jointid.identification.search.search import Search
@@ -21,8 +22,18 @@ from jointid.identification.search.search import Search
 Array = NDArray[np.float64]
 
 
-def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> Outcome:
+def run_search(
+    search: Search, penalty: _core.Penalty, domain: SearchDomain, ahead: Ahead | None = None
+) -> Outcome:
     """Search for the minimum of a penalty in a domain.
+
+    Parameters
+    ----------
+    search : Search
+    penalty : Penalty
+    domain : SearchDomain
+    ahead : Ahead, optional
+        What was begun of the penalty's compressed form. Default: nothing.
 
     Raises
     ------
@@ -31,7 +42,7 @@ def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> 
     KeyboardInterrupt
         Ctrl-C.
     """
-    made = functools.partial(Engine.of, penalty, domain, search.threads)
+    made = functools.partial(Engine.of, penalty, domain, search.threads, ahead)
     if search.method == "separable":
         return separable(search, penalty, domain, made)
     engine = made()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -77,6 +79,16 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         threads=threads,
     )
     return Inspected(recording=recording, work=work, channels=tuple(signals), threads=threads)
+
+
+def inspect_each(recordings: Sequence[Recording], threads: int) -> tuple[Inspected, ...]:
+    """Begin to inspect recordings: a single one, which is short, beside what follows."""
+    begun = []
+    for run in recordings:
+        begun.append(inspect(run, threads))
+        if len(recordings) > 1:  # not as many threads as recordings
+            begun[-1].work.result()
+    return tuple(begun)
 
 
 def spike_of(recording: Recording, sensor: Array, threads: int) -> _core.Spike:
