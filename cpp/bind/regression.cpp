@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bind/recording.hpp"
-#include "identify/solve/clustered.hpp"
+#include "identify/solve/covariance.hpp"
 #include "identify/solve/folds.hpp"
 #include "identify/solve/motion_cuts.hpp"
 #include "search/least_squares.hpp"
@@ -60,37 +62,33 @@ void bind_regression(py::module_& m) {
       py::arg("triangle"), py::arg("columns"), py::arg("target"),
       "Coefficients of columns for another one, and the norm of what they leave; None unless they "
       "are clearly independent.");
-  using identify::Clustered;
-  py::class_<Clustered>(m, "Clustered", "The sandwich of one clustering of windows.")
-      .def_readonly("segments", &Clustered::segments)
-      .def_readonly("covariance", &Clustered::covariance)
-      .def_readonly("freedom", &Clustered::freedom, "Behind each parameter's variance.")
-      .def_readonly("size", &Clustered::size, "Of all corrected scores, squared.")
-      .def_readonly("pooled_freedom", &Clustered::pooled_freedom);
+  using identify::Cuts;
   m.def(
-      "clustered",
-      [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
-         const std::vector<std::vector<std::int64_t>>& cuts) {
+      "covariance",
+      [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::MatrixXd& triangle,
+         const Cuts& cuts, std::optional<std::tuple<Eigen::Index, Eigen::Index, double>> centre) {
         const auto unfit = [&](const std::vector<std::int64_t>& each) {
           return each.size() < 2 || !std::is_sorted(each.begin(), each.end()) || each.front() < 0 ||
                  each.back() > jacobian.rows();
         };
-        if (std::any_of(cuts.begin(), cuts.end(), unfit) || residual.size() != jacobian.rows() ||
-            whitening.cols() != jacobian.cols()) {
-          throw std::invalid_argument("cuts, residual and whitening must fit the Jacobian");
+        const auto outside = [&](Eigen::Index column) {
+          return column < 0 || column >= triangle.cols();
+        };
+        std::optional<identify::Centre> about;
+        if (centre) about = std::make_from_tuple<identify::Centre>(*centre);
+        if (std::any_of(cuts.begin(), cuts.end(), unfit) || cuts.empty() ||
+            residual.size() != jacobian.rows() || triangle.cols() != jacobian.cols() ||
+            triangle.size() == 0 || (about && (outside(about->gain) || outside(about->offset)))) {
+          throw std::invalid_argument("residual, triangle, cuts and centre must fit the Jacobian");
         }
-        const py::gil_scoped_release nogil;
-        const Eigen::MatrixXd rows = identify::whitened_rows(jacobian, whitening);
-        std::vector<Clustered> found;
-        for (const auto& each : cuts) {
-          found.push_back(identify::cluster(rows, residual, whitening, each));
-        }
-        return std::make_pair(std::move(found),
-                              identify::variances_of_rows(rows, residual, whitening));
+        auto found = identify::covariance_of(jacobian, residual, triangle, cuts, about);
+        return std::make_tuple(std::move(found.matrix), std::move(found.information),
+                               std::move(found.stderr_), std::move(found.freedom), found.white,
+                               std::move(found.correlation), found.condition,
+                               std::move(found.weakest));
       },
-      py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
-      "The sandwich of each clustering, segments from one cut to the next, and White's variances: "
-      "each row a cluster.");
+      py::arg("jacobian"), py::arg("residual"), py::arg("triangle"), py::arg("cuts"),
+      py::arg("centre"), "The fields of a `Covariance`, in their order.");
   using Series = Eigen::Ref<const Eigen::VectorXd>;
   m.def(
       "motion_cuts",

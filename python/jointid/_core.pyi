@@ -16,7 +16,6 @@ __all__: list[str] = [
     "BalanceColumn",
     "BalanceNoise",
     "Beside",
-    "Clustered",
     "CompensatedPid",
     "CompressedPenalty",
     "Control",
@@ -76,7 +75,7 @@ __all__: list[str] = [
     "begin_search",
     "chi_square_quantile",
     "circle",
-    "clustered",
+    "covariance",
     "covering_half_width",
     "even_grid",
     "find_control_character",
@@ -1093,18 +1092,6 @@ class Inspection:
     def swing(self) -> float: ...
     @property
     def timing_errors(self) -> tuple[float, float]: ...
-
-class Clustered:
-    @property
-    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
-    @property
-    def freedom(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
-    @property
-    def pooled_freedom(self) -> float: ...
-    @property
-    def segments(self) -> int: ...
-    @property
-    def size(self) -> float: ...
 
 class Folds:
     def __init__(
@@ -2630,14 +2617,29 @@ def circle(
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
 ]: ...
-def clustered(
+def covariance(
     jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    triangle: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     cuts: collections.abc.Sequence[
         collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
     ],
-) -> tuple[list[Clustered], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]: ...
+    centre: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+    ]
+    | None,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    bool,
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    float,
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+]: ...
 def covering_half_width(
     probability: typing.SupportsFloat | typing.SupportsIndex,
     offset: typing.SupportsFloat | typing.SupportsIndex,

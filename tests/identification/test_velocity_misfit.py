@@ -8,7 +8,7 @@ from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
 from jointid.estimate.causes import Cause
-from jointid.identification.inference.clustered import stretch_of
+from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.segments import even_segments
 from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
 from jointid.identification.inference.velocity_noise import measured_again
@@ -62,10 +62,10 @@ def test_opposed_neighbours_do_not_widen_the_errors() -> None:
     residual = np.diff(edge)  # what one window has, the next one lacks
     jacobian = np.column_stack([np.ones(rows), np.sin(np.arange(rows) / 200.0)])
     square = np.linalg.inv(jacobian.T @ jacobian)
-    root = np.linalg.cholesky(square).T
-    found = stretch_of(jacobian, residual, root, even_segments(rows))
+    found = parameter_covariance(jacobian, residual, None, segments=even_segments(rows))
     assert not found.white
-    assert np.sqrt(found.ratio).max() < 0.6
+    classical = np.sqrt(np.diag(square) * (residual @ residual) / (rows - 2))
+    assert (found.stderr / classical).max() < 0.6
 
 
 def test_what_the_noise_imitates_is_not_named(coarse: tuple[jid.Recording, jid.Recording]) -> None:

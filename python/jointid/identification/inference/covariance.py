@@ -5,15 +5,10 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.inference.clustered import stretch_of
 from jointid.identification.inference.segments import Segments, even_segments
-from jointid.problem.inner_products import column_sizes, inner
 from jointid.problem.least_squares import solve
 
 Array = NDArray[np.float64]
-
-_EXACT = 1e-40  # noise of a fit without residuals
-_SINGULAR = 1e-10  # smallest eigenvalue of correlations that are inverted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,9 +90,14 @@ def parameter_covariance(
 
     Notes
     -----
-    The residuals of an imperfect model drift slowly, and the classical variance is too small then:
-    `clustered` says by how much, and how parameters go together. Directions that the data do not determine
-    get an infinite variance.
+    The residuals of an imperfect model drift slowly, and the classical variance is too small then. Where no test
+    contradicts white residuals, the variance of each parameter is the larger of the classical one and that of clusters
+    of one window (White's, which allows for noise that depends on the motion); else it is the mean of two clusterings
+    over motion segments, each segment's scores corrected for the freedom that the fit took from them (CR2: Bell and
+    McCaffrey 2002; Pustejovsky and Tipton 2018). The quantile is that of Student's t with as many degrees of freedom as
+    the segments give a parameter (Satterthwaite), which is few where few segments determine it.
+    Directions that the data do not determine get an infinite variance. tests/identification/test_covariance.py tests
+    the coverage.
     """
     rows, count = jacobian.shape
     if count == 0:  # every parameter is fixed or ended on a bound
@@ -114,64 +114,17 @@ def parameter_covariance(
         )
     if triangle is None:
         triangle = Triangle(jacobian, threads).matrix
-    norms = column_sizes(triangle)
-    scale = np.where(norms > 0.0, norms, 1.0)
-    _, singular, directions = np.linalg.svd(triangle / scale, full_matrices=False)
-    known = singular > 1e-10 * singular[0]
-    inverse = np.where(known, 1.0 / np.where(known, singular, 1.0), 0.0)
-    pseudo = (directions.T * inverse**2) @ directions
-    freedom = max(1, rows - count)
-    classical = pseudo * inner(residual, residual) / freedom
-    whitening = (directions[known].T / singular[known]).T / scale
-    found = stretch_of(
-        jacobian, residual, whitening, even_segments(rows) if segments is None else segments
+    chosen = even_segments(rows) if segments is None else segments
+    matrix, information, stderr, own, white, correlation, condition, weakest = _core.covariance(
+        jacobian, residual, triangle, [cuts.tolist() for cuts in chosen.cuts], centre
     )
-    stretch = np.sqrt(found.ratio)
-    matrix = classical * np.outer(stretch, stretch) / np.outer(scale, scale)
-    if found.correlation is not None:
-        stderr = np.sqrt(np.diag(matrix))
-        matrix = found.correlation * np.outer(stderr, stderr)
-    unknown = (norms == 0.0) | (np.abs(directions[~known]).max(axis=0, initial=0.0) > 1e-3)
-    if rows <= count:  # no degree of freedom is left to estimate the noise
-        unknown[:] = True
-    of_all = scale / stretch / max(np.sqrt(inner(residual, residual) / freedom), _EXACT)
-    information = (directions.T * np.where(known, singular, 0.0) ** 2) @ directions
-    information *= np.outer(of_all, of_all)
-    if rows <= count:
-        information[:] = 0.0
-    elif found.correlation is not None and not unknown.any():
-        information = _inverse(matrix)
-    matrix[unknown, unknown] = np.inf
-
-    centred = triangle.copy()
-    if centre is not None:
-        gain, offset, mean = centre
-        centred[:, gain] -= mean * triangle[:, offset]
-    centred_norms = column_sizes(centred)
-    centred /= np.where(centred_norms > 0.0, centred_norms, 1.0)
-    _, values, vectors = np.linalg.svd(centred, full_matrices=False)
-    # A floor, so that two identical columns are fully correlated.
-    inverse = 1.0 / np.maximum(values, 1e-12 * values[0] + 1e-150)
-    spread = (vectors.T * inverse**2) @ vectors
-    deviation = np.sqrt(np.diag(spread))
-    correlation = np.clip(spread / np.outer(deviation, deviation), -1.0, 1.0)
-    np.fill_diagonal(correlation, 1.0)
     return Covariance(
         matrix=matrix,
         information=information,
-        stderr=np.sqrt(np.diag(matrix)),
-        freedom=found.freedom,
-        white=found.white,
+        stderr=stderr,
+        freedom=own,
+        white=white,
         correlation=correlation,
-        condition=float(values[0] / values[-1]) if values[-1] > 0.0 else float("inf"),
-        weakest=vectors[-1],
+        condition=condition,
+        weakest=weakest,
     )
-
-
-def _inverse(covariance: Array) -> Array:
-    """The inverse of a covariance, whatever the units."""
-    scale = np.sqrt(np.diag(covariance))
-    values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
-    # Of segments fewer than parameters the correlations are barely a matrix of correlations.
-    inverse: Array = (vectors / np.maximum(values, _SINGULAR)) @ vectors.T / np.outer(scale, scale)
-    return inverse

@@ -1,0 +1,66 @@
+#include "base/singular.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace jointid::base {
+
+namespace {
+
+constexpr double kOrthogonal = 2.2e-16;  // cosine that is left to two columns, of a single row
+constexpr int kSweeps = 60;              // a dozen do
+
+void turn(Eigen::MatrixXd& matrix, Eigen::Index one, Eigen::Index other, double cosine,
+          double sine) {
+  double* a = matrix.col(one).data();
+  double* b = matrix.col(other).data();
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    const double before = a[row];
+    a[row] = cosine * before - sine * b[row];
+    b[row] = sine * before + cosine * b[row];
+  }
+}
+
+}  // namespace
+
+Singular singular(Eigen::MatrixXd matrix) {
+  const Eigen::Index count = matrix.cols();
+  Eigen::MatrixXd turned = Eigen::MatrixXd::Identity(count, count);
+  const double least = kOrthogonal * std::sqrt(static_cast<double>(matrix.rows()));
+  bool any = true;
+  for (int sweep = 0; any && sweep < kSweeps; ++sweep) {
+    any = false;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = i + 1; j < count; ++j) {
+        const double product = matrix.col(i).dot(matrix.col(j));
+        const double first = matrix.col(i).squaredNorm();
+        const double second = matrix.col(j).squaredNorm();
+        if (!(std::fabs(product) > least * std::sqrt(first) * std::sqrt(second))) continue;
+        any = true;
+        const double half = (second - first) / (2.0 * product);
+        const double tangent =
+            std::copysign(1.0 / (std::fabs(half) + std::sqrt(1.0 + half * half)), half);
+        const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
+        turn(matrix, i, j, cosine, cosine * tangent);
+        turn(turned, i, j, cosine, cosine * tangent);
+      }
+    }
+  }
+  const Eigen::VectorXd sizes = matrix.colwise().norm();
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return sizes[a] > sizes[b]; });
+  Singular result{Eigen::VectorXd(count), Eigen::MatrixXd(count, count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index from = order[static_cast<std::size_t>(i)];
+    result.values[i] = sizes[from];
+    result.directions.col(i) = turned.col(from);
+  }
+  return result;
+}
+
+}  // namespace jointid::base
