@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 namespace jointid::base {
@@ -49,16 +47,14 @@ Singular singular(Eigen::MatrixXd matrix) {
       }
     }
   }
-  const Eigen::VectorXd sizes = matrix.colwise().norm();
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return sizes[a] > sizes[b]; });
   Singular result{Eigen::VectorXd(count), Eigen::MatrixXd(count, count)};
+  std::vector<double> sizes;
+  for (Eigen::Index i = 0; i < count; ++i) sizes.push_back(matrix.col(i).norm());
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index from = order[static_cast<std::size_t>(i)];
-    result.values[i] = sizes[from];
-    result.directions.col(i) = turned.col(from);
+    const auto largest = std::max_element(sizes.begin(), sizes.end());
+    result.values[i] = *largest;
+    result.directions.col(i) = turned.col(largest - sizes.begin());
+    *largest = -1.0;  // taken
   }
   return result;
 }

@@ -16,6 +16,13 @@
 #include "bind/enumeration.hpp"
 #include "bind/value.hpp"
 
+// What private functions are for: in wheels, whose size is limited, the source alone says it.
+#ifdef JOINTID_SMALL
+#define JOINTID_TEXT(text) ""
+#else
+#define JOINTID_TEXT(text) text
+#endif
+
 namespace jointid::bind {
 
 namespace py = pybind11;

@@ -55,7 +55,10 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
   if (known != nullptr) return known;
   const auto find = [&](const base::Cancel* cancel) {
     known = std::make_shared<const MaskedRecording>(
-        view_, identify::usable_intervals(view_, mask_standstill, cancel), cancel);
+        view_, identify::usable_intervals(view_, mask_standstill, cancel));
+    if (cancel == nullptr) return;
+    known->period(cancel);  // whoever asks later cannot be interrupted
+    known->noise(cancel);
   };
   if (pool == nullptr) {
     find(nullptr);
@@ -66,16 +69,17 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
 }
 
 void bind_recording(py::module_& m) {
-  py::class_<Beside>(m, "Beside", "Work that was begun, while the interpreter goes on.")
+  py::class_<Beside>(m, "Beside",
+                     JOINTID_TEXT("Work that was begun, while the interpreter goes on."))
       .def("result", &Beside::result,
-           "Wait for its end, and return what it found, or raise what it met.")
+           JOINTID_TEXT("Wait for its end, and return what it found, or raise what it met."))
       .def("further", &Beside::further,
-           "The same of what it found when it went on; None if it did not.");
+           JOINTID_TEXT("The same of what it found when it went on; None if it did not."));
   enumeration<Hold>(m, "Hold", "The torque signal between samples.",
                     {{"zero_order", Hold::zero_order}, {"linear", Hold::linear}});
   using Array = SharedRecording::Array;
   py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
-      m, "Recording", "Signals of one run; arrays of floats are kept, not copied.")
+      m, "Recording", JOINTID_TEXT("Signals of one run; arrays of floats are kept, not copied."))
       .def(py::init([](Array time, Array position, Array velocity, Array torque,
                        std::optional<Array> sensor, Hold torque_hold,
                        std::vector<std::int64_t> gap_after, double min_speed,
@@ -92,7 +96,7 @@ void bind_recording(py::module_& m) {
            py::arg("torque"), py::arg("sensor"), py::arg("torque_hold"), py::arg("gap_after"),
            py::arg("min_speed") = 0.0, py::arg("doubtful") = std::vector<std::int64_t>{},
            py::arg("own") = std::vector<std::pair<std::string, Array>>{},
-           "own: key of an own term and its integral from the first sample to each.")
+           JOINTID_TEXT("own: key of an own term and its integral from the first sample to each."))
       .def_property_readonly("samples", &SharedRecording::samples);
   m.def(
       "usable_intervals",
@@ -107,7 +111,8 @@ void bind_recording(py::module_& m) {
         return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(flags.size()), flags.data());
       },
       py::arg("recording"), py::arg("mask_standstill") = true,
-      "One flag per sample interval: 1 where the joint moves and the recording has no gap.");
+      JOINTID_TEXT(
+          "One flag per sample interval: 1 where the joint moves and the recording has no gap."));
   value(
       m, "WindowOptions",
       "How to cut a recording into windows: a number, a duration, or neither (chosen from the "

@@ -80,7 +80,8 @@ ShiftRows rows_of(const Windows& windows, const std::vector<Array>& signals,
 
 void bind_shifts(py::module_& m) {
   using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
-  py::class_<WindowsOfArrays>(m, "SmoothWindows", "Smooth windows over a stretch without a gap.")
+  py::class_<WindowsOfArrays>(m, "SmoothWindows",
+                              JOINTID_TEXT("Smooth windows over a stretch without a gap."))
       .def(py::init([](Array time, Array position, Array velocity, Flags usable, bool derived,
                        std::int64_t half, std::int64_t margin, std::int64_t clear,
                        bool usable_only) {
@@ -96,13 +97,13 @@ void bind_shifts(py::module_& m) {
             const auto& used = of.windows.used;
             return py::array_t<std::int64_t>(static_cast<py::ssize_t>(used.size()), used.data());
           },
-          "Middle samples of the windows that are used.")
+          JOINTID_TEXT("Middle samples of the windows that are used."))
       .def(
           "rates",
           [](const WindowsOfArrays& of, const Array& values) {
             return signals::mean_rates(of.own(values), of.windows);
           },
-          py::arg("signal"), "Mean rate of a signal in each window.")
+          py::arg("signal"), JOINTID_TEXT("Mean rate of a signal in each window."))
       .def(
           "columns",
           [](const WindowsOfArrays& of, const Array& cosine, const Array& sine, bool varying,
@@ -119,14 +120,18 @@ void bind_shifts(py::module_& m) {
           py::arg("cosine"), py::arg("sine"), py::kw_only(), py::arg("varying"),
           py::arg("friction"), py::arg("own") = std::vector<Array>{},
           py::arg("own_friction") = std::vector<Array>{}, py::arg("jumping") = py::none(),
-          py::arg("answer") = 0.0, "What a torque or a reading may be a sum of; a row a window.");
-  py::class_<signals::FittedShift>(m, "FittedShift", "A shift, with its standard error [s].")
+          py::arg("answer") = 0.0,
+          JOINTID_TEXT("What a torque or a reading may be a sum of; a row a window."));
+  py::class_<signals::FittedShift>(m, "FittedShift",
+                                   JOINTID_TEXT("A shift, with its standard error [s]."))
       .def_readonly("whole", &signals::FittedShift::whole)
       .def_readonly("conservative", &signals::FittedShift::conservative)
       .def_readonly("friction", &signals::FittedShift::friction)
       .def_readonly("unexplained", &signals::FittedShift::unexplained)
-      .def_readonly("leading", &signals::FittedShift::leading,
-                    "The first column's coefficient without a shift; None where one was searched.");
+      .def_readonly(
+          "leading", &signals::FittedShift::leading,
+          JOINTID_TEXT(
+              "The first column's coefficient without a shift; None where one was searched."));
   m.def(
       "fit_shift",
       [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
@@ -137,7 +142,7 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(),
       py::arg("conservative"), py::arg("held"), py::arg("reach"), py::arg("robust"),
-      py::arg("least"), "The shift that a balance asks for, or None.");
+      py::arg("least"), JOINTID_TEXT("The shift that a balance asks for, or None."));
   m.def(
       "leading_coefficient",
       [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
@@ -147,7 +152,8 @@ void bind_shifts(py::module_& m) {
         return signals::leading_coefficient(rows);
       },
       py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(), py::arg("held"),
-      "Of the first column, in least squares of the signals, not shifted, on the columns.");
+      JOINTID_TEXT(
+          "Of the first column, in least squares of the signals, not shifted, on the columns."));
   m.def(
       "even_grid",
       [](const Array& time) {
@@ -155,7 +161,8 @@ void bind_shifts(py::module_& m) {
         auto found = signals::even_grid(signal(time));
         return std::make_pair(std::move(found.time), found.apart);
       },
-      py::arg("time"), "Even times from the first to the last, and how far off the times are [s].");
+      py::arg("time"),
+      JOINTID_TEXT("Even times from the first to the last, and how far off the times are [s]."));
   m.def(
       "half_length",
       [](const Array& values, double period, bool position) {
@@ -163,7 +170,7 @@ void bind_shifts(py::module_& m) {
         return signals::half_length(signal(values), period, position);
       },
       py::arg("signal"), py::arg("period"), py::kw_only(), py::arg("position"),
-      "Half the length of a window that averages the acceleration's noise.");
+      JOINTID_TEXT("Half the length of a window that averages the acceleration's noise."));
   m.def(
       "window_integrals",
       [](const Array& values, const Array& weights, const Indices& windows, bool rise) {
@@ -180,22 +187,25 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("values"), py::arg("weights"), py::arg("windows"), py::kw_only(),
       py::arg("rise") = false,
-      "Integrals over windows, one row a window, or how far the values rise there.");
+      JOINTID_TEXT("Integrals over windows, one row a window, or how far the values rise there."));
   m.def(
       "circle",
       [](const Array& angle) {
         auto found = signals::circle_of(signal(angle));
         return std::make_pair(std::move(found.cosine), std::move(found.sine));
       },
-      py::arg("angle"), "Cosine and sine.");
+      py::arg("angle"), JOINTID_TEXT("Cosine and sine."));
   m.def(
       "roughness", [](const Array& values) { return signals::roughness(signal(values)); },
-      py::arg("signal"), "Standard deviation of a signal's third differences.");
-  py::class_<signals::RepeatedNoise>(m, "RepeatedNoise", "Noise of a reading in the torque.")
+      py::arg("signal"), JOINTID_TEXT("Standard deviation of a signal's third differences."));
+  py::class_<signals::RepeatedNoise>(m, "RepeatedNoise",
+                                     JOINTID_TEXT("Noise of a reading in the torque."))
       .def_readonly("earlier", &signals::RepeatedNoise::earlier,
-                    "By how many samples the torque has it earlier.")
-      .def_readonly("error", &signals::RepeatedNoise::error, "Standard error, in samples.")
-      .def_readonly("share", &signals::RepeatedNoise::share, "Correlation of both noises.");
+                    JOINTID_TEXT("By how many samples the torque has it earlier."))
+      .def_readonly("error", &signals::RepeatedNoise::error,
+                    JOINTID_TEXT("Standard error, in samples."))
+      .def_readonly("share", &signals::RepeatedNoise::share,
+                    JOINTID_TEXT("Correlation of both noises."));
   m.def(
       "repeated_noise",
       [](const std::vector<std::pair<Array, Array>>& pairs) {
@@ -210,7 +220,8 @@ void bind_shifts(py::module_& m) {
         return signals::repeated_noise(both);
       },
       py::arg("pairs"),
-      "The noise of readings that the torque repeats, of pairs of both; None where it does not.");
+      JOINTID_TEXT("The noise of readings that the torque repeats, of pairs of both; None where it "
+                   "does not."));
 }
 
 }  // namespace jointid::bind

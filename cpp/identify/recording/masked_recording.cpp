@@ -43,8 +43,7 @@ JOINTID_CLONES void decays_at(const double* velocity, std::size_t samples, const
 
 }  // namespace
 
-MaskedRecording::MaskedRecording(const RecordingView& recording, UsableIntervals usable,
-                                 const base::Cancel* cancel)
+MaskedRecording::MaskedRecording(const RecordingView& recording, UsableIntervals usable)
     : recording_(recording), mask_(std::move(usable)) {
   const auto intervals = static_cast<Eigen::Index>(mask_.usable.size());
   for (Eigen::Index k = 0; k < intervals;) {
@@ -59,8 +58,13 @@ MaskedRecording::MaskedRecording(const RecordingView& recording, UsableIntervals
     usable_count_ += length;
     k += length;
   }
+}
+
+double MaskedRecording::period(const base::Cancel* cancel) const {
+  const std::lock_guard lock(mutex_);
+  if (period_ > 0.0) return period_;
   const auto& time = recording_.time;
-  const auto count = static_cast<std::size_t>(intervals);
+  const auto count = mask_.usable.size();
   period_ = base::quantile(
       count, count, 0.5,
       [&](std::size_t k, double& step) {
@@ -69,11 +73,17 @@ MaskedRecording::MaskedRecording(const RecordingView& recording, UsableIntervals
         return true;
       },
       cancel);
+  return period_;
+}
+
+double MaskedRecording::noise(const base::Cancel* cancel) const {
+  double noise = 0.0;
   for (const Eigen::Index lag : {1, 2}) {
     const double once = structure(lag, cancel);
     const double twice = structure(2 * lag, cancel);
-    noise_ = std::max(noise_, (4.0 * once - twice) / 3.0);
+    noise = std::max(noise, (4.0 * once - twice) / 3.0);
   }
+  return noise;
 }
 
 double MaskedRecording::structure(Eigen::Index lag, const base::Cancel* cancel) const {

@@ -28,8 +28,7 @@ struct SampleDecays {
 class MaskedRecording {
  public:
   /// The owner of the signals must outlive this.
-  MaskedRecording(const RecordingView& recording, UsableIntervals usable,
-                  const base::Cancel* cancel = nullptr);
+  MaskedRecording(const RecordingView& recording, UsableIntervals usable);
   MaskedRecording(const MaskedRecording&) = delete;
   MaskedRecording& operator=(const MaskedRecording&) = delete;
 
@@ -41,10 +40,10 @@ class MaskedRecording {
     return static_cast<std::int64_t>(mask_.usable.size()) - usable_count_;
   }
   [[nodiscard]] std::int64_t standing() const { return mask_.standing; }
-  /// Median time between samples [s].
-  [[nodiscard]] double period() const { return period_; }
+  /// Median time between samples [s]. Remembered.
+  double period(const base::Cancel* cancel = nullptr) const;
   /// Mean square of the velocity's noise in a difference of two samples.
-  [[nodiscard]] double noise() const { return noise_; }
+  double noise(const base::Cancel* cancel = nullptr) const;
   /// Structure function D(lag) = mean (v[k+lag] - v[k])^2 over what is usable throughout; 0 if
   /// nothing is. Remembered.
   [[nodiscard]] double structure(Eigen::Index lag, const base::Cancel* cancel = nullptr) const;
@@ -62,9 +61,8 @@ class MaskedRecording {
   UsableIntervals mask_;
   std::int64_t usable_count_ = 0;
   std::vector<Run> runs_;
-  double period_ = 0.0;
-  double noise_ = 0.0;
   mutable std::mutex mutex_;
+  mutable double period_ = 0.0;
   mutable std::map<Eigen::Index, double> structure_;
   mutable std::shared_ptr<const SampleDecays> decays_;
 };

@@ -31,15 +31,51 @@ constexpr double kSingular = 1e-10;  // least eigenvalue of correlations that ar
 // Of the largest singular value: two identical columns are fully correlated.
 constexpr double kFloor = 1e-12;
 
-/// The same with ones for what is not above zero.
-VectorXd or_one(const VectorXd& sizes) {
-  return (sizes.array() > 0.0).select(sizes, 1.0);
+// Plain loops over a few parameters: as expressions of Eigen's they were ten times the code.
+
+/// values[i] *= factor[i] factor[j]
+void scale(MatrixXd& values, const double* factor) {
+  for (Index j = 0; j < values.cols(); ++j) {
+    for (Index i = 0; i < values.rows(); ++i) values(i, j) *= factor[i] * factor[j];
+  }
 }
 
-/// Scaled to ones on the diagonal.
-MatrixXd correlations(const MatrixXd& matrix, const VectorXd& sizes) {
-  const VectorXd inverse = sizes.cwiseInverse();
-  return inverse.asDiagonal() * matrix * inverse.asDiagonal();
+/// The sum of weight[k] d_k d_k' over the first `count` columns.
+MatrixXd weighted_squares(const MatrixXd& columns, const double* weight, Index count) {
+  MatrixXd sum = MatrixXd::Zero(columns.rows(), columns.rows());
+  for (Index k = 0; k < count; ++k) {
+    for (Index j = 0; j < sum.cols(); ++j) {
+      const double with = weight[k] * columns(j, k);
+      for (Index i = 0; i < sum.rows(); ++i) sum(i, j) += with * columns(i, k);
+    }
+  }
+  return sum;
+}
+
+VectorXd norms_of(const MatrixXd& columns) {
+  VectorXd norms(columns.cols());
+  for (Index j = 0; j < norms.size(); ++j) norms[j] = columns.col(j).norm();
+  return norms;
+}
+
+/// The inverse of each; 1 of what is not above zero.
+VectorXd inverse_or_one(VectorXd sizes) {
+  for (double& size : sizes) size = size > 0.0 ? 1.0 / size : 1.0;
+  return sizes;
+}
+
+/// The roots of a diagonal, or their inverses (1 where one is zero).
+VectorXd errors_of(const MatrixXd& matrix, bool inverse) {
+  VectorXd errors(matrix.rows());
+  for (Index i = 0; i < errors.size(); ++i) errors[i] = std::sqrt(matrix(i, i));
+  return inverse ? inverse_or_one(std::move(errors)) : errors;
+}
+
+/// Ones on the diagonal, nothing beyond.
+void make_correlation(MatrixXd& matrix) {
+  scale(matrix, errors_of(matrix, true).data());
+  for (double& value : matrix.reshaped()) value = std::clamp(value, -1.0, 1.0);
+  for (Index i = 0; i < matrix.rows(); ++i) matrix(i, i) = 1.0;
 }
 
 /// Whether neighbouring windows, or windows of a segment, agree more than independent ones would,
@@ -47,147 +83,187 @@ MatrixXd correlations(const MatrixXd& matrix, const VectorXd& sizes) {
 /// a segment know it.
 bool contradicted(const VectorXd& residual, double pooled, double pooled_freedom) {
   const Index n = residual.size();
-  const double neighbours = residual.tail(n - 1).dot(residual.head(n - 1)) / residual.squaredNorm();
+  double neighbours = 0.0;
+  for (Index i = 1; i < n; ++i) neighbours += residual[i] * residual[i - 1];
+  neighbours /= residual.squaredNorm();
   const double freedom = std::max(pooled_freedom - 1.0, 1.0);
   const double limit = base::chi_square_quantile(kCertain, freedom) / freedom;
   return neighbours * std::sqrt(static_cast<double>(n)) > kCertainNormal ||
          neighbours < -kOpposed || pooled > limit;
 }
 
-/// Mean of two matrices of correlations; with one weight for all pairs it is one, too.
-MatrixXd mean_correlation(const MatrixXd& clustered, const MatrixXd& classical, double weight) {
-  const auto scaled = [](const MatrixXd& matrix) {
-    return correlations(matrix, or_one(matrix.diagonal().cwiseSqrt()));
-  };
-  MatrixXd found = weight * scaled(clustered) + (1.0 - weight) * scaled(classical);
-  found.diagonal().setOnes();
-  return found;
+/// The inverse of a covariance, whatever the units.
+MatrixXd inverse_of(MatrixXd covariance) {
+  const VectorXd units = errors_of(covariance, true);
+  scale(covariance, units.data());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(covariance);
+  VectorXd inverse = solver.eigenvalues();
+  // Of segments fewer than parameters the correlations are barely a matrix of correlations.
+  for (double& value : inverse) value = 1.0 / std::max(value, kSingular);
+  MatrixXd result = weighted_squares(solver.eigenvectors(), inverse.data(), inverse.size());
+  scale(result, units.data());
+  return result;
 }
 
-/// The inverse of a covariance, whatever the units.
-MatrixXd inverse_of(const MatrixXd& covariance) {
-  const VectorXd scale = covariance.diagonal().cwiseSqrt();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(correlations(covariance, scale));
-  // Of segments fewer than parameters the correlations are barely a matrix of correlations.
-  const VectorXd inverse = solver.eigenvalues().cwiseMax(kSingular).cwiseInverse();
-  const auto& vectors = solver.eigenvectors();
-  return correlations(vectors * inverse.asDiagonal() * vectors.transpose(), scale);
+MatrixXd scaled_columns(MatrixXd matrix, const VectorXd& factor) {
+  for (Index j = 0; j < matrix.cols(); ++j) matrix.col(j) *= factor[j];
+  return matrix;
 }
 
 /// Correlations, condition and the least determined direction, of columns after centring.
 void correlate(MatrixXd triangle, const std::optional<Centre>& centre, Covariance& result) {
   if (centre) {
-    const VectorXd offset = triangle.col(centre->offset);
-    triangle.col(centre->gain) -= centre->mean * offset;
+    for (Index i = 0; i < triangle.rows(); ++i) {
+      triangle(i, centre->gain) -= centre->mean * triangle(i, centre->offset);
+    }
   }
-  const VectorXd norms = or_one(triangle.colwise().norm().transpose());
+  const VectorXd factor = inverse_or_one(norms_of(triangle));
   const Index least = std::min(triangle.rows(), triangle.cols()) - 1;
-  const auto found = base::singular(triangle * norms.cwiseInverse().asDiagonal());
+  const auto found = base::singular(scaled_columns(std::move(triangle), factor));
   const double largest = found.values[0];
-  const VectorXd inverse =
-      found.values.cwiseMax(kFloor * largest + 1e-150).cwiseInverse().cwiseAbs2();
-  const MatrixXd spread = found.directions * inverse.asDiagonal() * found.directions.transpose();
-  result.correlation =
-      correlations(spread, spread.diagonal().cwiseSqrt()).cwiseMax(-1.0).cwiseMin(1.0);
-  result.correlation.diagonal().setOnes();
   const double smallest = found.values[least];
+  VectorXd inverse = found.values;
+  for (double& value : inverse) {
+    const double size = std::max(value, kFloor * largest + 1e-150);
+    value = 1.0 / (size * size);
+  }
+  result.correlation = weighted_squares(found.directions, inverse.data(), inverse.size());
+  make_correlation(result.correlation);
   result.condition = smallest > 0.0 ? largest / smallest : std::numeric_limits<double>::infinity();
   result.weakest = found.directions.col(least);
 }
 
-}  // namespace
+/// By how much variances are larger than those of white residuals of one size.
+struct Stretch {
+  VectorXd ratio;
+  VectorXd freedom;  ///< behind each variance
+  bool white = true;
+  /// Of the parameters, by segments; none where the classical ones hold. Where few segments
+  /// determine a parameter, the classical ones have as much weight as the freedom that it borrows.
+  std::optional<MatrixXd> correlation;
+};
 
+/// `whitening` takes the scores of the determined directions to unit variance: its own product,
+/// `unit`, is the covariance for residuals of unit variance.
 Stretch stretch_of(const Eigen::Ref<const MatrixXd>& jacobian, const VectorXd& residual,
-                   const MatrixXd& whitening, const Cuts& cuts) {
-  const Index directions = whitening.rows();
+                   const MatrixXd& whitening, const MatrixXd& unit, const Cuts& cuts) {
+  const Index parameters = whitening.cols();
+  const auto directions = static_cast<double>(whitening.rows());
   const auto count = static_cast<double>(residual.size());
-  const double freedom = std::max(1.0, count - static_cast<double>(directions));
+  const double freedom = std::max(1.0, count - directions);
   const double variance = residual.squaredNorm() / freedom;
-  const VectorXd unit = whitening.colwise().squaredNorm();
-  const VectorXd classical = or_one(unit * variance);
   Stretch result;
-  result.ratio.setOnes(unit.size());
-  result.freedom.setConstant(unit.size(), freedom);
-  if (directions == 0 || !(variance > 0.0)) return result;
+  result.ratio.setOnes(parameters);
+  result.freedom.setConstant(parameters, freedom);
+  if (whitening.rows() == 0 || !(variance > 0.0)) return result;
+  VectorXd inverse = unit.diagonal() * variance;
+  inverse = inverse_or_one(std::move(inverse));
   const MatrixXd rows = whitened_rows(jacobian, whitening);
   const auto ways = static_cast<double>(cuts.size());
   double size = 0.0;
   double pooled_freedom = 0.0;
-  MatrixXd covariance = MatrixXd::Zero(unit.size(), unit.size());
-  VectorXd own = VectorXd::Zero(unit.size());
+  MatrixXd covariance = MatrixXd::Zero(parameters, parameters);
+  VectorXd own = VectorXd::Zero(parameters);
   for (const auto& each : cuts) {
     const auto found = cluster(rows, residual, whitening, each);
     if (found.segments < 3) return result;
     size += found.size / ways;
     pooled_freedom += found.pooled_freedom / ways;
-    covariance += found.covariance / ways;
-    own += found.freedom / ways;
+    covariance += found.covariance;
+    own += found.freedom;
   }
-  const double pooled = size / (static_cast<double>(directions) * variance);
+  const double pooled = size / (directions * variance);
   if (!contradicted(residual, pooled, pooled_freedom)) {
-    const VectorXd alone = variances_of_rows(rows, residual, whitening) * (count / freedom);
-    result.ratio = alone.cwiseQuotient(classical).cwiseMax(1.0);
+    const VectorXd alone = variances_of_rows(rows, residual, whitening);
+    for (Index i = 0; i < parameters; ++i) {
+      result.ratio[i] = std::max(alone[i] * (count / freedom) * inverse[i], 1.0);
+    }
     return result;
   }
-  // One is lost to the mean that the fit took from each direction.
-  own = (own.array() - 1.0).max(1.0);
-  const VectorXd borrowed = (kFewest - own.array()).max(0.0);
-  const VectorXd together = own + borrowed;
-  const VectorXd ratio = covariance.diagonal().cwiseQuotient(classical);
-  result.ratio = (own.cwiseProduct(ratio) + borrowed * pooled).cwiseQuotient(together);
-  result.freedom = together;
+  double weight = 1.0;
+  for (Index i = 0; i < parameters; ++i) {
+    // One is lost to the mean that the fit took from each direction.
+    const double mine = std::max(own[i] / ways - 1.0, 1.0);
+    const double borrowed = std::max(kFewest - mine, 0.0);
+    const double together = mine + borrowed;
+    result.ratio[i] =
+        (mine * (covariance(i, i) / ways * inverse[i]) + borrowed * pooled) / together;
+    result.freedom[i] = together;
+    weight = std::min(weight, mine / together);
+  }
   result.white = false;
-  result.correlation = mean_correlation(covariance, whitening.transpose() * whitening,
-                                        own.cwiseQuotient(together).minCoeff());
+  // The mean of two matrices of correlations; with one weight for all pairs it is one, too.
+  MatrixXd classical = unit;
+  make_correlation(covariance);
+  make_correlation(classical);
+  result.correlation = weight * covariance + (1.0 - weight) * classical;
   return result;
 }
+
+}  // namespace
 
 Covariance covariance_of(const Eigen::Ref<const MatrixXd>& jacobian, const VectorXd& residual,
                          const MatrixXd& triangle, const Cuts& cuts,
                          const std::optional<Centre>& centre) {
   const Index parameters = jacobian.cols();
   const Index left = jacobian.rows() - parameters;
-  const VectorXd norms = triangle.colwise().norm();
-  const VectorXd scale = or_one(norms);
-  const auto found = base::singular(triangle * scale.cwiseInverse().asDiagonal());
+  const VectorXd norms = norms_of(triangle);
+  const VectorXd factor = inverse_or_one(norms);
+  const auto found = base::singular(scaled_columns(triangle, factor));
   const double least = kKnown * found.values[0];
   Index known = 0;
   while (known < parameters && found.values[known] > least) ++known;
-  const auto sizes = found.values.head(known);
-  const auto directions = found.directions.leftCols(known);
   const double noise = residual.squaredNorm() / static_cast<double>(std::max<Index>(1, left));
-  const MatrixXd whitening = sizes.cwiseInverse().asDiagonal() * directions.transpose() *
-                             scale.cwiseInverse().asDiagonal();
-  const auto stretch = stretch_of(jacobian, residual, whitening, cuts);
-  const VectorXd wider = stretch.ratio.cwiseSqrt();
+  MatrixXd whitening(known, parameters);
+  VectorXd squares(known);
+  VectorXd inverse_squares(known);
+  for (Index k = 0; k < known; ++k) {
+    const double value = found.values[k];
+    squares[k] = value * value;
+    inverse_squares[k] = 1.0 / squares[k];
+    for (Index j = 0; j < parameters; ++j) {
+      whitening(k, j) = found.directions(j, k) / value * factor[j];
+    }
+  }
   Covariance result;
-  result.freedom = stretch.freedom;
+  result.matrix = weighted_squares(found.directions, inverse_squares.data(), known);
+  scale(result.matrix, factor.data());
+  auto stretch = stretch_of(jacobian, residual, whitening, result.matrix, cuts);
   result.white = stretch.white;
-  result.matrix =
-      wider.asDiagonal() * (whitening.transpose() * whitening * noise).eval() * wider.asDiagonal();
-  if (stretch.correlation) {
-    const VectorXd error = result.matrix.diagonal().cwiseSqrt();
-    result.matrix = error.asDiagonal() * *stretch.correlation * error.asDiagonal();
-  }
+  VectorXd wider(parameters);
+  VectorXd of_all(parameters);
   Eigen::Array<bool, Eigen::Dynamic, 1> unknown(parameters);
+  bool any = false;
+  const double size = std::sqrt(noise);
   for (Index i = 0; i < parameters; ++i) {
-    const auto hidden = found.directions.row(i).tail(parameters - known);
-    unknown[i] = norms[i] == 0.0 || (hidden.array().abs() > kInvolved).any();
+    const double root = std::sqrt(stretch.ratio[i]);
+    wider[i] = root * size;
+    of_all[i] = 1.0 / (factor[i] * root * std::max(size, kExact));
+    unknown[i] = left <= 0 || norms[i] == 0.0;  // nothing is left to estimate the noise
+    for (Index k = known; k < parameters; ++k) {
+      unknown[i] = unknown[i] || std::fabs(found.directions(i, k)) > kInvolved;
+    }
+    any = any || unknown[i];
   }
-  if (left <= 0) unknown.setConstant(true);  // no degree of freedom to estimate the noise
+  scale(result.matrix, wider.data());
+  if (stretch.correlation) {
+    const VectorXd errors = errors_of(result.matrix, false);
+    result.matrix = *stretch.correlation;
+    scale(result.matrix, errors.data());
+  }
   if (left <= 0) {
     result.information.setZero(parameters, parameters);
-  } else if (stretch.correlation && !unknown.any()) {
+  } else if (stretch.correlation && !any) {
     result.information = inverse_of(result.matrix);
   } else {
-    const VectorXd of_all = scale.cwiseQuotient(wider) / std::max(std::sqrt(noise), kExact);
-    const MatrixXd inner = directions * sizes.cwiseAbs2().asDiagonal() * directions.transpose();
-    result.information = of_all.asDiagonal() * inner * of_all.asDiagonal();
+    result.information = weighted_squares(found.directions, squares.data(), known);
+    scale(result.information, of_all.data());
   }
   for (Index i = 0; i < parameters; ++i) {
     if (unknown[i]) result.matrix(i, i) = std::numeric_limits<double>::infinity();
   }
-  result.stderr_ = result.matrix.diagonal().cwiseSqrt();
+  result.stderr_ = errors_of(result.matrix, false);
+  result.freedom = std::move(stretch.freedom);
   correlate(triangle, centre, result);
   return result;
 }

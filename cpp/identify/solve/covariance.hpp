@@ -19,39 +19,23 @@ struct Centre {
 /// First rows of the segments, and at the end the number of rows; one or several ways to cut.
 using Cuts = std::vector<std::vector<std::int64_t>>;
 
-/// By how much variances are larger than those of white residuals of one size.
-struct Stretch {
-  Eigen::VectorXd ratio;
-  Eigen::VectorXd freedom;  ///< behind each variance
-  bool white = true;        ///< nothing in the residuals contradicts their independence
-  /// Of the parameters, by segments; none where the classical ones hold. Where few segments
-  /// determine a parameter, the classical ones have as much weight as the freedom that it borrows.
-  std::optional<Eigen::MatrixXd> correlation;
-};
-
-/// `whitening` takes the scores of the determined directions to unit variance: its own product is
-/// the covariance for residuals of unit variance.
-///
-/// Where no test contradicts white residuals, the variance of each parameter is the larger of the
-/// classical one and that of clusters of one row (White's, which allows for noise that depends on
-/// the motion); else it is the mean of the clusterings.
-Stretch stretch_of(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
-                   const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
-                   const Cuts& cuts);
-
 struct Covariance {
   Eigen::MatrixXd matrix;
   /// Its inverse; zero along directions that the data do not determine, whose variance is infinite.
   Eigen::MatrixXd information;
   Eigen::VectorXd stderr_;
-  Eigen::VectorXd freedom;  ///< of Student's t
-  bool white = true;
+  Eigen::VectorXd freedom;      ///< of Student's t
+  bool white = true;            ///< nothing in the residuals contradicts their independence
   Eigen::MatrixXd correlation;  ///< after centring
   double condition = 1.0;       ///< of the centred Jacobian with columns of unit norm
   Eigen::VectorXd weakest;      ///< direction, in those scaled columns
 };
 
 /// Of a fit of at least one parameter; `triangle` is that of the Jacobian's QR decomposition.
+///
+/// Where no test contradicts white residuals, the variance of each parameter is the larger of the
+/// classical one and that of clusters of one row (White's, which allows for noise that depends on
+/// the motion); else it is the mean of the clusterings.
 Covariance covariance_of(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
                          const Eigen::VectorXd& residual, const Eigen::MatrixXd& triangle,
                          const Cuts& cuts, const std::optional<Centre>& centre);
