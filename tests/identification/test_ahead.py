@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -186,12 +187,12 @@ def test_windows_that_cannot_be_cut_are_refused_alike(
     assert begun[0] is not None
 
 
-def begin(ready: Prepared, lower: Any, upper: Any) -> Any:
+def begin(ready: Prepared, lower: Any, upper: Any, windows: float = 200) -> Any:
     problem = ready.problem
     return _core.begin_search(
         recordings=problem.in_core,
         terms=list(problem.choice.terms),
-        windows=problem.window_options(200),
+        windows=problem.window_options(windows),
         residual=_core.Residual.torque,
         mask_standstill=True,
         gear_ratio=1.0,
@@ -213,6 +214,13 @@ def test_a_penalty_outlives_a_compressed_form_that_fails(clean: jid.Recording) -
         with pytest.raises(ValueError, match="lower <= upper"):
             work.further()
     assert penalty.window_count > 100
+
+
+def test_windows_that_only_a_shift_makes_possible_are_no_error(clean: jid.Recording) -> None:
+    ready = prepared(clean)
+    assert ready.ahead is not None
+    failed = replace(ready.ahead, work=begin(ready, ready.domain.lower, ready.domain.upper, 1e6))
+    assert failed.compressed(ready.penalty, ready.domain) is None
 
 
 def test_what_is_begun_needs_nobody_to_wait_for_it(clean: jid.Recording) -> None:

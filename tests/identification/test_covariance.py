@@ -195,3 +195,30 @@ def test_no_information_along_what_no_motion_divides(shared_data: Path) -> None:
     block = np.ix_(given, given)
     product = estimate.information[block] @ estimate.covariance[block]
     np.testing.assert_allclose(product, np.eye(len(given)), atol=1e-6)
+
+
+@pytest.mark.parametrize("drifting", [False, True])
+def test_columns_of_unlike_size_have_the_covariance_of_their_textbook(drifting: bool) -> None:
+    """Against NumPy's decompositions: of white residuals, and by what ratio those of segments are wider."""
+    rng = np.random.default_rng(8)
+    for count in (1, 3, 7):
+        design = rng.normal(size=(ROWS, count)) * 10.0 ** rng.uniform(-6.0, 6.0, count)
+        residual = _noise(rng, 0.9 if drifting else 0.0)
+        found = parameter_covariance(design, residual, None)
+        assert found.white != drifting
+        sizes = np.linalg.norm(design, axis=0)
+        inverse = np.linalg.inv((design / sizes).T @ (design / sizes))
+        classical = inverse * (residual @ residual) / (ROWS - count)
+        scaled = found.matrix * np.outer(sizes, sizes)
+        if not drifting:
+            rows = (design / sizes) @ inverse
+            white = np.square(rows * residual[:, None]).sum(axis=0) * ROWS / (ROWS - count)
+            stretch = np.sqrt(np.maximum(white / np.diag(classical), 1.0))
+            np.testing.assert_allclose(scaled, classical * np.outer(stretch, stretch), rtol=1e-10)
+        own = np.sqrt(np.diag(inverse))
+        np.testing.assert_allclose(found.correlation, inverse / np.outer(own, own), atol=1e-12)
+        assert found.condition == pytest.approx(np.linalg.cond(design / sizes), rel=1e-10)
+        _, _, directions = np.linalg.svd(design / sizes)
+        np.testing.assert_allclose(np.abs(found.weakest), np.abs(directions[-1]), atol=1e-12)
+        product = found.information * np.outer(1.0 / sizes, 1.0 / sizes) @ scaled
+        np.testing.assert_allclose(product, np.eye(count), atol=1e-9)

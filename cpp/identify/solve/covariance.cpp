@@ -207,8 +207,7 @@ Covariance covariance_of(const Eigen::Ref<const MatrixXd>& jacobian, const Vecto
                          const std::optional<Centre>& centre) {
   const Index parameters = jacobian.cols();
   const Index left = jacobian.rows() - parameters;
-  const VectorXd norms = norms_of(triangle);
-  const VectorXd factor = inverse_or_one(norms);
+  const VectorXd factor = inverse_or_one(norms_of(triangle));
   const auto found = base::singular(scaled_columns(triangle, factor));
   const double least = kKnown * found.values[0];
   Index known = 0;
@@ -239,7 +238,7 @@ Covariance covariance_of(const Eigen::Ref<const MatrixXd>& jacobian, const Vecto
     const double root = std::sqrt(stretch.ratio[i]);
     wider[i] = root * size;
     of_all[i] = 1.0 / (factor[i] * root * std::max(size, kExact));
-    unknown[i] = left <= 0 || norms[i] == 0.0;  // nothing is left to estimate the noise
+    unknown[i] = left <= 0;  // nothing is left to estimate the noise
     for (Index k = known; k < parameters; ++k) {
       unknown[i] = unknown[i] || std::fabs(found.directions(i, k)) > kInvolved;
     }
