@@ -177,9 +177,10 @@ def test_windows_that_cannot_be_cut_are_refused_alike(
         position=clean.position,
         velocity=clean.velocity * 1e-3,
         torque=clean.torque,
+        sensor=clean.sensor,
     )
-    for run, windows in ((clean, 1e6), (slow, 1e6)):
-        with pytest.raises(jid.InputError) as ours:
+    for run, windows, why in ((clean, 1e6, "window"), (slow, 1e9, "seconds")):
+        with pytest.raises(jid.InputError, match=why) as ours:
             prepared(run, windows=windows)
         with pytest.raises(jid.InputError) as alone:
             prepare(run, JOINT, windows=windows)
