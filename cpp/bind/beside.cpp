@@ -25,7 +25,7 @@ void Beside::begin(std::int64_t samples, int threads) {
       const std::lock_guard lock(own->mutex);
       own->done = true;
     }
-    own->wake.notify_one();
+    own->wake.notify_all();
     try {
       if (own->failure) return;
       task->go_on();

@@ -54,11 +54,13 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
   auto& known = masked_[mask_standstill ? 1 : 0];
   if (known != nullptr) return known;
   const auto find = [&](const base::Cancel* cancel) {
-    known = std::make_shared<const MaskedRecording>(
+    auto made = std::make_shared<const MaskedRecording>(
         view_, identify::usable_intervals(view_, mask_standstill, cancel));
-    if (cancel == nullptr) return;
-    known->period(cancel);  // whoever asks later cannot be interrupted
-    known->noise(cancel);
+    if (cancel != nullptr) {
+      made->period(cancel);  // whoever asks later cannot be interrupted
+      made->noise(cancel);
+    }
+    known = std::move(made);
   };
   if (pool == nullptr) {
     find(nullptr);

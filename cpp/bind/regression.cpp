@@ -83,7 +83,11 @@ void bind_regression(py::module_& m) {
             triangle.size() == 0 || (about && (outside(about->gain) || outside(about->offset)))) {
           throw std::invalid_argument("residual, triangle, cuts and centre must fit the Jacobian");
         }
-        auto found = identify::covariance_of(jacobian, residual, triangle, cuts, about);
+        identify::Covariance found;
+        {
+          const py::gil_scoped_release nogil;
+          found = identify::covariance_of(jacobian, residual, triangle, cuts, about);
+        }
         return std::make_tuple(std::move(found.matrix), std::move(found.information),
                                std::move(found.stderr_), std::move(found.freedom), found.white,
                                std::move(found.correlation), found.condition,

@@ -32,6 +32,19 @@ def late(clean: jid.Recording) -> jid.Recording:
     return clean.with_signals(sensor=np.concatenate([clean.sensor[:4], clean.sensor[:-4]]))
 
 
+def fading() -> jid.Recording:
+    """Dry friction that loses a third over the recording, and a torque that is clipped."""
+    time = np.arange(20_000) * 1e-3
+    velocity = 2.0 * np.sin(2.0 * time) + 0.7 * np.sin(5.3 * time)
+    position = -np.cos(2.0 * time) - 0.7 / 5.3 * np.cos(5.3 * time)
+    acceleration = 4.0 * np.cos(2.0 * time) + 3.71 * np.cos(5.3 * time)
+    dry = 10.0 * (1.0 - 0.3 * time / time[-1]) * np.sign(velocity)
+    torque = 0.5 * acceleration + 3.0 * velocity + dry
+    most = float(np.quantile(np.abs(torque), 0.975))
+    clipped = np.clip(torque, -most, most)
+    return jid.Recording(time=time, position=position, velocity=velocity, torque=clipped)
+
+
 def values_of(estimate: jid.Estimate) -> dict[str, tuple[float, float | None]]:
     return {name: (each.value, each.stderr) for name, each in estimate.parameters.items()}
 
@@ -61,6 +74,11 @@ CALLS: dict[str, dict[str, Any]] = {
     "reading": {"residual": "sensor"},
     "torque": {"residual": "torque"},
     "running integrals": {"windows": "cumulative"},
+    "instruments of them": {"windows": "cumulative", "residual": "instruments"},
+    "both directions": {"model": "stribeck:asymmetric"},
+    "ripple": {"model": "stribeck:ripple=2"},
+    "fixed gain": {"parameters": {"sensor_gain": 2.4}},
+    "standing": {"mask_standstill": False},
     "no shape": {"model": "coulomb_viscous"},
     "fixed exponent": {
         "model": "stribeck_general",
@@ -109,10 +127,31 @@ def test_it_is_let_go_of_where_a_delay_is_taken_away(
     assert begun[0] is not None
     assert found.settings["shift"]["sensor"] == pytest.approx(4e-3, abs=1e-3)
     ready = prepared(late)
-    assert ready.ahead is not None
-    assert ready.ahead.compressed(ready.penalty, ready.domain) is None
+    assert ready.ahead is None
+    assert begun[1] is not None
+    assert begun[1].compressed(ready.penalty, ready.domain) is None
     monkeypatch.setattr(Ahead, "begin", lambda *_: None)
     assert values_of(jid.identify(late, JOINT, search=search)) == values_of(found)
+
+
+def test_an_estimate_does_not_hold_it(clean: jid.Recording, late: jid.Recording) -> None:
+    for run in (clean, late):
+        estimate = jid.identify(run, JOINT, search=jid.Search("ga", threads=2))
+        again: Any = estimate.follow_up
+        held = again.again.func.__self__
+        assert held.ahead is None
+        assert held.looked == ()
+
+
+def test_a_second_fit_looks_at_its_own_signals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the drift that was taken away, whose clipped torque is one no longer."""
+    run = fading()
+    search = jid.Search("ga", threads=2)
+    found = jid.identify(run, None, model="coulomb_viscous", search=search)
+    assert "drift" in {each.code for each in found.findings}
+    monkeypatch.setattr(Ahead, "begin", lambda *_: None)
+    alone = jid.identify(run, None, model="coulomb_viscous", search=search)
+    assert found.findings == alone.findings
 
 
 def test_a_compressed_form_is_of_its_shapes_bounds(clean: jid.Recording) -> None:

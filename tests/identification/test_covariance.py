@@ -197,6 +197,26 @@ def test_no_information_along_what_no_motion_divides(shared_data: Path) -> None:
     np.testing.assert_allclose(product, np.eye(len(given)), atol=1e-6)
 
 
+def test_what_is_not_finite_is_no_error_of_zero() -> None:
+    design = _design(np.random.default_rng(2))
+    for value in (np.nan, np.inf, 1e160):
+        with pytest.raises(ValueError, match="finite"):
+            parameter_covariance(
+                np.where(np.eye(*design.shape), value, design), np.ones(ROWS), None
+            )
+
+
+def test_fewer_rows_than_parameters_correlate_by_what_they_have() -> None:
+    """The directions that no row has say nothing of the others."""
+    design = np.array([[1.0, 1.0, 1.0], [1.0, 2.0, 4.0]])
+    scaled = design / np.linalg.norm(design, axis=0)
+    inverse = np.linalg.pinv(scaled.T @ scaled)
+    own = np.sqrt(np.diag(inverse))
+    found = parameter_covariance(design, np.ones(2), None)
+    np.testing.assert_allclose(found.correlation, inverse / np.outer(own, own), atol=1e-9)
+    assert np.isinf(found.stderr).all()
+
+
 @pytest.mark.parametrize("drifting", [False, True])
 def test_columns_of_unlike_size_have_the_covariance_of_their_textbook(drifting: bool) -> None:
     """Against NumPy's decompositions: of white residuals, and by what ratio those of segments are wider."""

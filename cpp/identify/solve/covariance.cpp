@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "base/singular.hpp"
@@ -127,7 +128,7 @@ void correlate(MatrixXd triangle, const std::optional<Centre>& centre, Covarianc
     const double size = std::max(value, kFloor * largest + 1e-150);
     value = 1.0 / (size * size);
   }
-  result.correlation = weighted_squares(found.directions, inverse.data(), inverse.size());
+  result.correlation = weighted_squares(found.directions, inverse.data(), least + 1);
   make_correlation(result.correlation);
   result.condition = smallest > 0.0 ? largest / smallest : std::numeric_limits<double>::infinity();
   result.weakest = found.directions.col(least);
@@ -207,7 +208,9 @@ Covariance covariance_of(const Eigen::Ref<const MatrixXd>& jacobian, const Vecto
                          const std::optional<Centre>& centre) {
   const Index parameters = jacobian.cols();
   const Index left = jacobian.rows() - parameters;
-  const VectorXd factor = inverse_or_one(norms_of(triangle));
+  const VectorXd norms = norms_of(triangle);
+  if (!norms.allFinite()) throw std::invalid_argument("the triangle must be finite");
+  const VectorXd factor = inverse_or_one(norms);
   const auto found = base::singular(scaled_columns(triangle, factor));
   const double least = kKnown * found.values[0];
   Index known = 0;

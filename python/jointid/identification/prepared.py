@@ -376,7 +376,7 @@ def prepare(
             delays=delays, slow_motion=slow_motion, sensor_instant=sensor_instant
         ),
         selection=selection,
-        ahead=begun,
+        ahead=begun if begun is not None and begun.problem is problem else None,
         looked=looked,
     )
 
