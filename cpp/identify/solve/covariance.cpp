@@ -30,7 +30,7 @@ constexpr double kInvolved = 1e-3;   // of a direction that is not known
 constexpr double kExact = 1e-40;     // noise of a fit without residuals
 constexpr double kSingular = 1e-10;  // least eigenvalue of correlations that are inverted
 // Of the largest singular value: two identical columns are fully correlated.
-constexpr double kFloor = 1e-12;
+constexpr double kIdentical = 1e-12;
 
 // Plain loops over a few parameters: as expressions of Eigen's they were ten times the code.
 
@@ -125,7 +125,7 @@ void correlate(MatrixXd triangle, const std::optional<Centre>& centre, Covarianc
   const double smallest = found.values[least];
   VectorXd inverse = found.values;
   for (double& value : inverse) {
-    const double size = std::max(value, kFloor * largest + 1e-150);
+    const double size = std::max(value, kIdentical * largest + 1e-150);
     value = 1.0 / (size * size);
   }
   result.correlation = weighted_squares(found.directions, inverse.data(), least + 1);
