@@ -57,7 +57,7 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
     auto made = std::make_shared<const MaskedRecording>(
         view_, identify::usable_intervals(view_, mask_standstill, cancel));
     if (cancel != nullptr) {
-      made->period(cancel);  // whoever asks later cannot be interrupted
+      made->period(cancel);  // a later call cannot be interrupted
       made->noise(cancel);
     }
     known = std::move(made);

@@ -39,7 +39,7 @@ def with_instruments(
     problem : Problem
         Its choice has the residual "instruments", or another one, which is left as it is.
     penalty : Penalty
-        Over `windows`, of which it projects the reading.
+        Over `windows`, of which it projects the reading, unless that was begun ahead.
     known : sequence of Parameter
         What joint and call state of each parameter of the penalty; one that is fixed is no instrument.
     windows : int, float, str, WindowOptions or None

@@ -70,6 +70,8 @@ def without_creep(
     ----------
     min_speed : float or None
         [rad/s or m/s]; None: chosen.
+    cut : callable
+        Returns the penalty of a problem over windows. Default: it is made here.
 
     Raises
     ------
