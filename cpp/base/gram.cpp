@@ -17,8 +17,9 @@ JOINTID_CLONES void multiply(const double* column, const double* others, std::si
   inner_products(column, others, stride, count, rows, products);
 }
 
-JOINTID_CLONES void subtract(const double* columns, std::size_t stride, const double* coefficients,
-                             std::size_t count, std::size_t rows, double* __restrict rest) {
+JOINTID_CLONES void subtract_column(const double* columns, std::size_t stride,
+                                    const double* coefficients, std::size_t count, std::size_t rows,
+                                    double* __restrict rest) {
   std::size_t j = 0;
   for (; j + 4 <= count; j += 4) {  // together, so that the rest is read and written less often
     const double* one = columns + j * stride;
@@ -173,9 +174,9 @@ Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
 
 void subtract_sum(const Eigen::Ref<const Eigen::MatrixXd>& columns,
                   const Eigen::VectorXd& coefficients, Eigen::Ref<Eigen::VectorXd> rest) {
-  subtract(columns.data(), static_cast<std::size_t>(columns.outerStride()), coefficients.data(),
-           static_cast<std::size_t>(columns.cols()), static_cast<std::size_t>(columns.rows()),
-           rest.data());
+  subtract_column(columns.data(), static_cast<std::size_t>(columns.outerStride()),
+                  coefficients.data(), static_cast<std::size_t>(columns.cols()),
+                  static_cast<std::size_t>(columns.rows()), rest.data());
 }
 
 }  // namespace jointid::base

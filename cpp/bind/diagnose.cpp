@@ -13,10 +13,6 @@ namespace {
 
 using Array = SharedRecording::Array;
 
-diagnose::Signal signal(const Array& array) {
-  return {array.data(), static_cast<Eigen::Index>(array.size())};
-}
-
 }  // namespace
 
 void bind_diagnose(py::module_& m) {
@@ -74,10 +70,14 @@ void bind_diagnose(py::module_& m) {
       [](const Array& time, const Array& position, const Array& velocity, bool velocity_derived,
          double period, const std::vector<std::tuple<Array, SpikeRule, bool>>& channels,
          int threads) {
-        diagnose::Subject subject{signal(time),     signal(position), signal(velocity),
-                                  velocity_derived, period,           {}};
+        diagnose::Subject subject{signal_of(time),
+                                  signal_of(position),
+                                  signal_of(velocity),
+                                  velocity_derived,
+                                  period,
+                                  {}};
         for (const auto& [values, rule, spikes] : channels) {
-          subject.channels.push_back({signal(values), rule, spikes});
+          subject.channels.push_back({signal_of(values), rule, spikes});
         }
         py::list kept;
         for (const Array* each : {&time, &position, &velocity}) kept.append(*each);

@@ -14,6 +14,7 @@
 #include "base/pool.hpp"
 #include "bind/bind.hpp"
 #include "identify/recording/masked_recording.hpp"
+#include "signals/signal.hpp"
 
 namespace jointid::bind {
 
@@ -26,6 +27,11 @@ auto with_pool(std::int64_t samples, int threads, Work work) {
   if (samples < kManySamples) return work(static_cast<base::Pool*>(nullptr));
   base::Pool pool(threads, SignalPoll{});
   return work(&pool);
+}
+
+inline signals::Signal signal_of(
+    const py::array_t<double, py::array::c_style | py::array::forcecast>& array) {
+  return {array.data(), static_cast<Eigen::Index>(array.size())};
 }
 
 class SharedRecording {

@@ -19,10 +19,6 @@ using Array = SharedRecording::Array;
 using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 
-signals::Signal signal(const Array& array) {
-  return {array.data(), static_cast<Eigen::Index>(array.size())};
-}
-
 /// Smooth windows, with the arrays that their stretch is a view of.
 struct WindowsOfArrays {
   Array time;
@@ -46,12 +42,12 @@ struct WindowsOfArrays {
   }
 
   [[nodiscard]] signals::EvenStretch stretch() const {
-    return {signal(time), signal(position), signal(velocity), usable.data(), derived};
+    return {signal_of(time), signal_of(position), signal_of(velocity), usable.data(), derived};
   }
   /// A signal of the same samples.
   [[nodiscard]] signals::Signal own(const Array& values) const {
     if (values.size() != time.size()) throw std::invalid_argument("signals must have one length");
-    return signal(values);
+    return signal_of(values);
   }
 };
 
@@ -67,7 +63,7 @@ ShiftRows rows_of(const Windows& windows, const std::vector<Array>& signals,
   Eigen::Index used = 0;
   for (std::size_t i = 0; i < windows.size(); ++i) {
     const auto& each = *windows[i];
-    rows.stretches.push_back({signal(each.time), each.own(signals[i]), each.windows});
+    rows.stretches.push_back({signal_of(each.time), each.own(signals[i]), each.windows});
     used += static_cast<Eigen::Index>(each.windows.used.size());
   }
   if (used != columns.rows() || columns.cols() < 1 || conservative > columns.cols()) {
@@ -158,7 +154,7 @@ void bind_shifts(py::module_& m) {
       "even_grid",
       [](const Array& time) {
         if (time.size() < 2) throw std::invalid_argument("two samples are needed");
-        auto found = signals::even_grid(signal(time));
+        auto found = signals::even_grid(signal_of(time));
         return std::make_pair(std::move(found.time), found.apart);
       },
       py::arg("time"),
@@ -167,7 +163,7 @@ void bind_shifts(py::module_& m) {
       "half_length",
       [](const Array& values, double period, bool position) {
         if (values.size() < 4) throw std::invalid_argument("the signal is too short");
-        return signals::half_length(signal(values), period, position);
+        return signals::half_length(signal_of(values), period, position);
       },
       py::arg("signal"), py::arg("period"), py::kw_only(), py::arg("position"),
       JOINTID_TEXT("Half the length of a window that averages the acceleration's noise."));
@@ -182,7 +178,7 @@ void bind_shifts(py::module_& m) {
           throw std::invalid_argument("windows and weights must fit the samples");
         }
         const auto width = static_cast<std::size_t>(values.ndim() == 2 ? values.shape(1) : 1);
-        return signals::window_integrals(values.data(), width, signal(weights), bounds,
+        return signals::window_integrals(values.data(), width, signal_of(weights), bounds,
                                          rise ? signals::Summed::rise : signals::Summed::area);
       },
       py::arg("values"), py::arg("weights"), py::arg("windows"), py::kw_only(),
@@ -191,12 +187,12 @@ void bind_shifts(py::module_& m) {
   m.def(
       "circle",
       [](const Array& angle) {
-        auto found = signals::circle_of(signal(angle));
+        auto found = signals::circle_of(signal_of(angle));
         return std::make_pair(std::move(found.cosine), std::move(found.sine));
       },
       py::arg("angle"), JOINTID_TEXT("Cosine and sine."));
   m.def(
-      "roughness", [](const Array& values) { return signals::roughness(signal(values)); },
+      "roughness", [](const Array& values) { return signals::roughness(signal_of(values)); },
       py::arg("signal"), JOINTID_TEXT("Standard deviation of a signal's third differences."));
   py::class_<signals::RepeatedNoise>(m, "RepeatedNoise",
                                      JOINTID_TEXT("Noise of a reading in the torque."))
@@ -214,7 +210,7 @@ void bind_shifts(py::module_& m) {
           if (reading.size() != torque.size() || reading.size() < signals::kShortestNoise) {
             throw std::invalid_argument("signals are too short");
           }
-          both.push_back({signal(reading), signal(torque)});
+          both.push_back({signal_of(reading), signal_of(torque)});
         }
         const py::gil_scoped_release nogil;
         return signals::repeated_noise(both);

@@ -12,14 +12,10 @@ namespace {
 
 using Array = SharedRecording::Array;
 
-signals::Signal signal(const Array& array) {
-  return {array.data(), static_cast<Eigen::Index>(array.size())};
-}
-
 PositionNoise noise_of(const Array& time, const Array& position,
                        const std::vector<signals::Stretch>& stretches, double period,
                        base::Pool* pool) {
-  return signals::position_noise(signal(time), signal(position), stretches, period,
+  return signals::position_noise(signal_of(time), signal_of(position), stretches, period,
                                  pool != nullptr ? &pool->cancel() : nullptr);
 }
 
@@ -61,7 +57,8 @@ void bind_signals(py::module_& m) {
       "timing_errors",
       [](const Array& time, const Array& position, double period) {
         const py::gil_scoped_release nogil;
-        const auto errors = signals::timing_errors(signal(time), signal(position), period, nullptr);
+        const auto errors =
+            signals::timing_errors(signal_of(time), signal_of(position), period, nullptr);
         return std::make_pair(errors.as_stamped, errors.as_uniform);
       },
       py::arg("time"), py::arg("position"), py::arg("period"),
@@ -73,8 +70,8 @@ void bind_signals(py::module_& m) {
         const py::gil_scoped_release nogil;
         const auto stretches = signals::stretches_between(time.size(), gap_after);
         return with_pool(time.size(), threads, [&](base::Pool* pool) {
-          return signals::local_velocity(signal(time), signal(position), signal(difference),
-                                         stretches, noise, pool);
+          return signals::local_velocity(signal_of(time), signal_of(position),
+                                         signal_of(difference), stretches, noise, pool);
         });
       },
       py::arg("time"), py::arg("position"), py::arg("difference"), py::arg("gap_after"),

@@ -17,7 +17,7 @@ std::span<const double> numbers(const Signal& signal, py::ssize_t count) {
   return {signal.data(), static_cast<std::size_t>(count)};
 }
 
-py::array_t<double> array_of(const std::vector<double>& values) {
+py::array_t<double> copy_of(const std::vector<double>& values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
@@ -58,7 +58,7 @@ void bind_servo(py::module_& m) {
         std::vector<std::pair<py::array_t<double>, py::array_t<double>>> result;
         result.reserve(motions.size());
         for (const auto& motion : motions) {
-          result.emplace_back(array_of(motion.position), array_of(motion.velocity));
+          result.emplace_back(copy_of(motion.position), copy_of(motion.velocity));
         }
         return result;
       },

@@ -1,11 +1,11 @@
 #include "design/excitation.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <utility>
 
+#include "base/decompositions.hpp"
 #include "base/elementary.hpp"
 
 namespace jointid::design {
@@ -36,9 +36,8 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> errors_of(const Eigen::MatrixXd& inf
   const Eigen::VectorXd size = (told.array() > 0.0).select(told, 1.0);
   const Eigen::MatrixXd correlation =
       size.cwiseInverse().asDiagonal() * information * size.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
-  const Eigen::VectorXd strength = solver.eigenvalues().cwiseMax(kWeakest);
-  const Eigen::MatrixXd& directions = solver.eigenvectors();
+  const auto [values, directions] = base::eigenpairs(correlation);
+  const Eigen::VectorXd strength = values.cwiseMax(kWeakest);
   const Eigen::VectorXd along =
       (directions.transpose() * misled.cwiseQuotient(size)).cwiseQuotient(strength);
   const Eigen::VectorXd bias = (directions * along).cwiseQuotient(size);

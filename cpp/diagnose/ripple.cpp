@@ -16,7 +16,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::int64_t kSamples = 1 << 18;
 
-constexpr std::size_t kLanes = 2 * base::kFour;  // windows side by side
+constexpr std::size_t kWindows = 2 * base::kFour;  // windows side by side
 
 /// Of the windows of one part that are looked at.
 struct Looked {
@@ -75,7 +75,7 @@ Looked look_at(const identify::PenaltyParts& parts, std::size_t index, const Eig
                double gear_ratio, int halves) {
   const auto part = parts.residuals(index, theta);
   const std::size_t windows = part.windows.size();
-  const auto most = static_cast<Eigen::Index>(windows + kLanes);
+  const auto most = static_cast<Eigen::Index>(windows + kWindows);
   Looked looked;
   looked.mean.resize(most);
   looked.cosine.resize(most);
@@ -102,7 +102,7 @@ Looked look_at(const identify::PenaltyParts& parts, std::size_t index, const Eig
   looked.windows = static_cast<std::size_t>(kept);
   base::circle(angles.data(), looked.windows, looked.cosine.data(), looked.sine.data());
   for (auto* each : {&looked.mean, &looked.cosine, &looked.sine}) {
-    each->segment(kept, kLanes).setZero();
+    each->segment(kept, kWindows).setZero();
   }
   return looked;
 }
@@ -120,7 +120,7 @@ Sums sums_of(Looked& looked, double mean, int halves) {
   sums.square = left.squaredNorm();
   const auto multiples = static_cast<std::size_t>(halves);
   std::vector<double> lanes(multiples * 2 * base::kFour, 0.0);
-  for (std::size_t w = 0; w < looked.windows; w += kLanes) {
+  for (std::size_t w = 0; w < looked.windows; w += kWindows) {
     turn(looked.mean.data() + w, looked.cosine.data() + w, looked.sine.data() + w, multiples,
          lanes.data());
   }

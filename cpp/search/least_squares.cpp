@@ -1,10 +1,11 @@
 #include "search/least_squares.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "base/decompositions.hpp"
 
 namespace jointid::search {
 
@@ -20,7 +21,7 @@ Eigen::VectorXd solve_columns(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
   Eigen::MatrixXd part(a.rows(), static_cast<Eigen::Index>(set.size()));
   for (std::size_t j = 0; j < set.size(); ++j)
     part.col(static_cast<Eigen::Index>(j)) = a.col(set[j]);
-  return part.colPivHouseholderQr().solve(b);
+  return base::least_squares(part, b);
 }
 
 }  // namespace
@@ -91,14 +92,10 @@ LeastSquaresResult constrained_least_squares(const Eigen::MatrixXd& a, const Eig
     damped.col(j).head(a.rows()) = a.col(j) * scale[j];
     damped(a.rows() + j, j) = kRidge;
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(damped);
-  const Eigen::MatrixXd r = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-  right.applyOnTheLeft(qr.householderQ().adjoint());
-  const Eigen::VectorXd f = right.head(n);
-  const auto upper = r.triangularView<Eigen::Upper>();
+  const auto [upper, f] = base::reduced(damped, right);
 
   LeastSquaresResult result;
-  result.x = upper.solve(f).cwiseProduct(scale);
+  result.x = base::solve_upper(upper, f).cwiseProduct(scale);
   result.feasible = true;
   if (g.rows() == 0) return result;
   const Eigen::ArrayXd size = (g.cwiseAbs() * result.x.cwiseAbs() + h.cwiseAbs()).array();
@@ -106,7 +103,8 @@ LeastSquaresResult constrained_least_squares(const Eigen::MatrixXd& a, const Eig
 
   // z = R x' - f with x = scale x':  min |z| subject to (G scale R^-1) z >= h - G scale R^-1 f.
   const Eigen::MatrixXd scaled = g * scale.asDiagonal();
-  const Eigen::MatrixXd distance = upper.transpose().solve(scaled.transpose()).transpose();
+  const Eigen::MatrixXd distance =
+      base::solve_lower(upper.transpose(), scaled.transpose()).transpose();
   Eigen::VectorXd offset = h - distance * f;
   // In units of the farthest single constraint, so that |z| is not far from 1 whatever the units of
   // the data: the method finds |z|^2 only to rounding of 1.
@@ -136,7 +134,7 @@ LeastSquaresResult constrained_least_squares(const Eigen::MatrixXd& a, const Eig
   const Eigen::ArrayXd margin = (distance * z - offset).array();
   result.feasible = (margin >= -kViolation * z.norm() * distance.rowwise().norm().array()).all();
   if (!result.feasible) return result;
-  result.x = upper.solve((reach > 0.0 ? reach : 1.0) * z + f).cwiseProduct(scale);
+  result.x = base::solve_upper(upper, (reach > 0.0 ? reach : 1.0) * z + f).cwiseProduct(scale);
   return result;
 }
 

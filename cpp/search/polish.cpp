@@ -1,9 +1,10 @@
 #include "search/polish.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "base/decompositions.hpp"
 
 namespace jointid::search {
 
@@ -39,7 +40,7 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& jacobian, const Eigen::Vector
     system(rows + j, j) = std::sqrt(damping);
   }
   right.head(rows) = -residual;
-  const Eigen::VectorXd step = system.colPivHouseholderQr().solve(right);
+  const Eigen::VectorXd step = base::least_squares(system, right);
   Eigen::VectorXd full = Eigen::VectorXd::Zero(jacobian.cols());
   for (Eigen::Index j = 0; j < p; ++j)
     full[columns[static_cast<std::size_t>(j)]] = step[j] * scale[j];

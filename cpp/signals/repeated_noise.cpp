@@ -1,6 +1,5 @@
 #include "signals/repeated_noise.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +24,7 @@ constexpr Index kLag = 9;             // samples, the longest
 constexpr double kClipped = 4.0;      // standard deviations of a difference
 // Of the third differences of white noise, over its variance.
 constexpr std::array<double, 4> kAutocorrelation{1.0, -0.75, 0.3, -0.05};
-constexpr Index kReach = 3;         // of these, to either side
+constexpr Index kNoiseReach = 3;    // of these, to either side
 constexpr double kSure = 8.0;       // standard errors of the noise's share in the torque
 constexpr double kExplained = 0.9;  // of the cross-correlation, by one delay
 constexpr Index kBlocks = 60;       // of the recording, whose spread gives the standard errors
@@ -100,8 +99,9 @@ double alike(Index lag) {
 
 /// The cross-correlation of a torque that repeats the noise so many samples earlier, a column each.
 MatrixXd taps() {
-  return MatrixXd::NullaryExpr(2 * kLag + 1, 2 * (kLag - kReach) + 1,
-                               [](Index lag, Index place) { return alike(lag - place - kReach); });
+  return MatrixXd::NullaryExpr(
+      2 * kLag + 1, 2 * (kLag - kNoiseReach) + 1,
+      [](Index lag, Index place) { return alike(lag - place - kNoiseReach); });
 }
 
 /// Products of all pairs, block by block.
@@ -158,10 +158,11 @@ std::optional<RepeatedNoise> repeated_noise(const std::vector<NoisyPair>& pairs)
   // Each two neighbouring delays share the noise between them; their normal equations are alike.
   const MatrixXd kernel = taps();
   const VectorXd matched = kernel.transpose() * seen;
-  Eigen::Matrix2d gram;
-  gram(0, 0) = gram(1, 1) = kernel.col(0).squaredNorm();
-  gram(0, 1) = gram(1, 0) = kernel.col(0).dot(kernel.col(1));
-  const Eigen::Matrix2d shares_of = gram.inverse();
+  const double own = kernel.col(0).squaredNorm();
+  const double common = kernel.col(0).dot(kernel.col(1));
+  Eigen::Matrix2d shares_of;  // the inverse of (own, common; common, own)
+  shares_of(0, 0) = shares_of(1, 1) = own / (own * own - common * common);
+  shares_of(0, 1) = shares_of(1, 0) = -common / (own * own - common * common);
   Index place = 0;
   double most = -1.0;
   for (Index i = 0; i + 1 < matched.size(); ++i) {
@@ -184,7 +185,7 @@ std::optional<RepeatedNoise> repeated_noise(const std::vector<NoisyPair>& pairs)
   const double part = mean[1] / total;
   const Eigen::Vector2d slope = Eigen::Vector2d(-part, 1.0 - part) / total;
   const double variance = slope.dot(spread * slope);
-  return RepeatedNoise{static_cast<double>(place - kLag + kReach) + part,
+  return RepeatedNoise{static_cast<double>(place - kLag + kNoiseReach) + part,
                        std::sqrt(variance + kAnswer * kAnswer), total};
 }
 

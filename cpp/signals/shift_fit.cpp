@@ -1,13 +1,12 @@
 #include "signals/shift_fit.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "base/clones.hpp"
+#include "base/decompositions.hpp"
 #include "base/gram.hpp"
 #include "base/quantile.hpp"
 
@@ -19,11 +18,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNear = 1e-5;         // [s], the last step of the iteration
+constexpr double kLastStep = 1e-5;     // [s], the last step of the iteration
 constexpr double kLongestStep = 1e-3;  // [s]
 constexpr int kSteps = 6;
 constexpr int kRounds = 2;          // of weights
-constexpr double kClipped = 4.0;    // medians of the residual's size: more counts for less
+constexpr double kOutlying = 4.0;   // medians of the residual's size: more counts for less
 constexpr double kCluster = 0.3;    // [s] of motion that counts as one observation
 constexpr double kFarthest = 0.02;  // [s] of a delay that is searched from no shift
 constexpr double kClearlyShorter = 0.5;
@@ -130,23 +129,21 @@ class Projection {
     scale = (scale.array() > 0.0).select(scale, std::numeric_limits<double>::infinity());
     const VectorXd inverse = scale.cwiseInverse();
     const MatrixXd scaled = inverse.asDiagonal() * gram * inverse.asDiagonal();
-    const Eigen::LLT<MatrixXd> factor(scaled);
-    if (factor.info() == Eigen::Success) {
+    if (const auto factor = base::cholesky(scaled)) {
       // The trace of the inverse bounds its largest eigenvalue, the width the largest one itself.
       const auto width = static_cast<double>(gram.rows());
-      basis_ = factor.matrixU().solve(MatrixXd::Identity(gram.rows(), gram.rows()));
+      basis_ = base::solve_upper(factor->transpose(), MatrixXd::Identity(gram.rows(), gram.rows()));
       if (basis_.squaredNorm() * kSingular * width < 1.0) {
         basis_ = inverse.asDiagonal() * basis_;
         return;
       }
     }
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
-    const VectorXd& values = solver.eigenvalues();
+    const auto [values, vectors] = base::eigenpairs(scaled);
     const double least = kSingular * values[values.size() - 1];
     Index first = 0;
     while (first < values.size() && !(values[first] > least)) ++first;
     const Index rank = values.size() - first;
-    basis_ = inverse.asDiagonal() * solver.eigenvectors().rightCols(rank) *
+    basis_ = inverse.asDiagonal() * vectors.rightCols(rank) *
              values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
   }
 
@@ -207,11 +204,10 @@ std::vector<Index> pieces_of(const ShiftRows& rows) {
 /// Inverse of one or two products; a singular pair's by its eigenvectors.
 MatrixXd inverse_of(const MatrixXd& gram) {
   if (gram.size() == 1) return gram.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(gram);
-  const VectorXd& values = solver.eigenvalues();
+  const auto [values, vectors] = base::eigenpairs(gram);
   const double least = 1e-15 * values.cwiseAbs().maxCoeff();
   const VectorXd inverse = (values.array().abs() > least).select(values.cwiseInverse(), 0.0);
-  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  return vectors * inverse.asDiagonal() * vectors.transpose();
 }
 
 /// Standard errors: the larger of the classical ones and those clustered over pieces of the motion.
@@ -320,14 +316,14 @@ std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& s
       step = std::clamp(-heavy.dot(rest) / energy, -kLongestStep, kLongestStep);
       delay += step;
       if (std::fabs(delay) > bound) return std::nullopt;
-      if (std::fabs(step) < kNear || std::fabs(delay) < kClearlyShorter * search.least) break;
+      if (std::fabs(step) < kLastStep || std::fabs(delay) < kClearlyShorter * search.least) break;
     }
     missed = rest + step * total;
     const double noise = missed.squaredNorm() / static_cast<double>(count - projection.rank());
     none = std::fabs(delay) + kClearErrors * std::sqrt(noise / energy) < search.least;
     if (none) break;
     if (turn + 1 < rounds) {
-      const double usual = kClipped * median_size(missed) + kTiny;
+      const double usual = kOutlying * median_size(missed) + kTiny;
       weights = (missed.cwiseAbs() / usual).cwiseMax(1.0).cwiseInverse();
       projection.weigh(weights);
     }

@@ -21,8 +21,9 @@ using Eigen::VectorXd;
 
 constexpr std::array<std::int64_t, 8> kHalfLengths{6, 8, 11, 15, 20, 28, 40, 56};  // samples
 constexpr double kNoiseShare = 1e-4;  // largest variance of the acceleration's noise over its own
-constexpr double kOfMedian = 1.4826;  // standard deviations of normal noise in a median of sizes
-constexpr double kFinest = 1e-3;      // of the largest step: a smaller one is rounding, no counter
+constexpr double kOfMedianSize =
+    1.4826;                       // standard deviations of normal noise in a median of sizes
+constexpr double kFinest = 1e-3;  // of the largest step: a smaller one is rounding, no counter
 
 /// Raised cosine: zero at both ends.
 VectorXd raised_cosine(std::int64_t half) {
@@ -227,7 +228,7 @@ std::int64_t half_length(const Signal& signal, double period, bool position) {
     window_means(signal, weight, middles, rough.data());
     const double limit = std::sqrt(kNoiseShare * variance(rough) / weight.squaredNorm());
     const bool calm = mostly_below(sizes.data(), static_cast<std::size_t>(sizes.size()),
-                                   limit * std::sqrt(20.0) / kOfMedian);
+                                   limit * std::sqrt(20.0) / kOfMedianSize);
     if (calm && rounded <= limit) return half;
   }
   return kHalfLengths.back();

@@ -15,16 +15,16 @@ namespace jointid::signals {
 
 namespace {
 
-constexpr Eigen::Index kReach = 4;  // samples either side over which the speed is taken
-constexpr auto kWide = static_cast<std::size_t>(2 * kReach);
-constexpr Eigen::Index kStretch = 4096;  // samples
-constexpr Eigen::Index kMost = 1 << 18;  // samples looked at
-constexpr std::size_t kFewest = 40;
+constexpr Eigen::Index kSpeedReach = 4;  // samples either side over which the speed is taken
+constexpr auto kWide = static_cast<std::size_t>(2 * kSpeedReach);
+constexpr Eigen::Index kStretch = 4096;           // samples
+constexpr Eigen::Index kMostIntervals = 1 << 18;  // samples looked at
+constexpr std::size_t kFewestIntervals = 40;
 constexpr double kFast = 0.3;  // of the peak speed
 constexpr double kSlow = 0.1;
-constexpr double kNormal = 1.4826;  // standard deviation of a normal variable over its
-                                    // median deviation
-constexpr double kThird = 20.0;     // variance of a third difference of white noise
+constexpr double kNormalError = 1.4826;  // standard deviation of a normal variable over its
+                                         // median deviation
+constexpr double kThird = 20.0;          // variance of a third difference of white noise
 
 struct Stretch {
   Eigen::Index begin;
@@ -32,8 +32,8 @@ struct Stretch {
 };
 
 std::vector<Stretch> stretches(Eigen::Index intervals) {
-  if (intervals <= kMost) return {{0, intervals}};
-  constexpr Eigen::Index count = kMost / kStretch;
+  if (intervals <= kMostIntervals) return {{0, intervals}};
+  constexpr Eigen::Index count = kMostIntervals / kStretch;
   std::vector<Stretch> result;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index begin = (intervals - kStretch) / (count - 1) * i;
@@ -52,13 +52,13 @@ struct Intervals {
   std::array<double, kBlock + 2> odd;        ///< 1 where the interval is no ordinary one
 };
 
-/// From `kReach` samples before the first interval on: `count` third differences, from the second
-/// interval on, and the speeds there; NaN where one of three intervals is odd.
+/// From `kSpeedReach` samples before the first interval on: `count` third differences, from the
+/// second interval on, and the speeds there; NaN where one of three intervals is odd.
 JOINTID_CLONES void look_at(const double* time, const double* position, double period,
                             double stamped, std::size_t count, Intervals& result, double* rough,
                             double* usual) {
-  const double* t = time + kReach;
-  const double* x = position + kReach;
+  const double* t = time + kSpeedReach;
+  const double* x = position + kSpeedReach;
   for (std::size_t i = 0; i < count + 2; ++i) {
     const double late = t[i + 1] - t[i] - period;
     const double speed = (position[i + kWide] - position[i]) / (time[i + kWide] - time[i]);
@@ -111,7 +111,7 @@ bool median_exceeds(std::span<const double> values, double limit) {
 TimingErrors timing_errors(const Signal& time, const Signal& position, double period,
                            const base::Cancel* cancel) {
   const Eigen::Index intervals = time.size() - 1;
-  if (intervals < static_cast<Eigen::Index>(kFewest)) return {};
+  if (intervals < static_cast<Eigen::Index>(kFewestIntervals)) return {};
   const auto parts = stretches(intervals);
   double smallest = std::numeric_limits<double>::infinity();
   double peak = 0.0;
@@ -119,7 +119,7 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
   for (const auto& part : parts) {
     // Third differences need one interval more on either side.
     const Eigen::Index first = part.begin + 1;
-    if (part.end - first <= 2 * kReach) continue;
+    if (part.end - first <= 2 * kSpeedReach) continue;
     peak = std::max(peak, base::largest_rate(time.data() + first, position.data() + first, kWide,
                                              static_cast<std::size_t>(part.end - first) - kWide));
   }
@@ -144,12 +144,12 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
     std::size_t count = 0;
     for (const auto& part : parts) {
       // Third differences need one interval more on either side.
-      const Eigen::Index last = part.end - kReach;
-      for (Eigen::Index k = part.begin + kReach + 1; k < last;) {
+      const Eigen::Index last = part.end - kSpeedReach;
+      for (Eigen::Index k = part.begin + kSpeedReach + 1; k < last;) {
         if (cancel != nullptr) cancel->check();
         const auto now = std::min(kBlock, static_cast<std::size_t>(last - k));
-        look_at(time.data() + (k - 1 - kReach), position.data() + (k - 1 - kReach), period, stamped,
-                now, seen, rough.data() + count, usual.data() + count);
+        look_at(time.data() + (k - 1 - kSpeedReach), position.data() + (k - 1 - kSpeedReach),
+                period, stamped, now, seen, rough.data() + count, usual.data() + count);
         count += now;
         k += static_cast<Eigen::Index>(now);
       }
@@ -159,14 +159,14 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
     const auto is_slow = [&](std::size_t i) { return rate(i) < kSlow * peak; };
     const auto is_fast = [&](std::size_t i) { return rate(i) > kFast * peak; };
     const auto still = choose(count, is_slow, change);
-    const double limit = 3.0 * (still.size() > kFewest ? median(still) : 0.0);
+    const double limit = 3.0 * (still.size() > kFewestIntervals ? median(still) : 0.0);
     // Where the changes are alike, nothing depends on the speed. Counting tells, mostly.
     const auto fast = count_fast(rough.data(), usual.data(), count, kFast * peak, limit);
-    if (fast.count < static_cast<std::int64_t>(kFewest)) return 0.0;
+    if (fast.count < static_cast<std::int64_t>(kFewestIntervals)) return 0.0;
     if (fast.count - fast.rough > fast.count / 2) return 0.0;
     if (!median_exceeds(choose(count, is_fast, change), limit)) return 0.0;
     const auto late = [&](std::size_t i) { return change(i) / rate(i); };
-    const double error = kNormal * median(choose(count, is_fast, late)) / std::sqrt(kThird);
+    const double error = kNormalError * median(choose(count, is_fast, late)) / std::sqrt(kThird);
     return median_exceeds(choose(count, is_fast, rate), smallest / error) ? error : 0.0;
   };
   const double stamped = error_of(1.0);

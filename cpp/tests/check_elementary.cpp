@@ -49,10 +49,10 @@ class Worst {
   double at_ = 0.0;
 };
 
-using Function = double (*)(double);
+using RealFunction = double (*)(double);
 using Exact = long double (*)(long double);
 
-void compare(Function function, Exact exact, double low, double high, int dense, int random,
+void compare(RealFunction function, Exact exact, double low, double high, int dense, int random,
              double limit = kUlps) {
   Worst worst;
   for (int i = 0; i <= dense; ++i) {

@@ -9,7 +9,7 @@
 #include "synthetic.hpp"
 
 namespace jointid::tests {
-namespace {
+namespace load_friction {
 
 using identify::Penalty;
 using identify::Residual;
@@ -179,5 +179,5 @@ CHECK_CASE("load friction: a link's torque must be there") {
                 "no torque behind the gear");
 }
 
-}  // namespace
+}  // namespace load_friction
 }  // namespace jointid::tests

@@ -14,7 +14,7 @@
 #include "synthetic.hpp"
 
 namespace jointid::tests {
-namespace {
+namespace own_terms {
 
 using identify::MaskedRecording;
 using identify::Penalty;
@@ -122,5 +122,5 @@ THREADED_CASE("own terms: fifty of them are found, and the penalty stays compres
   CHECK_CLOSE(compressed(found.best), direct(found.best), 1e-9 * (1e-3 + direct(found.best)));
 }
 
-}  // namespace
+}  // namespace own_terms
 }  // namespace jointid::tests

@@ -14,7 +14,7 @@
 #include "synthetic.hpp"
 
 namespace jointid::tests {
-namespace {
+namespace projection {
 
 using identify::minimise_projected;
 using identify::Penalty;
@@ -179,5 +179,5 @@ CHECK_CASE("projection: leaves what some windows cannot tell to the compressed p
                 "6 parameters, got 1");
 }
 
-}  // namespace
+}  // namespace projection
 }  // namespace jointid::tests

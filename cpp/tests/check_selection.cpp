@@ -20,7 +20,7 @@ using search::GaOptions;
 using search::Selection;
 using search::Selector;
 
-constexpr int kDraws = 200'000;
+constexpr int kSelections = 200'000;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Eigen::VectorXd of(std::initializer_list<double> values) {
@@ -36,13 +36,13 @@ void check_shares(const GaOptions& options, const Eigen::VectorXd& penalties,
   const Selector select(options, penalties);
   base::Random random(11, 0, 0, 0);
   Eigen::VectorXd counts = Eigen::VectorXd::Zero(penalties.size());
-  for (int i = 0; i < kDraws; ++i) counts[select(random)] += 1.0;
+  for (int i = 0; i < kSelections; ++i) counts[select(random)] += 1.0;
   for (Eigen::Index i = 0; i < penalties.size(); ++i) {
     const double p = expected[i];
-    const double allowed = 4.0 * std::sqrt(p * (1.0 - p) / kDraws);
-    CHECK_WITH(std::fabs(counts[i] / kDraws - p) <= allowed,
+    const double allowed = 4.0 * std::sqrt(p * (1.0 - p) / kSelections);
+    CHECK_WITH(std::fabs(counts[i] / kSelections - p) <= allowed,
                what + ", individual " + std::to_string(i) + ": " +
-                   std::to_string(counts[i] / kDraws) + " against " + std::to_string(p));
+                   std::to_string(counts[i] / kSelections) + " against " + std::to_string(p));
   }
 }
 

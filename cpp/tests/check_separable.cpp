@@ -13,7 +13,7 @@
 #include "synthetic.hpp"
 
 namespace jointid::tests {
-namespace {
+namespace separable {
 
 using identify::minimise_separable;
 using identify::Penalty;
@@ -241,5 +241,5 @@ THREADED_CASE("separable: what cannot be is refused by name") {
                 "6 parameters, got 1");
 }
 
-}  // namespace
+}  // namespace separable
 }  // namespace jointid::tests

@@ -13,7 +13,7 @@
 #include "synthetic.hpp"
 
 namespace jointid::tests {
-namespace {
+namespace shape_nodes {
 
 using identify::CompressedPenalty;
 using identify::Penalty;
@@ -118,5 +118,5 @@ CHECK_CASE("compressed: never negative where a shaped term is another one again"
   }
 }
 
-}  // namespace
+}  // namespace shape_nodes
 }  // namespace jointid::tests

@@ -10,7 +10,7 @@
 #include "synthetic.hpp"
 
 namespace jointid::tests {
-namespace {
+namespace sliding {
 
 using identify::Penalty;
 using identify::Residual;
@@ -132,5 +132,5 @@ CHECK_CASE("sliding: refuses what it cannot serve") {
   CHECK_REFUSED(sliding(still), "must be that of a motion");
 }
 
-}  // namespace
+}  // namespace sliding
 }  // namespace jointid::tests

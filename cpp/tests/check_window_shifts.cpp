@@ -13,7 +13,7 @@
 #include "synthetic.hpp"
 
 namespace jointid::tests {
-namespace {
+namespace window_shifts {
 
 using identify::Penalty;
 using identify::Recording;
@@ -51,8 +51,6 @@ std::shared_ptr<const identify::MaskedRecording> masked(const Recording& recordi
   return std::make_shared<const identify::MaskedRecording>(
       recording, identify::usable_intervals(recording, true));
 }
-
-}  // namespace
 
 THREADED_CASE("window shifts: as by windows that are cut anew, whatever the threads") {
   const Recording recording = drifting();
@@ -101,4 +99,5 @@ CHECK_CASE("window shifts: none where windows cannot be halved or are too few to
   CHECK(!joined.doubled);
 }
 
+}  // namespace window_shifts
 }  // namespace jointid::tests

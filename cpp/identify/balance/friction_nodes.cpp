@@ -11,8 +11,8 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kShort = 256;   // samples of a window whose nodes are made at once
-constexpr std::size_t kBlock = 1024;  // nodes that are stored at once
+constexpr std::size_t kShort = 256;    // samples of a window whose nodes are made at once
+constexpr std::size_t kStored = 1024;  // nodes that are stored at once
 
 /// Nodes of a whole window in which the velocity keeps one sign: the same without a question a
 /// sample.
@@ -48,8 +48,8 @@ void FrictionNodes::clear() {
 
 void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                   std::span<const Window> windows, FrictionNodes& nodes) {
-  std::array<double, kBlock> speeds;
-  std::array<double, kBlock> weights;
+  std::array<double, kStored> speeds;
+  std::array<double, kStored> weights;
   std::size_t made = 0;  // nodes that wait in the two
   const auto store = [&] {
     nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.begin() + made);
@@ -62,7 +62,7 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
     const auto count = static_cast<std::size_t>(window.end - window.begin);
     const double direction = count <= kShort ? one_sided(window) : 0.0;
     if (direction != 0.0 && count > 0 && whole(window)) {
-      if (made + count + 1 > kBlock) store();
+      if (made + count + 1 > kStored) store();
       whole_nodes(r.time.data() + window.begin, r.velocity.data() + window.begin, count, direction,
                   speeds.data() + made, weights.data() + made);
       made += count + 1;

@@ -14,7 +14,7 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kBlock = 2048;  // nodes: two buffers stay in the first-level cache
+constexpr std::size_t kNodesAtOnce = 2048;  // nodes: two buffers stay in the first-level cache
 
 JOINTID_CLONES void log_speeds(const double* speed, std::size_t count, double* logarithm) {
   for (std::size_t i = 0; i < count; ++i) logarithm[i] = model::log_speed(speed[i]);
@@ -66,7 +66,7 @@ JOINTID_CLONES void general_slopes(const GeneralShapes& shapes, const double* lo
 
 /// A block's logarithms: those of the nodes, or `made` now.
 const double* logarithms(const FrictionNodes& nodes, std::size_t begin, std::size_t count,
-                         std::array<double, kBlock>& made) {
+                         std::array<double, kNodesAtOnce>& made) {
   if (!nodes.logarithm.empty()) return nodes.logarithm.data() + begin;
   log_speeds(nodes.speed.data() + begin, count, made.data());
   return made.data();
@@ -76,7 +76,7 @@ const double* logarithms(const FrictionNodes& nodes, std::size_t begin, std::siz
 template <std::size_t Columns, class Fill>
 void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
                Eigen::Ref<Eigen::MatrixXd> result, Fill fill) {
-  std::array<std::array<double, kBlock>, Columns> value;
+  std::array<std::array<double, kNodesAtOnce>, Columns> value;
   const std::size_t windows = nodes.first.size() - 1;
   const std::size_t total = nodes.speed.size();
   std::size_t w = 0;
@@ -91,9 +91,9 @@ void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
     }
   };
   finish(0);  // windows without a node
-  for (std::size_t begin = 0; begin < total; begin += kBlock) {
+  for (std::size_t begin = 0; begin < total; begin += kNodesAtOnce) {
     if (cancel != nullptr) cancel->check();
-    const std::size_t count = std::min(kBlock, total - begin);
+    const std::size_t count = std::min(kNodesAtOnce, total - begin);
     fill(begin, count, value);
     std::size_t i = 0;
     while (i < count) {
@@ -173,7 +173,7 @@ void integrate_friction(const Term& term, const FrictionNodes& nodes, const doub
   const bool general = !gaussian && term.basis == model::SpeedBasis::stribeck_general;
   const GeneralShapes both =
       general ? GeneralShapes{shapes[0], shapes[1], base::log(shapes[0])} : GeneralShapes{};
-  std::array<double, kBlock> made;
+  std::array<double, kNodesAtOnce> made;
   sum_nodes<1>(nodes, cancel, column, [&](std::size_t begin, std::size_t count, auto& value) {
     const double* speed = nodes.speed.data() + begin;
     const double* weight = nodes.weight.data() + begin;
@@ -204,7 +204,7 @@ void integrate_slopes(const Term& term, const FrictionNodes& nodes, const double
     return;
   }
   const GeneralShapes both{shapes[0], shapes[1], base::log(shapes[0])};
-  std::array<double, kBlock> made;
+  std::array<double, kNodesAtOnce> made;
   sum_nodes<3>(nodes, cancel, columns, [&](std::size_t begin, std::size_t count, auto& value) {
     general_slopes(both, logarithms(nodes, begin, count, made), weight + begin, count,
                    value[0].data(), value[1].data(), value[2].data());

@@ -14,7 +14,7 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // intervals whose values are made at once
+constexpr std::size_t kIntervals = 1024;  // intervals whose values are made at once
 
 /// Adds values one after the other.
 double add_all(double sum, const double* value, const double* end) {
@@ -35,7 +35,7 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
                    Eigen::Ref<Eigen::VectorXd> result, Fill fill) {
   if (windows.empty()) return;
   WholeWindows whole(usable, windows);
-  std::array<double, kBlock> values;
+  std::array<double, kIntervals> values;
   const std::int64_t last = windows.back().end;
   std::int64_t from = 0;
   std::int64_t to = 0;  // of the intervals in `values`
@@ -44,7 +44,7 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
     for (auto k = window.begin; k < window.end;) {
       if (k < from || k >= to) {
         from = k;
-        to = std::min(k + static_cast<std::int64_t>(kBlock), std::max(last, window.end));
+        to = std::min(k + static_cast<std::int64_t>(kIntervals), std::max(last, window.end));
         fill(from, static_cast<std::size_t>(to - from), values.data());
       }
       const auto stop = std::min(window.end, to);
@@ -133,7 +133,7 @@ template <class Function>
 void integrate_position(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                         std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result,
                         Function function) {
-  std::array<double, kBlock + 1> samples;
+  std::array<double, kIntervals + 1> samples;
   sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
     const double* position = r.position.data() + k;
     for (std::size_t i = 0; i <= count; ++i) samples[i] = function(position[i]);
@@ -262,7 +262,7 @@ void integrate_torque(const RecordingView& r, const std::vector<std::uint8_t>& u
 void integrate_residual(const std::vector<KnownTerm>& terms, double gear_ratio,
                         const RecordingView& r, const std::vector<std::uint8_t>& usable,
                         std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
-  static_assert(kBlock <= detail::kMostIntervals);
+  static_assert(kIntervals <= detail::kMostIntervals);
   sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
     detail::interval_residuals(terms, gear_ratio, r, k, count, values);
   });

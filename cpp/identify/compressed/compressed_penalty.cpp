@@ -1,6 +1,5 @@
 #include "identify/compressed/compressed_penalty.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "base/clones.hpp"
+#include "base/decompositions.hpp"
 #include "base/digits.hpp"
 
 namespace jointid::identify {
@@ -94,17 +94,16 @@ Eigen::MatrixXd root_of(const double* products, Eigen::Index size, const double*
     return full;
   };
   const Eigen::MatrixXd full = square(products);
-  const Eigen::LLT<Eigen::MatrixXd> factor(full);
+  const auto factor = base::cholesky(full);
   if (derivative != nullptr) derivative->setZero(size, size);
-  if (factor.info() != Eigen::Success || !(full.diagonal().minCoeff() > 0.0)) {
+  if (!factor || !(full.diagonal().minCoeff() > 0.0)) {
     return full.diagonal().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   }
-  const Eigen::MatrixXd lower = factor.matrixL();
+  const Eigen::MatrixXd& lower = *factor;
   if (slope != nullptr) {
     // dL = L F(L^-1 dG L^-T), F the lower triangle with half the diagonal.
-    const auto triangle = lower.triangularView<Eigen::Lower>();
-    const Eigen::MatrixXd left = triangle.solve(square(slope));
-    Eigen::MatrixXd both = triangle.solve(left.transpose());
+    const Eigen::MatrixXd left = base::solve_lower(lower, square(slope));
+    Eigen::MatrixXd both = base::solve_lower(lower, left.transpose());
     both.diagonal() *= 0.5;
     const Eigen::MatrixXd inner = both.triangularView<Eigen::Lower>();
     *derivative = (lower * inner).transpose();

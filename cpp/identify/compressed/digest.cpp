@@ -1,10 +1,10 @@
 #include "identify/compressed/digest.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <utility>
 
 #include "base/clones.hpp"
+#include "base/decompositions.hpp"
 #include "base/inner_product.hpp"
 
 namespace jointid::identify {
@@ -46,10 +46,9 @@ JOINTID_CLONES double inner_product(const double* a, const double* b, std::size_
 /// Splits columns into their projections on the constant ones and inner products of the rest.
 Digest split(const Eigen::MatrixXd& constant, Eigen::MatrixXd& columns, Eigen::Index shaped) {
   const Eigen::Index m = constant.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(constant);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(constant.rows(), m);
+  auto [q, triangle] = base::orthogonal(constant);
   Digest result;
-  result.triangle = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
+  result.triangle = std::move(triangle);
   result.projections.resize(m, columns.cols());
   const auto rows = static_cast<std::size_t>(columns.rows());
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {

@@ -13,7 +13,7 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kTableLanes = 8;
+constexpr std::size_t kSumLanes = 8;
 constexpr std::size_t kMostPoints = 2048;
 constexpr std::size_t kMostRows = 1024;        // of all shaped columns together
 constexpr Eigen::Index kMostRemainders = 128;  // remainders
@@ -122,7 +122,7 @@ GeneralTable::GeneralTable(const GeneralRange& range, const SpeedPieces& pieces,
       points_(pieces.points()) {
   const Eigen::MatrixXd rest = remainders(moments.products);
   rank_ = static_cast<std::size_t>(rest.rows());
-  padded_ = (rows_ + rank_ + kTableLanes - 1) / kTableLanes * kTableLanes;
+  padded_ = (rows_ + rank_ + kSumLanes - 1) / kSumLanes * kSumLanes;
   matrix_.assign(shaped_ * points_.size() * padded_, 0.0);
   const auto count = static_cast<Eigen::Index>(points_.size());
   Eigen::MatrixXd both(moments.projections.rows() + rest.rows(), rest.cols());

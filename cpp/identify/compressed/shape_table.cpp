@@ -12,7 +12,7 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kLanes = ShapeTable::kLanes;
+constexpr std::size_t kTableLanes = ShapeTable::kLanes;
 
 // Points side by side, the lanes of a vector, and functions whose sums stay in registers.
 constexpr std::size_t kPoints = 8;
@@ -100,25 +100,26 @@ Eigen::MatrixXd at_pieces(const ShapeAxis& axis, Eigen::Index order,
 /// Horner's rule over `order` rows of lanes that lie `stride` apart.
 inline void horner(const double* rows, std::size_t order, std::size_t stride, double x,
                    double* result) {
-  std::array<double, kLanes> sum;
+  std::array<double, kTableLanes> sum;
   const double* row = rows + (order - 1) * stride;
-  for (std::size_t l = 0; l < kLanes; ++l) sum[l] = row[l];
+  for (std::size_t l = 0; l < kTableLanes; ++l) sum[l] = row[l];
   for (std::size_t k = 1; k < order; ++k) {
     row -= stride;
-    for (std::size_t l = 0; l < kLanes; ++l) sum[l] = sum[l] * x + row[l];
+    for (std::size_t l = 0; l < kTableLanes; ++l) sum[l] = sum[l] * x + row[l];
   }
-  for (std::size_t l = 0; l < kLanes; ++l) result[l] = sum[l];
+  for (std::size_t l = 0; l < kTableLanes; ++l) result[l] = sum[l];
 }
 
 /// The same for the derivative.
 inline void horner_slope(const double* rows, std::size_t order, std::size_t stride, double x,
                          double* result) {
-  std::array<double, kLanes> sum{};
+  std::array<double, kTableLanes> sum{};
   for (std::size_t k = order - 1; k >= 1; --k) {
     const double* row = rows + k * stride;
-    for (std::size_t l = 0; l < kLanes; ++l) sum[l] = sum[l] * x + static_cast<double>(k) * row[l];
+    for (std::size_t l = 0; l < kTableLanes; ++l)
+      sum[l] = sum[l] * x + static_cast<double>(k) * row[l];
   }
-  for (std::size_t l = 0; l < kLanes; ++l) result[l] = sum[l];
+  for (std::size_t l = 0; l < kTableLanes; ++l) result[l] = sum[l];
 }
 
 }  // namespace
@@ -153,7 +154,7 @@ Eigen::MatrixXd chebyshev_coefficients(const Eigen::MatrixXd& values) {
 ShapeTable::ShapeTable(std::vector<ShapeAxis> axes, const Samples& samples, int degree)
     : axes_(std::move(axes)),
       functions_(samples.values.front().rows()),
-      width_((static_cast<std::size_t>(functions_) + kLanes - 1) / kLanes * kLanes),
+      width_((static_cast<std::size_t>(functions_) + kTableLanes - 1) / kTableLanes * kTableLanes),
       order_(static_cast<std::size_t>(degree) + 1),
       terms_(axes_.size() == 1 ? order_ : order_ * order_) {
   axes_.size() == 1 ? build_line(samples.values.front()) : build_plane(samples);
@@ -213,20 +214,20 @@ void ShapeTable::values(const double* shapes, double* result) const {
   const auto first = axes_[0].place(shapes[0]);
   if (axes_.size() == 1) {
     const double* rows = row(first.piece);
-    for (std::size_t f = 0; f < width_; f += kLanes) {
+    for (std::size_t f = 0; f < width_; f += kTableLanes) {
       horner(rows + f, order_, width_, first.local, result + f);
     }
     return;
   }
   const auto second = axes_[1].place(shapes[1]);
   const double* rows = row(first.piece * axes_[1].pieces() + second.piece);
-  std::array<double, 32 * kLanes> line;  // powers of the first shape
-  for (std::size_t f = 0; f < width_; f += kLanes) {
+  std::array<double, 32 * kTableLanes> line;  // powers of the first shape
+  for (std::size_t f = 0; f < width_; f += kTableLanes) {
     for (std::size_t a = 0; a < order_; ++a) {
       horner(rows + a * order_ * width_ + f, order_, width_, second.local,
-             line.data() + a * kLanes);
+             line.data() + a * kTableLanes);
     }
-    horner(line.data(), order_, kLanes, first.local, result + f);
+    horner(line.data(), order_, kTableLanes, first.local, result + f);
   }
 }
 
@@ -234,19 +235,20 @@ void ShapeTable::slopes(const double* shapes, int which, double* result) const {
   const auto first = axes_[0].place(shapes[0]);
   if (axes_.size() == 1) {
     const double* rows = row(first.piece);
-    for (std::size_t f = 0; f < width_; f += kLanes) {
+    for (std::size_t f = 0; f < width_; f += kTableLanes) {
       horner_slope(rows + f, order_, width_, first.local, result + f);
     }
   } else {
     const auto second = axes_[1].place(shapes[1]);
     const double* rows = row(first.piece * axes_[1].pieces() + second.piece);
-    std::array<double, 32 * kLanes> line;
-    for (std::size_t f = 0; f < width_; f += kLanes) {
+    std::array<double, 32 * kTableLanes> line;
+    for (std::size_t f = 0; f < width_; f += kTableLanes) {
       for (std::size_t a = 0; a < order_; ++a) {
         (which == 1 ? horner_slope : horner)(rows + a * order_ * width_ + f, order_, width_,
-                                             second.local, line.data() + a * kLanes);
+                                             second.local, line.data() + a * kTableLanes);
       }
-      (which == 0 ? horner_slope : horner)(line.data(), order_, kLanes, first.local, result + f);
+      (which == 0 ? horner_slope : horner)(line.data(), order_, kTableLanes, first.local,
+                                           result + f);
     }
   }
   const auto& axis = axes_[static_cast<std::size_t>(which)];

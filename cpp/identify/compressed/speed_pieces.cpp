@@ -12,7 +12,7 @@ namespace {
 
 // Half a piece in units of d log v, and the points with which any decay is known there to 1e-14.
 constexpr double kHalf = 0.7;
-constexpr int kPoints = 20;
+constexpr int kPiecePoints = 20;
 // Powers below e^-39 leave 1 as it is, decays behind a power of 45 are nothing beside 1.
 constexpr double kResting = 39.0;
 constexpr double kVanished = 45.0;
@@ -24,13 +24,13 @@ constexpr double kRest = -1e6;       // log speed of a joint at rest
 /// a sum of (-1)^k / k! e^(k d x), x < -below, whose n-th Chebyshev coefficient over the piece is
 /// below (k d width / 4)^n / n! e^(-k d below) / k!.
 int points_below(double below, double width, const GeneralRange& range) {
-  if (below <= 0.0) return kPoints;
+  if (below <= 0.0) return kPiecePoints;
   double factorial = 2.0;
-  for (int n = 3; n < kPoints; ++n) {
+  for (int n = 3; n < kPiecePoints; ++n) {
     factorial *= n;
     double largest = 0.0;
     double other = 1.0;
-    for (int k = 1; k <= kPoints; ++k) {
+    for (int k = 1; k <= kPiecePoints; ++k) {
       other *= k;
       const double worst = k * std::clamp(n / (k * below), range.exponent_low, range.exponent_high);
       const double size = base::exp(n * base::log(0.25 * worst * width) - worst * below);
@@ -38,7 +38,7 @@ int points_below(double below, double width, const GeneralRange& range) {
     }
     if (largest < kRounding) return n;
   }
-  return kPoints;
+  return kPiecePoints;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/decompositions.hpp"
 #include "base/householder.hpp"
 
 namespace jointid::identify {
@@ -57,8 +58,7 @@ class Basis {
       own.col(i) = triangle_.col(used_[static_cast<std::size_t>(i)]);
     }
     const Eigen::MatrixXd upper = q_.transpose() * own;
-    const Eigen::VectorXd solved =
-        upper.triangularView<Eigen::Upper>().solve(q_.transpose() * reading_);
+    const Eigen::VectorXd solved = base::solve_upper(upper, q_.transpose() * reading_);
     Eigen::VectorXd result = Eigen::VectorXd::Zero(triangle_.cols() - 1);
     for (Eigen::Index i = 0; i < used(); ++i)
       result[used_[static_cast<std::size_t>(i)]] = solved[i];

@@ -1,9 +1,9 @@
 #include "identify/solve/clustered.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
 
+#include "base/decompositions.hpp"
 #include "base/gram.hpp"
 
 namespace jointid::identify {
@@ -58,7 +58,6 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
   if (rows.cols() == 0) return result;  // nothing is determined
   VectorXd even = VectorXd::Zero(parameters);
   double pooled = 0.0;
-  Eigen::SelfAdjointEigenSolver<MatrixXd> solver(rows.cols());
   MatrixXd shares;
   MatrixXd whitened;
   VectorXd scores;
@@ -71,10 +70,10 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
     shares = base::symmetric_products(mine, mine);
     scores = base::products(mine, residual.segment(first, length));
     if (!correct_by_series(shares, scores)) {
-      solver.compute(shares);
-      corrected.noalias() = solver.eigenvectors().transpose() * scores;
-      corrected.array() /= (1.0 - solver.eigenvalues().array()).max(kLeast).sqrt();
-      scores.noalias() = solver.eigenvectors() * corrected;
+      const auto [values, vectors] = base::eigenpairs(shares);
+      corrected.noalias() = vectors.transpose() * scores;
+      corrected.array() /= (1.0 - values.array()).max(kLeast).sqrt();
+      scores.noalias() = vectors * corrected;
     }
     effect.noalias() = whitening.transpose() * scores;
     result.covariance.noalias() += effect * effect.transpose();

@@ -1,12 +1,12 @@
 #include "identify/solve/covariance.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "base/decompositions.hpp"
 #include "base/singular.hpp"
 #include "base/student.hpp"
 #include "identify/solve/clustered.hpp"
@@ -97,11 +97,10 @@ bool contradicted(const VectorXd& residual, double pooled, double pooled_freedom
 MatrixXd inverse_of(MatrixXd covariance) {
   const VectorXd units = errors_of(covariance, true);
   scale(covariance, units.data());
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(covariance);
-  VectorXd inverse = solver.eigenvalues();
+  auto [inverse, vectors] = base::eigenpairs(covariance);
   // Of segments fewer than parameters the correlations are barely a matrix of correlations.
   for (double& value : inverse) value = 1.0 / std::max(value, kSingular);
-  MatrixXd result = weighted_squares(solver.eigenvectors(), inverse.data(), inverse.size());
+  MatrixXd result = weighted_squares(vectors, inverse.data(), inverse.size());
   scale(result, units.data());
   return result;
 }
@@ -135,7 +134,7 @@ void correlate(MatrixXd triangle, const std::optional<Centre>& centre, Covarianc
 }
 
 /// By how much variances are larger than those of white residuals of one size.
-struct Stretch {
+struct Widening {
   VectorXd ratio;
   VectorXd freedom;  ///< behind each variance
   bool white = true;
@@ -146,14 +145,14 @@ struct Stretch {
 
 /// `whitening` takes the scores of the determined directions to unit variance: its own product,
 /// `unit`, is the covariance for residuals of unit variance.
-Stretch stretch_of(const Eigen::Ref<const MatrixXd>& jacobian, const VectorXd& residual,
-                   const MatrixXd& whitening, const MatrixXd& unit, const Cuts& cuts) {
+Widening widening_of(const Eigen::Ref<const MatrixXd>& jacobian, const VectorXd& residual,
+                     const MatrixXd& whitening, const MatrixXd& unit, const Cuts& cuts) {
   const Index parameters = whitening.cols();
   const auto directions = static_cast<double>(whitening.rows());
   const auto count = static_cast<double>(residual.size());
   const double freedom = std::max(1.0, count - directions);
   const double variance = residual.squaredNorm() / freedom;
-  Stretch result;
+  Widening result;
   result.ratio.setOnes(parameters);
   result.freedom.setConstant(parameters, freedom);
   if (whitening.rows() == 0 || !(variance > 0.0)) return result;
@@ -230,7 +229,7 @@ Covariance covariance_of(const Eigen::Ref<const MatrixXd>& jacobian, const Vecto
   Covariance result;
   result.matrix = weighted_squares(found.directions, inverse_squares.data(), known);
   scale(result.matrix, factor.data());
-  auto stretch = stretch_of(jacobian, residual, whitening, result.matrix, cuts);
+  auto stretch = widening_of(jacobian, residual, whitening, result.matrix, cuts);
   result.white = stretch.white;
   VectorXd wider(parameters);
   VectorXd of_all(parameters);

@@ -1,11 +1,11 @@
 #include "identify/solve/projected_search.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "identify/balance/terms.hpp"
 #include "identify/solve/projection.hpp"
 #include "identify/solve/scale.hpp"
@@ -25,7 +25,7 @@ constexpr std::size_t kValleys = 3;
 constexpr double kTold = 50.0;      // variances that tell one point of the scan from another
 constexpr double kSettled = 1e-13;  // of the penalty: what the last step but one promises at most
 constexpr double kRough = 1e-4;     // the same over some windows, which only give a start
-constexpr int kSteps = 30;
+constexpr int kSteps = 60;
 constexpr int kRoughSteps = 8;
 constexpr const char* kAtEnd = "the optimum lies near the end of a shape's range";
 constexpr std::size_t kLarge = 1U << 17U;  // nodes: an evaluation beyond must be interruptible
@@ -103,13 +103,23 @@ class ProjectedSearch {
     Found best{start, evaluate(projection, start), false};
     double damping = 0.0;
     Eigen::MatrixXd secant;  // of a single shape: the gradient's own slope
+    const auto damp = [&] {
+      if (damping > 1e6) return false;
+      damping = std::max(1e-2, 10.0 * damping);
+      secant.resize(0, 0);
+      return true;
+    };
     for (int step = 0; step < most; ++step) {
       const Eigen::VectorXd move = bounded_step(best, secant, damping);
       const double promised =
           -best.point.gradient.dot(move) -
           0.5 * move.dot((secant.size() > 0 ? secant : best.point.curvature) * move);
+      if (promised < -settled * best.point.value) {  // an end bent the step
+        if (!damp()) break;
+        continue;
+      }
       const bool last = !(promised > settled * best.point.value);
-      if (last) best.settled = promised >= -settled * best.point.value;  // not if an end bent it
+      best.settled = last;
       if (last && promised <= 0.0) break;
       Found next{best.shares + move, {}, best.settled};
       next.point = evaluate(projection, next.shares);
@@ -119,9 +129,7 @@ class ProjectedSearch {
       }
       if (next.point.value > best.point.value) {
         best.settled = next.point.value - best.point.value <= settled * best.point.value;
-        if (best.settled || damping > 1e6) break;
-        damping = std::max(1e-2, 10.0 * damping);
-        secant.resize(0, 0);
+        if (best.settled || !damp()) break;
         continue;
       }
       damping = damping > 1e-3 ? 0.1 * damping : 0.0;
@@ -246,7 +254,7 @@ class ProjectedSearch {
       curvature(i, i) = 1.0;
       right[i] = 0.0;
     }
-    const Eigen::VectorXd step = curvature.ldlt().solve(right);
+    const Eigen::VectorXd step = base::solve_semidefinite(curvature, right);
     return (from.shares + step).cwiseMax(0.0).cwiseMin(1.0) - from.shares;
   }
 

@@ -1,9 +1,9 @@
 #include "identify/solve/projection.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 
+#include "base/decompositions.hpp"
 #include "identify/solve/elimination.hpp"
 
 namespace jointid::identify {
@@ -209,11 +209,7 @@ ProjectedPoint Projection::at(const Eigen::VectorXd& shapes) const {
       ++followers;
     }
   }
-  if (followers > 0) {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(follow.leftCols(followers));
-    inside.applyOnTheLeft(qr.householderQ().adjoint());
-    inside = inside.bottomRows(residual.size() - qr.rank()).eval();
-  }
+  if (followers > 0) inside = base::outside(follow.leftCols(followers), inside);
   result.curvature = 2.0 * (inside.transpose() * inside + beyond.transpose() * beyond);
   return result;
 }

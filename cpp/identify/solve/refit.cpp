@@ -1,12 +1,12 @@
 #include "identify/solve/refit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 
+#include "base/decompositions.hpp"
 #include "base/gram.hpp"
 
 namespace jointid::identify {
@@ -89,7 +89,7 @@ Eigen::VectorXd step_from(const Balanced& sums, const search::Domain& domain,
   }
   Eigen::VectorXd step = Eigen::VectorXd::Zero(theta.size());
   if (count == 0) return step;
-  const Eigen::VectorXd scaled = system.ldlt().solve(right);
+  const Eigen::VectorXd scaled = base::solve_semidefinite(system, right);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto a = moving[static_cast<std::size_t>(i)];
     step[a] = scaled[i] / std::sqrt(sums.square(a, a));

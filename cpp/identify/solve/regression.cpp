@@ -1,10 +1,10 @@
 #include "identify/solve/regression.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "base/householder.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
@@ -62,15 +62,13 @@ std::optional<std::pair<Eigen::VectorXd, double>> solve_independent(
   const Eigen::VectorXd norms = regressors.colwise().norm();
   if (!(norms.minCoeff() > 0.0)) return std::nullopt;
   const Eigen::VectorXd wanted = triangle.col(target);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(regressors * norms.cwiseInverse().asDiagonal());
-  const auto upper = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd inverse = upper.solve(Eigen::MatrixXd::Identity(count, count));
+  const auto [upper, right] = base::reduced(regressors * norms.cwiseInverse().asDiagonal(), wanted);
+  const Eigen::MatrixXd inverse = base::solve_upper(upper, Eigen::MatrixXd::Identity(count, count));
   // Both have at least the norms that make the condition; the scaled columns' is the root of
   // their number.
   const double condition = std::sqrt(static_cast<double>(count)) * inverse.norm();
   if (!(condition < kIndependent)) return std::nullopt;
-  const Eigen::VectorXd turned = qr.householderQ().adjoint() * wanted;
-  const Eigen::VectorXd found = upper.solve(turned.head(count)).cwiseQuotient(norms);
+  const Eigen::VectorXd found = base::solve_upper(upper, right).cwiseQuotient(norms);
   return std::make_pair(found, (wanted - regressors * found).norm());
 }
 
