@@ -8,7 +8,9 @@
 
 namespace jointid::base {
 
-unsigned processors(int threads) {
+namespace {
+
+unsigned checked(int threads) {
   if (threads < 0 || threads > 1024) {
     throw InputError("must be 0 (all) to 1024", "threads", as_value(threads));
   }
@@ -16,7 +18,9 @@ unsigned processors(int threads) {
                      : std::max(1U, std::thread::hardware_concurrency());
 }
 
-Pool::Pool(int threads, Poll poll) : wanted_(processors(threads)), poll_(std::move(poll)) {}
+}  // namespace
+
+Pool::Pool(int threads, Poll poll) : wanted_(checked(threads)), poll_(std::move(poll)) {}
 
 void Pool::start() {
   workers_.reserve(wanted_);

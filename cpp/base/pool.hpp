@@ -17,9 +17,6 @@ namespace jointid::base {
 /// Called by the waiting thread at least every 20 ms; it throws to end the work (Ctrl-C).
 using Poll = std::function<void()>;
 
-/// How many threads are meant: 0 are as many as the hardware has. Refuses less, and more than 1024.
-unsigned processors(int threads);
-
 /// Splits index ranges over worker threads while the calling thread polls.
 ///
 /// The calling thread never works itself: that is what lets one long evaluation be interrupted.

@@ -51,7 +51,6 @@ void bind_distributions(py::module_& m);
 void bind_terms(py::module_& m);
 void bind_recording(py::module_& m);
 void bind_penalty(py::module_& m);
-void bind_begun(py::module_& m);
 void bind_genetic(py::module_& m);
 void bind_search(py::module_& m);
 void bind_online(py::module_& m);

@@ -1,5 +1,10 @@
-#include "bind/beside.hpp"
+#include <cmath>
+#include <utility>
+
+#include "bind/recordings.hpp"
 #include "diagnose/inspection.hpp"
+#include "diagnose/ripple.hpp"
+#include "identify/penalty/penalty_parts.hpp"
 
 namespace jointid::bind {
 
@@ -79,19 +84,34 @@ void bind_diagnose(py::module_& m) {
         for (const auto& [values, rule, spikes] : channels) {
           subject.channels.push_back({signal_of(values), rule, spikes});
         }
-        py::list kept;
-        for (const Array* each : {&time, &position, &velocity}) kept.append(*each);
-        for (const auto& each : channels) kept.append(std::get<0>(each));
-        return Beside(time.size(), threads, [subject, kept](base::Pool* pool) {
-          return diagnose::inspect(subject, pool);
-        });
+        const py::gil_scoped_release nogil;
+        return with_pool(time.size(), threads,
+                         [&](base::Pool* pool) { return diagnose::inspect(subject, pool); });
       },
       py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
       py::arg("velocity_derived"), py::arg("period"), py::arg("channels"), py::arg("threads") = 0,
       JOINTID_TEXT(
-          "Begin to look at a recording's signals; a channel is a signal, its rule, and whether to "
-          "look for "
+          "Look at a recording's signals; a channel is a signal, its rule, and whether to look for "
           "spikes."));
+  m.def(
+      "ripple",
+      [](const Recordings& recordings, const std::vector<std::string>& terms,
+         const identify::WindowOptions& windows, identify::Residual residual, bool mask_standstill,
+         double gear_ratio, const std::vector<std::string>& per_recording,
+         const Eigen::VectorXd& theta, int halves, int threads) {
+        const py::gil_scoped_release nogil;
+        return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
+          const identify::PenaltyParts parts(all_masked(recordings, mask_standstill, pool), terms,
+                                             windows, residual, gear_ratio, per_recording);
+          auto found = diagnose::ripple_spectrum(parts, theta, std::abs(gear_ratio), halves, pool);
+          return std::make_tuple(found.windows, found.power, std::move(found.multiple));
+        });
+      },
+      py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
+      py::arg("residual"), py::arg("mask_standstill"), py::arg("gear_ratio"),
+      py::arg("per_recording"), py::arg("theta"), py::arg("halves"), py::arg("threads") = 0,
+      JOINTID_TEXT("Of short windows: their number, the sum of squared mean residuals, and the "
+                   "magnitude of their sum over each half multiple of the motor's angle."));
 }
 
 }  // namespace jointid::bind

@@ -13,7 +13,6 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   jointid::bind::bind_terms(m);
   jointid::bind::bind_recording(m);
   jointid::bind::bind_penalty(m);
-  jointid::bind::bind_begun(m);
   jointid::bind::bind_search(m);
   jointid::bind::bind_online(m);
   jointid::bind::bind_signals(m);

@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bind/beside.hpp"
 #include "identify/recording/windows.hpp"
 
 namespace jointid::bind {
@@ -71,12 +70,6 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
 }
 
 void bind_recording(py::module_& m) {
-  py::class_<Beside>(m, "Beside",
-                     JOINTID_TEXT("Work that was begun, while the interpreter goes on."))
-      .def("result", &Beside::result,
-           JOINTID_TEXT("Wait for its end, and return what it found, or raise what it met."))
-      .def("further", &Beside::further,
-           JOINTID_TEXT("The same of what it found when it went on; None if it did not."));
   enumeration<Hold>(m, "Hold", "The torque signal between samples.",
                     {{"zero_order", Hold::zero_order}, {"linear", Hold::linear}});
   using Array = SharedRecording::Array;

@@ -1,11 +1,13 @@
-#include "bind/bind.hpp"
+#include "bind/recordings.hpp"
 #include "identify/penalty/penalty.hpp"
 #include "identify/solve/projected_search.hpp"
 #include "identify/solve/separable.hpp"
+#include "identify/solve/window_shifts.hpp"
 #include "search/polish.hpp"
 
 namespace jointid::bind {
 
+using identify::Penalty;
 using identify::PenaltyFunction;
 using search::Domain;
 
@@ -84,6 +86,26 @@ void bind_search(py::module_& m) {
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
       py::arg("iterations") = 200);
+  m.def(
+      "window_shifts",
+      [](const Penalty& penalty, const Recordings& recordings,
+         const std::vector<std::string>& terms, bool mask_standstill, double gear_ratio,
+         const std::vector<std::string>& per_recording, Eigen::VectorXd lower,
+         Eigen::VectorXd upper, const Eigen::VectorXd& best, int threads) {
+        const Domain domain{std::move(lower), std::move(upper)};
+        const py::gil_scoped_release nogil;
+        return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
+          auto found =
+              identify::window_shifts(penalty, all_masked(recordings, mask_standstill, pool), terms,
+                                      gear_ratio, per_recording, domain, best, pool);
+          return std::make_pair(std::move(found.halved), std::move(found.doubled));
+        });
+      },
+      py::arg("penalty"), py::kw_only(), py::arg("recordings"), py::arg("terms"),
+      py::arg("mask_standstill"), py::arg("gear_ratio"), py::arg("per_recording"), py::arg("lower"),
+      py::arg("upper"), py::arg("best"), py::arg("threads") = 0,
+      JOINTID_TEXT("The minima with each window halved and with neighbours joined in pairs; None "
+                   "where there are no such windows."));
 }
 
 }  // namespace jointid::bind

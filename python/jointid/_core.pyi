@@ -15,7 +15,6 @@ __all__: list[str] = [
     "Agreement",
     "BalanceColumn",
     "BalanceNoise",
-    "Beside",
     "CompensatedPid",
     "CompressedPenalty",
     "Control",
@@ -72,7 +71,6 @@ __all__: list[str] = [
     "Trajectory",
     "TrialResult",
     "WindowOptions",
-    "begin_search",
     "chi_square_quantile",
     "circle",
     "covariance",
@@ -185,10 +183,6 @@ class Model:
     def name(self) -> str: ...
     @property
     def terms(self) -> list[str]: ...
-
-class Beside:
-    def further(self) -> typing.Any: ...
-    def result(self) -> typing.Any: ...
 
 class Hold(enum.Enum):
     linear = ...
@@ -2593,20 +2587,6 @@ class Excitation:
     @property
     def joints(self) -> list[DrawnJoint]: ...
 
-def begin_search(
-    *,
-    recordings: collections.abc.Sequence[Recording],
-    terms: collections.abc.Sequence[str],
-    windows: WindowOptions,
-    residual: Residual,
-    mask_standstill: bool,
-    gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
-    per_recording: collections.abc.Sequence[str],
-    free: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
-    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> Beside | None: ...
 def chi_square_quantile(
     tail: typing.SupportsFloat | typing.SupportsIndex,
     freedom: typing.SupportsFloat | typing.SupportsIndex,
@@ -2682,7 +2662,7 @@ def inspect(
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]
     ],
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> Beside: ...
+) -> Inspection: ...
 def is_parameter(name: str) -> bool: ...
 def leading_coefficient(
     windows: collections.abc.Sequence[SmoothWindows],
@@ -2815,7 +2795,7 @@ def ripple(
     theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     halves: typing.SupportsInt | typing.SupportsIndex,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> Beside: ...
+) -> tuple[int, float, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]: ...
 def roll_out_servos(
     loops: collections.abc.Sequence[ServoLoop],
     logs: collections.abc.Sequence[
@@ -2887,7 +2867,10 @@ def window_shifts(
     upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     best: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> Beside: ...
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None,
+]: ...
 
 __avx2__: bool
 __version__: str

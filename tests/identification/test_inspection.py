@@ -20,7 +20,7 @@ def seen(signal: Any, rule: _core.SpikeRule, **other: Any) -> Any:
         "velocity_derived": False,
         "period": 1e-3,
     } | other
-    return _core.inspect(channels=[(np.asarray(signal), rule, True)], **fields).result()
+    return _core.inspect(channels=[(np.asarray(signal), rule, True)], **fields)
 
 
 def staircase(step: float, height: float, at: int = 2100) -> Any:
@@ -116,7 +116,7 @@ def moved_at(factor: float, back: float = 0.0, steps: int = 0) -> int:
         velocity_derived=False,
         period=1e-3,
         channels=[],
-    ).result()
+    )
     return int(found.jump)
 
 
@@ -141,7 +141,7 @@ def jump_of(factor: float, finest: float) -> int:
         velocity_derived=False,
         period=1e-3,
         channels=[],
-    ).result()
+    )
     return int(found.jump)
 
 
@@ -161,7 +161,7 @@ def agreement(position: Any, velocity: Any, time: Any = TIME) -> Any:
         velocity_derived=False,
         period=1e-3,
         channels=[],
-    ).result()
+    )
     return found.agreement
 
 

@@ -13,7 +13,6 @@ from fake_evidence import RUN, TIME, evidence, found, inspected, parameter, sign
 import jointid as jid
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
-from jointid.identification.warnings import ripple
 
 Make = Callable[[float], Any]
 _N = len(RUN)
@@ -90,8 +89,10 @@ def _ripple(share: float, windows: int = 100_000, others: float = 0.0) -> Any:
     """A peak at twice the motor's angle with this share of the residual's variance."""
     sums = np.full(16, np.sqrt(0.5 * others * windows))
     sums[3] = np.sqrt(0.5 * share * windows)
-    work = SimpleNamespace(result=lambda: (windows, 1.0, sums))
-    return evidence(joint=jid.thesis_joint(), spectrum=work)
+    given = evidence(joint=jid.thesis_joint(), best=np.zeros(0))
+    given.problem.choice.gear_ratio = -100.0
+    given.problem.ripple = lambda *_: (windows, 1.0, sums)
+    return given
 
 
 def _swing(swing: float) -> Any:
@@ -367,14 +368,18 @@ def test_a_noisy_velocity_is_left_out_where_the_rate_is_quieter(
 
 
 def test_ripple_is_looked_for_in_windows_of_two_samples() -> None:
-    (finding,) = found("ripple", _ripple(0.1))
-    assert finding.evidence["multiple"].value == 2.0
+    given = _ripple(0.1)
     asked: list[float] = []
-    given = evidence(joint=jid.thesis_joint())
-    given.problem.choice = SimpleNamespace(gear_ratio=-100.0)
-    given.problem.ripple = lambda *asked_for: asked.append(asked_for[2])
-    ripple.begin(given.problem, np.zeros(0))
+    spectrum = given.problem.ripple
+
+    def ripple(best: Any, halves: int, period: float) -> Any:
+        asked.append(period)
+        return spectrum(best, halves, period)
+
+    given.problem.ripple = ripple
+    (finding,) = found("ripple", given)
+    assert finding.evidence["multiple"].value == 2.0
     assert asked == [pytest.approx(2.2 * RUN.sample_period)]
     given.problem.choice.gear_ratio = -1.0  # the motor's angle is the joint's
-    ripple.begin(given.problem, np.zeros(0))
+    assert found("ripple", given) == []
     assert len(asked) == 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -38,9 +38,8 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.engine import Balance
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
-from jointid.identification.warnings.inspection import Inspected
+from jointid.identification.warnings.inspection import inspect
 from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
-from jointid.identification.warnings.ripple import begin as begin_ripple
 from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import column_sizes, columns_with, size
 from jointid.problem.problem import Problem
@@ -60,8 +59,7 @@ def infer(
     domain: SearchDomain,
     best: Array,
     balance: Balance | None,
-    inspections: tuple[Inspected, ...],
-    other_windows: Callable[[], Shifts],
+    shifts: Shifts,
     beside: Mapping[str, Array | None],
     convergence: Convergence | None,
     status: str,
@@ -78,9 +76,8 @@ def infer(
     ----------
     balance : tuple or None
         What the penalty's `balance_at` returns at the minimum; None: computed here.
-    inspections : tuple of Inspected
-    other_windows : callable
-        Returns the change of each parameter when the windows are halved and doubled.
+    shifts : tuple of ndarray or None
+        Change of each parameter when the windows are halved and doubled.
     refinements : Refinements
         What was done to the data before the search.
     beside : mapping of str to ndarray or None
@@ -120,7 +117,6 @@ def infer(
     spread = with_undivided(spread, kept, free, names, groups)
     instant = refinements.sensor_instant
     unknown = 1.0 if instant is None else instant.unknown
-    shifts = other_windows()
     counted = admissible_shifts(penalty, shifts)
     parts = systematic_errors(kept, len(best), triangle, lacking, counted, unknown)
     del lacking
@@ -151,8 +147,6 @@ def infer(
         columns = penalty.linear_columns(best)
     at_best = regressor(penalty, columns, threads)
     del columns
-    # Where its arrays have gone: of a long recording the ripple is looked for at once.
-    spectrum = begin_ripple(problem, best)
     parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)
     statistics = statistics_of(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
@@ -210,8 +204,7 @@ def infer(
             message=message,
             bounds_from_data=domain.from_data,
             guessed_sign=domain.guessed_sign,
-            inspections=inspections,
-            spectrum=spectrum,
+            inspections=tuple(inspect(run, threads) for run in problem.recordings),
             at_best=at_best,
             causes=causes,
             cause_of=partial(_cause_of, problem, penalty, parameters, torque_level),

@@ -39,7 +39,7 @@ def with_instruments(
     problem : Problem
         Its choice has the residual "instruments", or another one, which is left as it is.
     penalty : Penalty
-        Over `windows`, of which it projects the reading, unless that was begun ahead.
+        Over `windows`, of which it projects the reading.
     known : sequence of Parameter
         What joint and call state of each parameter of the penalty; one that is fixed is no instrument.
     windows : int, float, str, WindowOptions or None
@@ -64,9 +64,8 @@ def with_instruments(
                 remedy=Action("call", {"residual": "sensor"}),
             )
     if stated or not reason:
-        if penalty.first_stage is None:
-            free = [index for index, each in enumerate(known) if each.vary]
-            penalty.project_reading(free, threads=problem.threads)
+        free = [index for index, each in enumerate(known) if each.vary]
+        penalty.project_reading(free, threads=problem.threads)
         stage = penalty.first_stage
         reason = WEAK_READING if stage is not None and stage.weak else ""
     if stated or not reason:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from jointid.estimate.estimate import Estimate
@@ -167,14 +166,10 @@ def identified(
             threads=search.threads,
             choose=True,
             unfit=unfit,
-            ahead=search.method != "separable",
             **options,
         )
-        inspected = prepared.inspected()
-        outcome = run_search(search, prepared.penalty, prepared.domain, prepared.ahead)
-        # An estimate keeps what it was prepared with, and other recordings have other signals.
-        prepared = replace(prepared, ahead=None, looked=())
-        estimate = prepared.estimate(search, outcome, started, attribute, inspected)
+        outcome = run_search(search, prepared.penalty, prepared.domain)
+        estimate = prepared.estimate(search, outcome, started, attribute)
         reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
         if not reason or fitted in unfit:
             return estimate

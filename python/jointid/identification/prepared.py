@@ -39,13 +39,11 @@ from jointid.identification.refinements.sensor_instant import (
     without_early_reading,
 )
 from jointid.identification.refinements.slow_motion import checked_speed
-from jointid.identification.search.ahead import Ahead
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
 from jointid.identification.search.stated_bounds import known_parameters
-from jointid.identification.warnings.inspection import Inspected, inspect_each
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
@@ -80,10 +78,6 @@ class Prepared:
         What was done to the data, and why.
     selection : Selection or None
         How the model was chosen; None if it was named.
-    ahead : Ahead or None
-        What was begun of the penalty's compressed form.
-    looked : tuple of Inspected
-        Of each recording, where the look at its signals was begun; else empty.
     """
 
     problem: Problem
@@ -93,12 +87,6 @@ class Prepared:
     given: tuple[Recording, ...]
     refinements: Refinements
     selection: Selection | None = None
-    ahead: Ahead | None = None
-    looked: tuple[Inspected, ...] = ()
-
-    def inspected(self) -> tuple[Inspected, ...]:
-        """Begin to inspect the signals, unless that was begun before."""
-        return self.looked or inspect_each(self.problem.recordings, self.problem.threads)
 
     def estimate(
         self,
@@ -106,7 +94,6 @@ class Prepared:
         outcome: Outcome,
         started: float,
         attribute: bool = True,
-        inspected: tuple[Inspected, ...] = (),
     ) -> Estimate:
         """Return the estimate of a search's outcome: intervals, checks, warnings.
 
@@ -119,14 +106,11 @@ class Prepared:
         attribute : bool
             Whether the causes of a misfit are looked for. Where they are not, the estimate's source finds them
             later; but where a drift may have to be taken away they are looked for in any case. Default True.
-        inspected : tuple of Inspected
-            What `inspected` has begun. Default: it is begun here.
         """
-        inspected = inspected or self.inspected()
-        estimate = self._inferred(search, outcome, started, attribute, inspected=inspected)
+        estimate = self._inferred(search, outcome, started, attribute)
         left = not attribute and is_misfit(estimate.windows, estimate.residuals)
         if left and may_drift(self.problem, self.penalty, estimate.parameters):
-            return self.estimate(search, outcome, started, inspected=inspected)
+            return self.estimate(search, outcome, started)
         steady = without_drift(self.problem, self.penalty, estimate)
         fitted = self
         known: tuple[Cause, ...] = ()
@@ -135,9 +119,7 @@ class Prepared:
             penalty = penalty_as_fitted(problem, self.windows, self.domain)
             other = replace(self, problem=problem, penalty=penalty)
             found = run_search(search, other.penalty, other.domain)
-            again = other._inferred(
-                search, found, started, known=(drift,), inspected=other.inspected()
-            )
+            again = other._inferred(search, found, started, known=(drift,))
             if again.residuals.rms < _STEADIER * estimate.residuals.rms:
                 estimate, fitted, known = again, other, (drift,)
         source = EstimateSource(
@@ -172,8 +154,6 @@ class Prepared:
         started: float,
         attribute: bool = True,
         known: tuple[Cause, ...] = (),
-        *,
-        inspected: tuple[Inspected, ...],
     ) -> Estimate:
         """Return the estimate at one minimum; `known` are causes that were taken away before it."""
         domain = self.domain
@@ -185,8 +165,7 @@ class Prepared:
             domain=domain,
             best=best,
             balance=known_there,
-            inspections=inspected,
-            other_windows=other_windows(self.problem, self.penalty, domain, self.windows, best),
+            shifts=other_windows(self.problem, self.penalty, domain, self.windows, best),
             beside={
                 "residual_side": of_residual_side(self.problem, self.windows, domain, best),
                 "given": of_given_facts(self.problem, self.windows, domain, best),
@@ -275,7 +254,6 @@ def prepare(
     on_time: bool = False,
     measure: bool = True,
     instant: bool = True,
-    ahead: bool = False,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
 
@@ -293,9 +271,6 @@ def prepare(
         Whether delays beside those of `shift` are looked for. Default True.
     instant : bool
         Whether it is measured when the sensor is sampled, against the steps of a held torque. Default True.
-    ahead : bool
-        Whether penalty, compressed penalty and the look at the signals are begun beside, where they can be.
-        Default False.
 
     Raises
     ------
@@ -330,8 +305,7 @@ def prepare(
         threads=whole_number("threads", threads, 0, 1024),
     )
     speed = checked_speed(min_speed)
-    selection, begun = None, None
-    looked: tuple[Inspected, ...] = ()
+    selection = None
     try:
         if choose and not merged.named:
             problem, delays, selection = chosen_without_delays(
@@ -340,21 +314,12 @@ def prepare(
         elif on_time:
             delays = {}
         else:
-            if ahead and not (shift or speed):
-                begun = Ahead.begin(problem, windows, parameters)
             problem, delays = without_delays(problem, shift, measure=measure)
-        cut = Problem.penalty if begun is None else begun.penalty
-        problem, penalty, slow_motion = without_creep(problem, windows, speed, cut)
+        problem, penalty, slow_motion = without_creep(problem, windows, speed)
         sensor_instant = None
         if instant:
             problem, penalty, sensor_instant = without_early_reading(problem, penalty, windows)
-        if begun is not None:
-            looked = inspect_each(problem.recordings, problem.threads)
-        names = tuple(penalty.names)
-        if begun is not None and begun.names == names:
-            known = begun.known
-        else:
-            known = known_parameters(names, problem.joint, parameters)
+        known = known_parameters(tuple(penalty.names), problem.joint, parameters)
         problem, penalty = with_instruments(problem, penalty, known, windows, residual is not None)
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed, known)
         own = problem.choice.model.resolved.terms
@@ -376,8 +341,6 @@ def prepare(
             delays=delays, slow_motion=slow_motion, sensor_instant=sensor_instant
         ),
         selection=selection,
-        ahead=begun if begun is not None and begun.problem is problem else None,
-        looked=looked,
     )
 
 

@@ -24,7 +24,7 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts, _core.Beside, _core.Beside | None)
+Made = TypeVar("Made")
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
@@ -84,8 +84,8 @@ class Problem:
         """
         return self._cut(_core.PenaltyParts, windows, residual)
 
-    def ripple(self, theta: Array, halves: int, period: float) -> _core.Beside:
-        """Begin to hold the torque's residual against multiples of half the motor's angle, over windows of a period.
+    def ripple(self, theta: Array, halves: int, period: float) -> tuple[int, float, Array]:
+        """Hold the torque's residual against multiples of half the motor's angle, over windows of a period.
 
         Parameters
         ----------
@@ -95,36 +95,23 @@ class Problem:
         period : float
             [s]
 
+        Returns
+        -------
+        windows : int
+        power : float
+            Sum of squared mean residuals.
+        sums : ndarray, shape (halves,)
+            Magnitude of the residuals' sum over each multiple.
+
         Raises
         ------
         InputError
-            Windows that cannot be cut; the result may raise it, too.
+            Windows that cannot be cut.
         """
         # Without a first stage instruments are the torque's residual: what they need is not summed.
         own = self.choice.residual
-        begun = functools.partial(_core.ripple, theta=theta, halves=halves)
-        return self._cut(begun, period, "torque" if own == "instruments" else own)
-
-    def begin_search(
-        self, windows: Windows, free: list[int], lower: Array, upper: Array
-    ) -> _core.Beside | None:
-        """Begin to make the penalty, to project its reading, and to compress it; None where that would not be beside.
-
-        Parameters
-        ----------
-        windows : int, float, str, WindowOptions or None
-        free : list of int
-            Parameters that vary.
-        lower, upper : ndarray, shape (p,)
-            Of which those of the shapes are used.
-
-        Raises
-        ------
-        InputError
-            Input that cannot be used; the result may raise it, too.
-        """
-        begun = functools.partial(_core.begin_search, free=free, lower=lower, upper=upper)
-        return self._cut(begun, windows)
+        made = functools.partial(_core.ripple, theta=theta, halves=halves)
+        return self._cut(made, period, "torque" if own == "instruments" else own)
 
     def _cut(
         self, made: Callable[..., Made], windows: Windows, residual: str | None = None

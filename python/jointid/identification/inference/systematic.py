@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,16 +25,12 @@ _SHARE = 2.5e-4  # of the velocity's change over a window: over half of it noise
 
 def other_windows(
     problem: Problem, penalty: _core.Penalty, domain: SearchDomain, windows: Windows, best: Array
-) -> Callable[[], Shifts]:
-    """Begin to look for the minima with other windows; what is returned waits for them, and returns the changes.
-
-    Of windows halved and of windows doubled; None where there are no such windows.
-    """
+) -> Shifts:
+    """Return the changes of the minimum with windows halved and doubled; None where there are no such windows."""
     lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
     if penalty.cumulative or not penalty.is_linear:  # their rows are no sums
-        found = _refitted(problem, penalty, windows, lower, upper, best)
-        return lambda: found
-    work = _core.window_shifts(
+        return _refitted(problem, penalty, windows, lower, upper, best)
+    halved, doubled = _core.window_shifts(
         penalty,
         recordings=problem.in_core,
         terms=list(problem.choice.terms),
@@ -46,15 +42,10 @@ def other_windows(
         best=best,
         threads=problem.threads,
     )
-
-    def changes() -> Shifts:
-        halved, doubled = work.result()
-        return (
-            None if halved is None else halved - best,
-            None if doubled is None else doubled - best,
-        )
-
-    return changes
+    return (
+        None if halved is None else halved - best,
+        None if doubled is None else doubled - best,
+    )
 
 
 def _refitted(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from jointid import _core
@@ -59,10 +59,7 @@ def without_delays(
 
 
 def without_creep(
-    problem: Problem,
-    windows: Windows,
-    min_speed: float | None,
-    cut: Callable[[Problem, Windows], _core.Penalty] = Problem.penalty,
+    problem: Problem, windows: Windows, min_speed: float | None
 ) -> tuple[Problem, _core.Penalty, SlowMotion | None]:
     """Return the problem without slow motion that contradicts, its penalty, and that slow motion.
 
@@ -70,8 +67,6 @@ def without_creep(
     ----------
     min_speed : float or None
         [rad/s or m/s]; None: chosen.
-    cut : callable
-        Returns the penalty of a problem over windows. Default: it is made here.
 
     Raises
     ------
@@ -80,7 +75,7 @@ def without_creep(
     """
     if min_speed:
         problem = _faster(problem, windows, min_speed)
-    penalty = cut(problem, windows)
+    penalty = problem.penalty(windows)
     if min_speed is not None:
         return problem, penalty, None
     slow = contradicting(problem, penalty)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.estimate.statistics import Convergence
-from jointid.identification.search.ahead import Ahead
 from jointid.identification.search.domain import SearchDomain
 from jointid.problem.inner_products import inner
 
@@ -68,13 +67,7 @@ class Engine:
     threads: int = 0
 
     @classmethod
-    def of(
-        cls,
-        penalty: _core.Penalty,
-        domain: SearchDomain,
-        threads: int,
-        ahead: Ahead | None = None,
-    ) -> Engine:
+    def of(cls, penalty: _core.Penalty, domain: SearchDomain, threads: int) -> Engine:
         """Return an engine; it compresses the penalty if that saves time and is exact but for rounding.
 
         Parameters
@@ -83,14 +76,8 @@ class Engine:
         domain : SearchDomain
         threads : int
             0: all.
-        ahead : Ahead, optional
-            What was begun of it. Default: nothing.
         """
-        compressed = None if ahead is None else ahead.compressed(penalty, domain)
-        if compressed is None:
-            compressed = _core.CompressedPenalty(
-                penalty, domain.lower, domain.upper, threads=threads
-            )
+        compressed = _core.CompressedPenalty(penalty, domain.lower, domain.upper, threads=threads)
         if compressed.exact:
             return cls(direct=penalty, form=compressed, reason="", threads=threads)
         return cls(direct=penalty, form=penalty, reason=compressed.reason, threads=threads)

@@ -14,7 +14,6 @@ from jointid import _core
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.estimate.statistics import Convergence
-from jointid.identification.search.ahead import Ahead
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.engine import Engine, Outcome
 from jointid.identification.search.search import Search
@@ -22,9 +21,7 @@ from jointid.identification.search.search import Search
 Array = NDArray[np.float64]
 
 
-def run_search(
-    search: Search, penalty: _core.Penalty, domain: SearchDomain, ahead: Ahead | None = None
-) -> Outcome:
+def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> Outcome:
     """Search for the minimum of a penalty in a domain.
 
     Parameters
@@ -32,8 +29,6 @@ def run_search(
     search : Search
     penalty : Penalty
     domain : SearchDomain
-    ahead : Ahead, optional
-        What was begun of the penalty's compressed form. Default: nothing.
 
     Raises
     ------

@@ -77,8 +77,6 @@ class Evidence:
         Whether the gain's sign is one of two that fit alike.
     inspections : tuple of Inspected
         Properties of the signals of each recording.
-    spectrum : Beside or None
-        Of the residual by the motor's angle, as `ripple.begin` returns it.
     at_best : Regressor
         At the estimated shape parameters.
     velocity_effect : VelocityEffect or None
@@ -114,7 +112,6 @@ class Evidence:
     bounds_from_data: tuple[str, ...]
     guessed_sign: bool
     inspections: tuple[Inspected, ...]
-    spectrum: _core.Beside | None
     at_best: Regressor
     correlations: Mapping[tuple[str, str], float]
     delays: Mapping[str, Delay]

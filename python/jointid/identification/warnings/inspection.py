@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,8 +22,8 @@ class Inspected:
     Attributes
     ----------
     recording : Recording
-    work : Beside
-        The core's look at them.
+    found : Inspection
+        What the signals show.
     channels : tuple of str
         The signals looked at, in the order of `found.facts` and `found.spikes`.
     threads : int
@@ -33,15 +31,9 @@ class Inspected:
     """
 
     recording: Recording
-    work: _core.Beside
+    found: _core.Inspection
     channels: tuple[str, ...]
     threads: int = 0
-
-    @property
-    def found(self) -> _core.Inspection:
-        """What the signals show; it waits for the core."""
-        found: _core.Inspection = self.work.result()
-        return found
 
     def counts(self, name: str) -> _core.SignalFacts:
         """Counts of one signal."""
@@ -58,7 +50,7 @@ class Inspected:
 
 
 def inspect(recording: Recording, threads: int = 0) -> Inspected:
-    """Begin to inspect all signals of a recording."""
+    """Inspect all signals of a recording."""
     signals = {
         name: signal
         for name in _CHANNELS
@@ -66,7 +58,7 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         and not (name == "velocity" and recording.velocity_derived)
     }
     rules = {"position": _core.SpikeRule.position} | dict.fromkeys(DRIVE, _core.SpikeRule.command)
-    work = _core.inspect(
+    found = _core.inspect(
         time=recording.time,
         position=recording.position,
         velocity=recording.velocity,
@@ -78,17 +70,7 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         ],
         threads=threads,
     )
-    return Inspected(recording=recording, work=work, channels=tuple(signals), threads=threads)
-
-
-def inspect_each(recordings: Sequence[Recording], threads: int) -> tuple[Inspected, ...]:
-    """Begin to inspect recordings: a single one, which is short, beside what follows."""
-    begun = []
-    for run in recordings:
-        begun.append(inspect(run, threads))
-        if len(recordings) > 1:  # not as many threads as recordings
-            begun[-1].work.result()
-    return tuple(begun)
+    return Inspected(recording=recording, found=found, channels=tuple(signals), threads=threads)
 
 
 def spike_of(recording: Recording, sensor: Array, threads: int) -> _core.Spike:
@@ -101,6 +83,5 @@ def spike_of(recording: Recording, sensor: Array, threads: int) -> _core.Spike:
         period=recording.sample_period,
         channels=[(sensor, _core.SpikeRule.other, True)],
         threads=threads,
-    ).result()
-    spike: _core.Spike = found.spikes[0]
-    return spike
+    )
+    return found.spikes[0]

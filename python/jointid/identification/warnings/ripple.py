@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured
@@ -43,24 +42,16 @@ class _Peak:
     share: float
 
 
-def begin(problem: Problem, best: Array) -> _core.Beside | None:
-    """Begin to look for it at some parameters, beside other work; None where there is no gear, or no short window."""
-    if abs(problem.choice.gear_ratio) == 1.0 or problem.recordings[0].kind == "prismatic":
-        return None
-    period = min(recording.sample_period for recording in problem.recordings)
-    try:
-        return problem.ripple(best, _HALVES, _FINE * period)
-    except InputError:
-        return None
-
-
-def _highest_peak(work: _core.Beside) -> _Peak | None:
+def _highest_peak(problem: Problem, best: Array) -> _Peak | None:
     """The multiple of the motor's angle that explains most of the residual over windows of two samples.
 
     Windows of fast motion average the highest multiple away, and are left out.
     """
+    if abs(problem.choice.gear_ratio) == 1.0 or problem.recordings[0].kind == "prismatic":
+        return None
+    period = min(recording.sample_period for recording in problem.recordings)
     try:
-        windows, power, sums = work.result()
+        windows, power, sums = problem.ripple(best, _HALVES, _FINE * period)
     except InputError:
         return None
     if windows < 50:
@@ -78,7 +69,7 @@ def _highest_peak(work: _core.Beside) -> _Peak | None:
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    peak = None if evidence.spectrum is None else _highest_peak(evidence.spectrum)
+    peak = _highest_peak(evidence.problem, evidence.best)
     if peak is not None:
         cause = evidence.cause_of("ripple", f"{peak.multiple:g}", min(peak.share, 1.0))
         harmful = cause is None or cause.harmful
