@@ -38,9 +38,6 @@ inline BasisUnit basis_unit(SpeedBasis basis) {
   return {"N·m", "N"};
 }
 
-/// Below the logarithm of any speed.
-inline constexpr double kRest = -1e5;
-
 /// log |v|; for a joint at rest a number so low that any power of the speed is 0.
 inline double log_speed(double speed) {
   constexpr double least = std::numeric_limits<double>::min();

@@ -1,4 +1,4 @@
-// Digests of parts against the digest of the whole, and the tables of shapes.
+// Digests of parts against the digest of the whole, and the table of a shape.
 
 #include <Eigen/QR>
 #include <cmath>
@@ -82,13 +82,13 @@ CHECK_CASE("shape table: gives smooth functions and their derivatives to roundin
       values(static_cast<Eigen::Index>(f), k) = std::exp(-axis.shape(points[k]) * squares[f]);
     }
   }
-  const ShapeTable table({axis}, {{values}}, 11);
+  const ShapeTable table(axis, values, 11);
   std::vector<double> found(table.width());
   std::vector<double> slope(table.width());
   for (int i = 0; i <= 3000; ++i) {
     const double shape = 200.0 * std::pow(i / 3000.0, 3.0);
-    table.values(&shape, found.data());
-    table.slopes(&shape, 0, slope.data());
+    table.values(shape, found.data());
+    table.slopes(shape, slope.data());
     for (std::size_t f = 0; f < 4; ++f) {
       const double expected = std::exp(-shape * squares[f]);
       CHECK_CLOSE(found[f], expected, 2e-13);

@@ -8,7 +8,6 @@
 
 #include "check.hpp"
 #include "identify/compressed/compressed_penalty.hpp"
-#include "identify/compressed/compression.hpp"
 #include "identify/compressed/sliding_penalty.hpp"
 #include "synthetic.hpp"
 
@@ -62,25 +61,13 @@ CHECK_CASE("compressed: decays with shapes of their own are left to the direct s
   }
 }
 
-CHECK_CASE("compressed: a velocity from 0 on has no nodes, also with a fixed exponent") {
+CHECK_CASE("compressed: a velocity from 0 on has no nodes") {
   base::Pool pool(1);
   const auto penalty = penalty_of(kGeneral);
   const CompressedPenalty none(penalty, domain_of(penalty, {{0.0, 1.0}, {2.0, 2.0}}), pool);
   CHECK(!none.exact() && contains(none.reason(), "above 0"));
   const CompressedPenalty some(penalty, domain_of(penalty, {{0.05, 1.0}, {2.0, 2.0}}), pool);
   CHECK_WITH(some.exact(), some.reason());
-}
-
-CHECK_CASE("shape nodes: more of them than pay are refused, with their number") {
-  const auto penalty = penalty_of(kGeneral);
-  std::string reason;
-  const auto nodes = [&](double low) {
-    return identify::shape_nodes(penalty, domain_of(penalty, {{low, 2.0}, {0.2, 6.0}}), 4.0, 1.0,
-                                 reason);
-  };
-  CHECK(nodes(0.1).has_value());
-  CHECK(!nodes(1e-5).has_value());
-  CHECK_WITH(contains(reason, "more than the 20000 that pay"), reason);
 }
 
 CHECK_CASE("shape nodes: with a fixed exponent the usual number of them suffices") {

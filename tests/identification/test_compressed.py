@@ -30,7 +30,7 @@ class Case:
 
 CASES = [
     Case(model, residual)
-    for model in ("coulomb_viscous", "stribeck", "stribeck_general")
+    for model in ("coulomb_viscous", "stribeck")
     for residual in ("sensor", "torque")
 ] + [
     Case("stribeck", "torque", asymmetric=True, joint=False),
@@ -113,11 +113,11 @@ def test_a_candidate_with_a_shape_out_of_bounds_is_refused(excited: jid.Recordin
 def test_falls_back_to_the_direct_sum_and_says_so(excited: jid.Recording) -> None:
     # Shapes below 0 grow with the speed: the even scale of the table does not reach there.
     wide = {"stribeck": {"min": -2.0, "max": 200.0}}
-    estimate = jid.identify(excited, jid.thesis_joint(), parameters=wide)
+    estimate = jid.identify(excited, jid.thesis_joint(), parameters=wide, search="ga")
     assert "by the direct sum because the bounds of stribeck reach too far below 0" in (
         estimate.message
     )
-    usual = jid.identify(excited, jid.thesis_joint())
+    usual = jid.identify(excited, jid.thesis_joint(), search="ga")
     assert "direct sum" not in usual.message
     for name in usual.free:
         stderr = usual.parameters[name].stderr
@@ -127,20 +127,12 @@ def test_falls_back_to_the_direct_sum_and_says_so(excited: jid.Recording) -> Non
         )
 
 
-def test_bounds_too_wide_for_a_table_are_searched_by_the_direct_sum(
-    excited: jid.Recording,
-) -> None:
-    wide = {
-        "stribeck_velocity": {"min": 1e-4, "max": 50.0},
-        "stribeck_exponent": {"min": 0.1, "max": 200.0},
-    }
-    estimate = jid.identify(excited, jid.thesis_joint(), model="stribeck_general", parameters=wide)
-    assert "because the bounds of stribeck_velocity and stribeck_exponent are so wide" in (
-        estimate.message
-    )
-    usual = jid.identify(excited, jid.thesis_joint(), model="stribeck_general")
-    assert "direct sum" not in usual.message
-    assert estimate.penalty == pytest.approx(usual.penalty, rel=1e-6)
+def test_an_exponent_is_searched_by_the_direct_sum(excited: jid.Recording) -> None:
+    search = jid.Search(ga=jid.GaOptions(population=10, generations=2))
+    estimate = jid.identify(excited, jid.thesis_joint(), model="stribeck_general", search=search)
+    assert "by the direct sum because stribeck_exponent is searched" in estimate.message
+    separable = jid.identify(excited, jid.thesis_joint(), model="stribeck_general")
+    assert estimate.penalty == pytest.approx(separable.penalty, rel=1e-9)
 
 
 @pytest.mark.parametrize("corner", ["lower", "upper"])
@@ -156,7 +148,7 @@ def test_two_shapes_are_polished_over_their_whole_range(
 
 
 @pytest.mark.parametrize("found", [None, "worse"])
-def test_two_shapes_are_polished_by_their_table_where_projection_is_no_help(
+def test_two_shapes_are_polished_by_the_direct_sum_where_projection_is_no_help(
     excited: jid.Recording, monkeypatch: pytest.MonkeyPatch, found: str | None
 ) -> None:
     penalty, domain = made(excited, Case("stribeck_general", "sensor"))
@@ -165,20 +157,10 @@ def test_two_shapes_are_polished_by_their_table_where_projection_is_no_help(
     worse = SimpleNamespace(best=domain.lower, penalty=np.inf, evaluations=1)
     result = SimpleNamespace(found=worse if found else None)
     monkeypatch.setattr(_core, "minimise_projected", lambda *_, **__: result)
-    best, table_steps, settled = engine.polished(domain, domain.lower)
+    best, direct_steps, settled = engine.polished(domain, domain.lower)
     assert settled
-    assert table_steps > steps
+    assert direct_steps > steps
     assert penalty(best) == pytest.approx(penalty(least), rel=1e-9)
-
-
-def test_two_shapes_of_a_long_recording_are_polished_by_their_table(
-    excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    penalty, domain = made(excited, Case("stribeck_general", "sensor"))
-    engine = Engine.of(penalty, domain, 0)
-    monkeypatch.setattr("jointid.identification.search.engine._PROJECTED", penalty.total_samples)
-    monkeypatch.setattr(_core, "minimise_projected", None)  # a call of it fails
-    assert engine.polished(domain, domain.lower)[2]
 
 
 def test_the_direct_sum_verifies_the_result(excited: jid.Recording) -> None:

@@ -17,8 +17,7 @@ namespace {
 constexpr double kTolerance = 1e-14;  // of the shaped columns' squared size
 constexpr int kAttempts = 3;
 constexpr double kDenser = 1.4;
-constexpr int kLineDegree = 11;
-constexpr int kPlaneDegree = 11;
+constexpr int kDegree = 11;
 constexpr std::size_t kWidest = 512;   // functions of a table, and rows
 constexpr Eigen::Index kBatch = 4096;  // candidates between two looks at the clock
 constexpr std::size_t kLanes = ShapeTable::kLanes;
@@ -26,16 +25,13 @@ constexpr std::size_t kLanes = ShapeTable::kLanes;
 /// What the inner loop needs, as plain numbers.
 struct View {
   const ShapeTable* table;
-  const GeneralTable* general;  ///< in its place, if any
-  const double* triangle;       ///< padded rows, column by column; the target last
+  const double* triangle;  ///< padded rows, column by column; the target last
   std::size_t rows;
   std::size_t padded;
   const Eigen::Index* constant;
   std::size_t constants;
   const Eigen::Index* shaped;
   std::size_t shapeds;
-  const Eigen::Index* order;
-  std::size_t shapes;
   Eigen::Index coefficients;
   Eigen::Index gain;  ///< -1: residual torque
 };
@@ -52,13 +48,7 @@ inline double penalty_of(const View& v, const double* theta) {
   }
   double remainder = 0.0;
   if (v.shapeds > 0) {
-    std::array<double, 2> shapes{};
-    for (std::size_t i = 0; i < v.shapes; ++i) shapes[i] = theta[v.coefficients + v.order[i]];
-    if (v.general != nullptr) {
-      v.general->values(shapes.data(), functions.data());
-    } else {
-      v.table->values(shapes.data(), functions.data());
-    }
+    v.table->values(theta[v.coefficients], functions.data());
     const double* product = functions.data() + v.shapeds * v.rows;
     for (std::size_t j = 0; j < v.shapeds; ++j) {
       const double s = theta[v.shaped[j]];
@@ -138,9 +128,9 @@ CompressedPenalty::CompressedPenalty(const Penalty& penalty, const search::Domai
 }
 
 CompressedPenalty::CompressedPenalty(const Penalty& frame, const std::optional<ShapeNodes>& nodes,
-                                     const std::vector<Digest>& digests)
+                                     const Digest& whole)
     : CompressedPenalty(frame) {
-  if (reason_.empty()) assemble(nodes, digests);
+  if (reason_.empty()) assemble(nodes, whole);
 }
 
 bool CompressedPenalty::has_too_many_terms() const {
@@ -154,18 +144,12 @@ void CompressedPenalty::build(const Penalty& penalty, const search::Domain& doma
     assemble(std::nullopt, digest_all(penalty, {}, pool));
     return;
   }
-  const bool general = decay_of(penalty.shaped().front().term) == model::Decay::general;
-  // A fixed exponent leaves one shape, for which a few dozen sums suffice.
-  if (general && domain.lower[coefficients_ + 1] < domain.upper[coefficients_ + 1]) {
-    build_general(penalty, domain, pool);
-    return;
-  }
   const double speed = penalty.peak_speed();
   double density = 1.0;
   for (int attempt = 0; attempt < kAttempts && !exact_; ++attempt, density *= kDenser) {
     const auto nodes = shape_nodes(penalty, domain, speed, density, reason_);
     if (!nodes) return;
-    assemble(nodes, digest_all(penalty, rates_of(*nodes), pool));
+    assemble(nodes, digest_all(penalty, nodes->rates, pool));
   }
 }
 
@@ -193,56 +177,38 @@ void CompressedPenalty::compare(const Eigen::MatrixXd& found, const Eigen::Matri
                          " is left after " + std::to_string(passes_) + " shapes";
 }
 
-void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes,
-                                 const std::vector<Digest>& digests) {
-  const Digest& whole = digests.front();
+void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes, const Digest& whole) {
   take_triangle(whole.triangle);
   exact_ = true;
   if (!nodes) return;
-  order_ = nodes->order;
-  Samples samples;
-  std::vector<Eigen::VectorXd> expected;  // at the probes
-  passes_ = 0;
-  for (std::size_t i = 0; i < digests.size(); ++i) {
-    const Eigen::MatrixXd functions = functions_of(digests[i]);
-    passes_ += functions.cols();
-    const Eigen::Index keep =
-        i < nodes->lines.size() ? static_cast<Eigen::Index>(nodes->lines[i].rates.size()) : 0;
-    if (keep > 0) samples.values.emplace_back(functions.leftCols(keep));
-    for (Eigen::Index k = keep; k < functions.cols(); ++k) expected.emplace_back(functions.col(k));
-  }
-  table_ = ShapeTable(nodes->axes, samples, nodes->axes.size() == 1 ? kLineDegree : kPlaneDegree);
+  const Eigen::MatrixXd functions = functions_of(whole);
+  passes_ = functions.cols();
   // The probes tell how far the table is off between the nodes.
+  const auto probes = static_cast<Eigen::Index>(nodes->probes.size());
+  const Eigen::MatrixXd at_nodes = functions.leftCols(functions.cols() - probes);
+  table_.emplace(nodes->axis, at_nodes, kDegree);
   const auto size = static_cast<Eigen::Index>(shaped_.size()) * rows_;
-  double scale = 1e-300;  // squared size of the shaped columns
-  for (const auto& line : samples.values) {
-    const auto products = line.bottomRows(line.rows() - size).cwiseAbs().colwise().sum();
-    scale = std::max(scale,
-                     line.topRows(size).colwise().squaredNorm().maxCoeff() + products.maxCoeff());
-  }
-  const auto count = static_cast<Eigen::Index>(expected.size());
-  Eigen::MatrixXd found(size + pairs(static_cast<Eigen::Index>(shaped_.size())), count);
-  Eigen::MatrixXd wanted(found.rows(), count);
-  std::vector<double> values(table_.width());
-  for (Eigen::Index i = 0; i < count; ++i) {
-    table_.values(nodes->probes[static_cast<std::size_t>(i)].data(), values.data());
+  const auto products = at_nodes.bottomRows(at_nodes.rows() - size).cwiseAbs().colwise().sum();
+  // Squared size of the shaped columns.
+  const double scale = std::max(
+      1e-300, at_nodes.topRows(size).colwise().squaredNorm().maxCoeff() + products.maxCoeff());
+  Eigen::MatrixXd found(functions.rows(), probes);
+  std::vector<double> values(table_->width());
+  for (Eigen::Index i = 0; i < probes; ++i) {
+    table_->values(nodes->probes[static_cast<std::size_t>(i)], values.data());
     found.col(i) = Eigen::Map<const Eigen::VectorXd>(values.data(), found.rows());
-    wanted.col(i) = expected[static_cast<std::size_t>(i)];
   }
-  compare(found, wanted, scale);
+  compare(found, functions.rightCols(probes), scale);
 }
 
-void CompressedPenalty::require_inside(const double* shapes) const {
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    const double lower = general_ ? general_->lower(i) : table_.axes()[i].lower();
-    const double upper = general_ ? general_->upper(i) : table_.axes()[i].upper();
-    const double value = shapes[order_[i]];
-    if (value >= lower && value <= upper) continue;
-    const auto at = static_cast<std::size_t>(coefficients_ + order_[i]);
-    throw std::invalid_argument(names_[at] + " must lie within the bounds it was compressed for, " +
-                                std::to_string(lower) + " to " + std::to_string(upper) + ", got " +
-                                std::to_string(value));
-  }
+void CompressedPenalty::require_inside(double shape) const {
+  const double lower = table_->axis().lower();
+  const double upper = table_->axis().upper();
+  if (shape >= lower && shape <= upper) return;
+  throw std::invalid_argument(names_[static_cast<std::size_t>(coefficients_)] +
+                              " must lie within the bounds it was compressed for, " +
+                              std::to_string(lower) + " to " + std::to_string(upper) + ", got " +
+                              std::to_string(shape));
 }
 
 void CompressedPenalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
@@ -251,34 +217,30 @@ void CompressedPenalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& 
   for (std::size_t j = 0; j < constant_.size(); ++j) {
     result.col(constant_[j]).head(rows_) = triangle_.col(static_cast<Eigen::Index>(j)).head(rows_);
   }
-  if (shaped_.empty()) return;
-  require_inside(shapes.data());
-  std::array<double, 2> own{};
-  for (std::size_t i = 0; i < order_.size(); ++i) own[i] = shapes[order_[i]];
-  const Eigen::MatrixXd shaped = shaped_columns(own.data());
+  if (!table_) return;
+  require_inside(shapes[0]);
+  const Eigen::MatrixXd shaped = shaped_columns(shapes[0]);
   for (std::size_t j = 0; j < shaped_.size(); ++j) {
     result.col(shaped_[j]) = shaped.col(static_cast<Eigen::Index>(j));
   }
 }
 
-Eigen::MatrixXd CompressedPenalty::shaped_columns(const double* shapes) const {
-  if (general_) return general_->columns(shapes);
+Eigen::MatrixXd CompressedPenalty::shaped_columns(double shape) const {
   const auto count = static_cast<Eigen::Index>(shaped_.size());
   std::array<double, kWidest> functions;
-  table_.values(shapes, functions.data());
+  table_->values(shape, functions.data());
   Eigen::MatrixXd result(rows_ + count, count);
   result.topRows(rows_) = Eigen::Map<const Eigen::MatrixXd>(functions.data(), rows_, count);
   result.bottomRows(count) = root_of(functions.data() + rows_ * count, count, nullptr, nullptr);
   return result;
 }
 
-Eigen::MatrixXd CompressedPenalty::shaped_slopes(const double* shapes, int which) const {
-  if (general_) return general_->slopes(shapes, which);
+Eigen::MatrixXd CompressedPenalty::shaped_slopes(double shape) const {
   const auto count = static_cast<Eigen::Index>(shaped_.size());
   std::array<double, kWidest> functions;
   std::array<double, kWidest> slopes;
-  table_.values(shapes, functions.data());
-  table_.slopes(shapes, which, slopes.data());
+  table_->values(shape, functions.data());
+  table_->slopes(shape, slopes.data());
   Eigen::MatrixXd lower;
   root_of(functions.data() + rows_ * count, count, slopes.data() + rows_ * count, &lower);
   Eigen::MatrixXd result(rows_ + count, count);
@@ -306,14 +268,11 @@ void CompressedPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd&
   if (jacobian != nullptr) {
     jacobian->setZero(target_.size(), parameters());
     jacobian->leftCols(coefficients_) = -all;
-    const auto count = static_cast<Eigen::Index>(shaped_.size());
-    std::array<double, 2> own{};
-    for (std::size_t i = 0; i < order_.size(); ++i) own[i] = theta[coefficients_ + order_[i]];
-    Eigen::VectorXd s(count);
-    for (Eigen::Index j = 0; j < count; ++j) s[j] = theta[shaped_[static_cast<std::size_t>(j)]];
-    for (std::size_t i = 0; i < order_.size(); ++i) {
-      jacobian->col(coefficients_ + order_[i]) =
-          -shaped_slopes(own.data(), static_cast<int>(i)) * s;
+    if (table_) {
+      const auto count = static_cast<Eigen::Index>(shaped_.size());
+      Eigen::VectorXd s(count);
+      for (Eigen::Index j = 0; j < count; ++j) s[j] = theta[shaped_[static_cast<std::size_t>(j)]];
+      jacobian->col(coefficients_) = -shaped_slopes(theta[coefficients_]) * s;
     }
   }
   if (residual_ != Residual::sensor) return;
@@ -327,8 +286,7 @@ void CompressedPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd&
 
 void CompressedPenalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
                                  base::Pool& pool) const {
-  const View view{&table_,
-                  general_ ? &*general_ : nullptr,
+  const View view{table_ ? &*table_ : nullptr,
                   triangle_.data(),
                   static_cast<std::size_t>(rows_),
                   static_cast<std::size_t>(triangle_.rows()),
@@ -336,8 +294,6 @@ void CompressedPenalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::Vecto
                   constant_.size(),
                   shaped_.data(),
                   shaped_.size(),
-                  order_.data(),
-                  order_.size(),
                   coefficients_,
                   residual_ == Residual::sensor ? gain_index_ : -1};
   penalties.resize(candidates.cols());
@@ -345,8 +301,8 @@ void CompressedPenalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::Vecto
   for (Eigen::Index begin = 0; begin < candidates.cols(); begin += kBatch) {
     if (begin > 0) pool.poll();
     const Eigen::Index count = std::min(kBatch, candidates.cols() - begin);
-    for (Eigen::Index i = begin; i < begin + count; ++i) {
-      require_inside(candidates.col(i).data() + coefficients_);
+    for (Eigen::Index i = begin; table_ && i < begin + count; ++i) {
+      require_inside(candidates(coefficients_, i));
     }
     penalties_of(view, candidates.col(begin).data(), candidates.rows(), count,
                  penalties.data() + begin);

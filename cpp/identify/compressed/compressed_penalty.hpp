@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "identify/compressed/compression.hpp"
-#include "identify/compressed/general_table.hpp"
 #include "identify/compressed/shape_table.hpp"
 #include "identify/penalty/penalty.hpp"
 #include "search/domain.hpp"
@@ -25,10 +24,10 @@ class CompressedPenalty final : public PenaltyFunction {
   /// threads. Where the table cannot meet the tolerance the penalty is not `exact`: use the direct
   /// sum, for the `reason` given.
   CompressedPenalty(const Penalty& penalty, const search::Domain& domain, base::Pool& pool);
-  /// From digests of `rates_of(nodes)`; without nodes, for a penalty without shapes, of one digest.
-  /// `frame` gives the terms, its windows do not matter.
+  /// From the digest of the nodes' rates; without nodes, for a penalty without shapes. `frame`
+  /// gives the terms, its windows do not matter.
   CompressedPenalty(const Penalty& frame, const std::optional<ShapeNodes>& nodes,
-                    const std::vector<Digest>& digests);
+                    const Digest& whole);
 
   [[nodiscard]] bool exact() const { return exact_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
@@ -44,8 +43,8 @@ class CompressedPenalty final : public PenaltyFunction {
   [[nodiscard]] bool is_cheap() const override { return true; }
   [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
 
-  /// As few rows as there are coefficients and a target, some more for the general decay; equal to
-  /// the direct ones in every inner product.
+  /// As few rows as there are coefficients and a target; equal to the direct ones in every inner
+  /// product.
   void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                const base::Cancel* cancel = nullptr) const override;
   double operator()(const Eigen::VectorXd& theta,
@@ -58,18 +57,17 @@ class CompressedPenalty final : public PenaltyFunction {
  private:
   explicit CompressedPenalty(const Penalty& frame);
   void build(const Penalty& penalty, const search::Domain& domain, base::Pool& pool);
-  void build_general(const Penalty& penalty, const search::Domain& domain, base::Pool& pool);
   void take_triangle(const Eigen::MatrixXd& triangle);
   /// Settles whether the functions found at some shapes are near enough to those expected there,
   /// functions x shapes. `scale`: the shaped columns' squared size.
   void compare(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected, double scale);
-  void assemble(const std::optional<ShapeNodes>& nodes, const std::vector<Digest>& digests);
+  void assemble(const std::optional<ShapeNodes>& nodes, const Digest& whole);
   [[nodiscard]] bool has_too_many_terms() const;
-  void require_inside(const double* shapes) const;
-  /// Shaped columns at shapes in the table's order, rows x shaped.
-  [[nodiscard]] Eigen::MatrixXd shaped_columns(const double* shapes) const;
-  /// Their derivatives by a shape.
-  [[nodiscard]] Eigen::MatrixXd shaped_slopes(const double* shapes, int which) const;
+  void require_inside(double shape) const;
+  /// Shaped columns, rows x shaped.
+  [[nodiscard]] Eigen::MatrixXd shaped_columns(double shape) const;
+  /// Their derivatives by the shape.
+  [[nodiscard]] Eigen::MatrixXd shaped_slopes(double shape) const;
 
   std::vector<std::string> names_;
   Eigen::Index coefficients_;
@@ -77,12 +75,10 @@ class CompressedPenalty final : public PenaltyFunction {
   Eigen::Index gain_index_;
   std::vector<Eigen::Index> shaped_;    ///< coefficients
   std::vector<Eigen::Index> constant_;  ///< coefficients
-  std::vector<Eigen::Index> order_;     ///< shapes in the order of the table's axes
   Eigen::Index rows_ = 0;               ///< of the triangle
   Eigen::MatrixXd triangle_;            ///< padded rows x (constant columns, target)
   Eigen::VectorXd target_;
-  ShapeTable table_;
-  std::optional<GeneralTable> general_;  ///< for the general decay of a whole recording
+  std::optional<ShapeTable> table_;  ///< of the first shape
   bool exact_ = false;
   std::string reason_;
   Eigen::Index passes_ = 0;

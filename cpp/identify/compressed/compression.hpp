@@ -14,34 +14,25 @@
 
 namespace jointid::identify {
 
-/// The shapes at which columns are digested. Rates are those of decays.hpp.
+/// The shapes at which columns are digested: a rate of the Gaussian decay, or a velocity of the
+/// general one with a fixed exponent.
 struct ShapeNodes {
-  std::vector<ShapeAxis> axes;  ///< exponent before velocity; one axis for the Gaussian decay
-  /// Parameters of the axes, among the shapes.
-  std::vector<Eigen::Index> order;
-  /// Of a single axis of velocities, whose exponent is fixed; 0 where that axis is of rates.
-  double exponent = 0.0;
-  std::vector<DecayRates> lines;  ///< Chebyshev points: one line, or one a point of the first axis
-  std::vector<std::vector<double>> probes;  ///< shapes in the axes' order, between the points
+  ShapeAxis axis;
+  DecayRates rates;            ///< of the axis's Chebyshev points, then of the probes
+  std::vector<double> probes;  ///< shapes between the points
 };
 
-/// Nodes for the domain's shapes, `density` times as many as usually suffice. `speed` is the
-/// largest. Says in `reason` why there are none when it returns nothing; more than a search by the
-/// direct sum would cost is such a reason.
+/// Nodes for the domain's shape, `density` times as many as usually suffice. `speed` is the
+/// largest. Says in `reason` why there are none when it returns nothing.
 std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Domain& domain,
                                       double speed, double density, std::string& reason);
 
-/// The rates of all lines and probes: those of a single line's probes behind its own, else a group
-/// a probe.
-std::vector<DecayRates> rates_of(const ShapeNodes& nodes);
-
-/// One digest of some windows for each group of rates; none of shapes when there are no groups.
-std::vector<Digest> digest_part(const Penalty& penalty, const Stretch& windows,
-                                const std::vector<DecayRates>& groups, const base::Cancel* cancel);
+/// The digest of some windows at these rates.
+Digest digest_part(const Penalty& penalty, const Stretch& windows, const DecayRates& rates,
+                   const base::Cancel* cancel);
 
 /// The same of all windows, their parts over the threads unless there is little to do.
-std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRates>& groups,
-                               base::Pool& pool);
+Digest digest_all(const Penalty& penalty, const DecayRates& rates, base::Pool& pool);
 
 /// The functions of one node that a digest holds: projections of each shaped column, then inner
 /// products of the remainders.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
-#include <utility>
 
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
@@ -61,8 +60,7 @@ class Powers {
       powers_.row(k) -= powers_.row(k - 2);
     }
   }
-  template <class Values>
-  [[nodiscard]] Eigen::MatrixXd of(const Values& values) const {
+  [[nodiscard]] Eigen::MatrixXd of(const Eigen::MatrixXd& values) const {
     const Eigen::MatrixXd series = values * series_;
     return series * powers_;
   }
@@ -116,8 +114,7 @@ inline void horner_slope(const double* rows, std::size_t order, std::size_t stri
   std::array<double, kTableLanes> sum{};
   for (std::size_t k = order - 1; k >= 1; --k) {
     const double* row = rows + k * stride;
-    for (std::size_t l = 0; l < kTableLanes; ++l)
-      sum[l] = sum[l] * x + static_cast<double>(k) * row[l];
+    for (std::size_t l = 0; l < kTableLanes; ++l) sum[l] = sum[l] * x + static_cast<double>(k) * row[l];
   }
   for (std::size_t l = 0; l < kTableLanes; ++l) result[l] = sum[l];
 }
@@ -151,108 +148,44 @@ Eigen::MatrixXd chebyshev_coefficients(const Eigen::MatrixXd& values) {
   return values * transform;
 }
 
-ShapeTable::ShapeTable(std::vector<ShapeAxis> axes, const Samples& samples, int degree)
-    : axes_(std::move(axes)),
-      functions_(samples.values.front().rows()),
+ShapeTable::ShapeTable(const ShapeAxis& axis, const Eigen::MatrixXd& values, int degree)
+    : axis_(axis),
+      functions_(values.rows()),
       width_((static_cast<std::size_t>(functions_) + kTableLanes - 1) / kTableLanes * kTableLanes),
-      order_(static_cast<std::size_t>(degree) + 1),
-      terms_(axes_.size() == 1 ? order_ : order_ * order_) {
-  axes_.size() == 1 ? build_line(samples.values.front()) : build_plane(samples);
-}
-
-void ShapeTable::build_line(const Eigen::MatrixXd& values) {
+      order_(static_cast<std::size_t>(degree) + 1) {
   const auto order = static_cast<Eigen::Index>(order_);
-  const auto pieces = static_cast<Eigen::Index>(axes_[0].pieces());
-  const Eigen::MatrixXd points = at_pieces(axes_[0], order, values);
+  const auto pieces = static_cast<Eigen::Index>(axis_.pieces());
+  const Eigen::MatrixXd points = at_pieces(axis_, order, values);
   // All pieces at once, a row for each function of each: (piece, function) x local point.
   Eigen::MatrixXd local(pieces * functions_, order);
   for (Eigen::Index piece = 0; piece < pieces; ++piece) {
     local.middleRows(piece * functions_, functions_) = points.middleCols(piece * order, order);
   }
   const Eigen::MatrixXd powers = Powers(order).of(local);
-  rows_.assign(static_cast<std::size_t>(pieces) * terms_ * width_, 0.0);
+  rows_.assign(static_cast<std::size_t>(pieces) * order_ * width_, 0.0);
   for (Eigen::Index piece = 0; piece < pieces; ++piece) {
     Eigen::Map<Eigen::MatrixXd> target(
-        rows_.data() + static_cast<std::size_t>(piece) * terms_ * width_,
+        rows_.data() + static_cast<std::size_t>(piece) * order_ * width_,
         static_cast<Eigen::Index>(width_), order);
     target.topRows(functions_) = powers.middleRows(piece * functions_, functions_);
   }
 }
 
-void ShapeTable::build_plane(const Samples& samples) {
-  const auto order = static_cast<Eigen::Index>(order_);
-  const auto outer = static_cast<Eigen::Index>(samples.values.size());
-  const Eigen::Index inner = axes_[1].pieces() * order;
-  // First to the second axis's pieces, at every point of the first: (function, inner) x outer.
-  Eigen::MatrixXd lines(functions_ * inner, outer);
-  for (Eigen::Index k = 0; k < outer; ++k) {
-    lines.col(k) =
-        at_pieces(axes_[1], order, samples.values[static_cast<std::size_t>(k)]).reshaped();
-  }
-  const Eigen::MatrixXd all = at_pieces(axes_[0], order, lines);
-  const Powers powers(order);
-  rows_.assign(static_cast<std::size_t>(axes_[0].pieces() * axes_[1].pieces()) * terms_ * width_,
-               0.0);
-  for (std::int64_t i = 0; i < axes_[0].pieces(); ++i) {
-    // Along the first shape: (function, inner) x powers.
-    const Eigen::MatrixXd first = powers.of(all.middleCols(i * order, order));
-    for (std::int64_t j = 0; j < axes_[1].pieces(); ++j) {
-      double* piece =
-          rows_.data() + static_cast<std::size_t>(i * axes_[1].pieces() + j) * terms_ * width_;
-      for (Eigen::Index a = 0; a < order; ++a) {
-        const Eigen::Map<const Eigen::MatrixXd> local(first.col(a).data() + functions_ * j * order,
-                                                      functions_, order);
-        Eigen::Map<Eigen::MatrixXd> target(piece + a * order * static_cast<Eigen::Index>(width_),
-                                           static_cast<Eigen::Index>(width_), order);
-        target.topRows(functions_) = powers.of(local);
-      }
-    }
-  }
-}
-
-void ShapeTable::values(const double* shapes, double* result) const {
-  const auto first = axes_[0].place(shapes[0]);
-  if (axes_.size() == 1) {
-    const double* rows = row(first.piece);
-    for (std::size_t f = 0; f < width_; f += kTableLanes) {
-      horner(rows + f, order_, width_, first.local, result + f);
-    }
-    return;
-  }
-  const auto second = axes_[1].place(shapes[1]);
-  const double* rows = row(first.piece * axes_[1].pieces() + second.piece);
-  std::array<double, 32 * kTableLanes> line;  // powers of the first shape
+void ShapeTable::values(double shape, double* result) const {
+  const auto place = axis_.place(shape);
+  const double* rows = row(place.piece);
   for (std::size_t f = 0; f < width_; f += kTableLanes) {
-    for (std::size_t a = 0; a < order_; ++a) {
-      horner(rows + a * order_ * width_ + f, order_, width_, second.local,
-             line.data() + a * kTableLanes);
-    }
-    horner(line.data(), order_, kTableLanes, first.local, result + f);
+    horner(rows + f, order_, width_, place.local, result + f);
   }
 }
 
-void ShapeTable::slopes(const double* shapes, int which, double* result) const {
-  const auto first = axes_[0].place(shapes[0]);
-  if (axes_.size() == 1) {
-    const double* rows = row(first.piece);
-    for (std::size_t f = 0; f < width_; f += kTableLanes) {
-      horner_slope(rows + f, order_, width_, first.local, result + f);
-    }
-  } else {
-    const auto second = axes_[1].place(shapes[1]);
-    const double* rows = row(first.piece * axes_[1].pieces() + second.piece);
-    std::array<double, 32 * kTableLanes> line;
-    for (std::size_t f = 0; f < width_; f += kTableLanes) {
-      for (std::size_t a = 0; a < order_; ++a) {
-        (which == 1 ? horner_slope : horner)(rows + a * order_ * width_ + f, order_, width_,
-                                             second.local, line.data() + a * kTableLanes);
-      }
-      (which == 0 ? horner_slope : horner)(line.data(), order_, kTableLanes, first.local,
-                                           result + f);
-    }
+void ShapeTable::slopes(double shape, double* result) const {
+  const auto place = axis_.place(shape);
+  const double* rows = row(place.piece);
+  for (std::size_t f = 0; f < width_; f += kTableLanes) {
+    horner_slope(rows + f, order_, width_, place.local, result + f);
   }
-  const auto& axis = axes_[static_cast<std::size_t>(which)];
-  const double slope = axis.slope(axis.place(shapes[which]).piece);
+  const double slope = axis_.slope(place.piece);
   for (std::size_t f = 0; f < width_; ++f) result[f] *= slope;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Several smooth functions of one or two shapes, as polynomials over pieces of the range: their
-// values at any shape cost the same few dozen operations.
+// Several smooth functions of a shape, as polynomials over pieces of its range: their values at any
+// shape cost the same few dozen operations.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -9,12 +9,6 @@
 #include "identify/compressed/shape_axis.hpp"
 
 namespace jointid::identify {
-
-/// Values of functions at the product of Chebyshev points of the axes' whole ranges: functions x
-/// points. A second axis may have another number of points at each point of the first.
-struct Samples {
-  std::vector<Eigen::MatrixXd> values;  ///< one matrix a point of the first axis of two, else one
-};
 
 /// cos(pi (k + 1/2) / count): Chebyshev points in [-1, 1].
 Eigen::VectorXd chebyshev_points(Eigen::Index count);
@@ -25,33 +19,30 @@ class ShapeTable {
  public:
   static constexpr int kLanes = 4;  ///< functions are padded to a multiple of this
 
-  ShapeTable() = default;
-  /// One polynomial of `degree` in each shape over each piece.
-  ShapeTable(std::vector<ShapeAxis> axes, const Samples& samples, int degree);
+  /// A polynomial of `degree` over each piece, from values at Chebyshev points of the axis's whole
+  /// range: functions x points.
+  ShapeTable(const ShapeAxis& axis, const Eigen::MatrixXd& values, int degree);
 
   [[nodiscard]] Eigen::Index functions() const { return functions_; }
   /// Functions with padding: what values() and slopes() write.
   [[nodiscard]] std::size_t width() const { return width_; }
-  [[nodiscard]] const std::vector<ShapeAxis>& axes() const { return axes_; }
+  [[nodiscard]] const ShapeAxis& axis() const { return axis_; }
 
-  /// All functions at the shapes, which must lie in the axes' ranges.
-  void values(const double* shapes, double* result) const;
-  /// Their derivatives by shape number `which`.
-  void slopes(const double* shapes, int which, double* result) const;
+  /// All functions at a shape, which must lie in the axis's range.
+  void values(double shape, double* result) const;
+  /// Their derivatives.
+  void slopes(double shape, double* result) const;
 
  private:
-  void build_line(const Eigen::MatrixXd& values);
-  void build_plane(const Samples& samples);
   [[nodiscard]] const double* row(std::int64_t piece) const {
-    return rows_.data() + static_cast<std::size_t>(piece) * terms_ * width_;
+    return rows_.data() + static_cast<std::size_t>(piece) * order_ * width_;
   }
 
-  std::vector<ShapeAxis> axes_;
-  Eigen::Index functions_ = 0;
-  std::size_t width_ = 0;
-  std::size_t order_ = 0;     ///< coefficients in one shape: degree + 1
-  std::size_t terms_ = 0;     ///< coefficients of a piece: order, or its square
-  std::vector<double> rows_;  ///< piece, power of the first shape, of the second, function
+  ShapeAxis axis_;
+  Eigen::Index functions_;
+  std::size_t width_;
+  std::size_t order_;         ///< coefficients of a piece: degree + 1
+  std::vector<double> rows_;  ///< piece, power of the shape, function
 };
 
 }  // namespace jointid::identify

@@ -67,16 +67,15 @@ void SlidingPenalty::append(const RecordingView& samples, Eigen::Index begin, Ei
                                 ", faster than the " + std::to_string(speed_) +
                                 " that was prepared for");
   }
-  if (rates_.empty() && !penalty.shaped().empty()) {
+  if (!nodes_ && !penalty.shaped().empty()) {
     std::string reason;
     nodes_ = shape_nodes(penalty, domain_, speed_, kDensity, reason);
     if (!nodes_) throw std::invalid_argument("the penalty cannot be compressed: " + reason);
-    rates_ = rates_of(*nodes_);
   }
   const Stretch all{0, penalty.windows().size()};
-  auto digests = digest_part(penalty, all, rates_, nullptr);
+  auto digest = digest_part(penalty, all, nodes_ ? nodes_->rates : DecayRates{}, nullptr);
   stretches_.push_back(
-      {std::move(penalty), std::move(digests), samples.time[begin], samples.time[end]});
+      {std::move(penalty), std::move(digest), samples.time[begin], samples.time[end]});
 }
 
 void SlidingPenalty::forget(double time) {
@@ -99,13 +98,9 @@ double SlidingPenalty::end() const {
 
 std::optional<CompressedPenalty> SlidingPenalty::compressed() const {
   if (window_count() == 0) return std::nullopt;
-  std::vector<Digest> whole;
-  for (std::size_t group = 0; group < stretches_.front().digests.size(); ++group) {
-    std::vector<Digest> parts;
-    for (const auto& piece : stretches_) parts.push_back(piece.digests[group]);
-    whole.push_back(merge(parts));
-  }
-  return CompressedPenalty(stretches_.front().penalty, nodes_, whole);
+  std::vector<Digest> parts;
+  for (const auto& piece : stretches_) parts.push_back(piece.digest);
+  return CompressedPenalty(stretches_.front().penalty, nodes_, merge(parts));
 }
 
 void SlidingPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,

@@ -49,7 +49,7 @@ class SlidingPenalty {
  private:
   struct Piece {
     Penalty penalty;
-    std::vector<Digest> digests;
+    Digest digest;
     double begin;
     double end;
   };
@@ -62,8 +62,7 @@ class SlidingPenalty {
   MotionScale scale_;
   search::Domain domain_;
   double speed_;
-  std::optional<ShapeNodes> nodes_;  ///< once the terms are known to have shapes
-  std::vector<DecayRates> rates_;
+  std::optional<ShapeNodes> nodes_;  ///< once the terms are known to have a shape
   std::deque<Piece> stretches_;
 };
 

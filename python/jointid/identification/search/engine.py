@@ -18,9 +18,6 @@ Array = NDArray[np.float64]
 # Largest error of the compressed penalty: as a share of the penalty, and of the target's square.
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-13
 _KEPT = 50_000  # windows
-# Samples below which two shapes are polished by projection: it is as slow as their table from some 100,000 on.
-_PROJECTED = 48_000
-
 
 # Penalty, residuals, their derivatives, and columns.
 Balance = tuple[float, Array, Array, Array]
@@ -85,15 +82,14 @@ class Engine:
     def polished(self, domain: SearchDomain, start: Array) -> tuple[Array, int, bool]:
         """Return the optimum over the shapes' ranges and near a start, the number of steps, and whether it converged.
 
-        With one free shape and the direct sum: near the start only. Two shapes of a short recording, or those that
-        have no table: by projection, where that is at least as good as the start.
+        With one free shape and the direct sum: near the start only. Two shapes: by projection, where that is at
+        least as good as the start.
         """
         shapes = _free_shapes(self.direct, domain)
         if self.form is self.direct and shapes < 2:
             found = _core.polish(self.direct, domain.lower, domain.upper, start)
             return found.best, found.iterations, found.converged
-        # By their table two shapes take a thousand candidates, whatever the recording; by projection some hundred sums.
-        if shapes > 1 and (self.form is self.direct or self.direct.total_samples < _PROJECTED):
+        if shapes > 1:
             whole = _core.minimise_projected(
                 self.direct, domain.lower, domain.upper, threads=self.threads
             ).found
