@@ -27,7 +27,7 @@ def search_seeds(seeds: int) -> list[str]:
     recording = jid.load(WELL_EXCITED)
     exact = jid.identify(recording, jid.thesis_joint(), search="separable")
     found = [
-        jid.identify(recording, jid.thesis_joint(), search=jid.Search(seed=seed))
+        jid.identify(recording, jid.thesis_joint(), search=jid.Search("ga", seed=seed))
         for seed in range(seeds)
     ]
     reached = sum(e.penalty <= exact.penalty * (1 + 1e-6) for e in found)

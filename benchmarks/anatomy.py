@@ -1,4 +1,4 @@
-"""Where a whole `identify()` spends its time: each step timed by itself, in a loop and behind other work."""
+"""Where a whole `identify(search="ga")` spends its time: each step timed by itself, in a loop and behind other work."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ BEHIND = 0.1  # [s] of NumPy before each repeat: caches are cold, the other proc
 
 
 def once(contest: Contest, windows: int | None) -> dict[str, float]:
-    """Seconds of each step of a default `identify()`."""
+    """Seconds of each step of `identify(search="ga")`."""
     options = _core.GaOptions()
-    search = Search(ga=options)
+    search = Search("ga", ga=options)
     marks = [time.perf_counter()]
     prepared = prepare(contest.recording, contest.joint, windows=windows)
     marks.append(time.perf_counter())
@@ -66,7 +66,7 @@ def measure(contest: Contest) -> list[Record]:
                 runs.append(once(contest, windows))
                 before()
                 began = time.perf_counter()
-                jid.identify(contest.recording, contest.joint, windows=windows)
+                jid.identify(contest.recording, contest.joint, windows=windows, search="ga")
                 whole.append(time.perf_counter() - began)
             steps = {step: statistics.median(run[step] for run in runs) for step in STEPS}
             records.append(

@@ -58,7 +58,6 @@ def general(**more):
 wide = {"stribeck_velocity": {"min": 1e-5, "max": 10.0}, "stribeck_exponent": {"min": 0.1, "max": 8.0}}
 found["`stribeck_general`"] = least(general(), 5)
 found["`stribeck_general`, wide bounds"] = least(general(parameters=wide), 3)
-found["`stribeck_general`, separable"] = least(general(search="separable"), 5)
 found["`stribeck_general`, exponent 2"] = least(general(parameters={"stribeck_exponent": 2.0}), 20)
 found["others"] = sorted({name for name in ("scipy", "matplotlib") if name in sys.modules})
 import pandas
@@ -140,7 +139,6 @@ _ROWS = (
     Row(what="`compare_models` of two", against=_OLDEST, limit=35 / _OLDEST_TIME),
     Row(what="`stribeck_general`", against=_OLDEST, limit=20 / _OLDEST_TIME),
     Row(what="`stribeck_general`, wide bounds", against=_OLDEST, limit=60 / _OLDEST_TIME),
-    Row(what="`stribeck_general`, separable", against="`stribeck_general`", limit=1.0),
     Row(what="`stribeck_general`, exponent 2", against="warm `identify()`", limit=1.2),
     Row(what="`compare_models` of five", against=_OLDEST, limit=250 / _OLDEST_TIME),
 )

@@ -29,7 +29,7 @@ def measure(contest: Contest) -> list[Record]:
 
     def call(
         model: Literal["stribeck", "stribeck_general"],
-        search: Literal["ga", "separable"] = "ga",
+        search: Literal["ga", "separable"] = "separable",
         parameters: Mapping[str, float | jid.Parameter] | None = None,
     ) -> Callable[[], object]:
         return lambda: jid.identify(
@@ -39,7 +39,7 @@ def measure(contest: Contest) -> list[Record]:
     calls = {
         PLAIN: call("stribeck"),
         "`stribeck_general`": call(GENERAL),
-        "the same, separable": call(GENERAL, "separable"),
+        'the same, `search="ga"`': call(GENERAL, "ga"),
         "the same, wide bounds": call(GENERAL, parameters=WIDE),
         "the same, exponent fixed at 2": call(GENERAL, parameters={"stribeck_exponent": 2.0}),
     }

@@ -180,12 +180,12 @@ what holds. Required: not slower than variable projection in NumPy in at least 4
   with SciPy's `minimize_scalar` in the bounds for one, L-BFGS-B over the logarithms for two, tolerances as SciPy has
   them. It keeps no bounds on the coefficients and searches one valley. *With our compiled column* the sums of the
   shaped column are ours; the columns beside it are computed, too.
-- *Separable*, `search="separable"`, is given the penalty as `identify` makes it: it makes the columns orthonormal
+- *Separable*, the default search, is given the penalty as `identify` makes it: it makes the columns orthonormal
   itself, scans the whole range of the shapes over some hundred windows, and takes Gauss-Newton steps over all of them
   from each valley; it keeps the box. *Tries* are the shapes of the scan and the steps; below twice 96 windows it
   compresses.
-- *Default* is the genetic algorithm: it compresses the penalty first, some seventy sums over the samples for one shape,
-  a table over the whole domain of two, and can then try any number of candidates.
+- *Genetic* is the genetic algorithm: of one shape it compresses the penalty first, by some seventy sums over the
+  samples, and can then try any number of candidates; of two it sums for each candidate.
 - All end within {close:g} of the same penalty. `stribeck` has one shape, `stribeck_general` two; {samples:,} samples of
   `well_excited`, if no other recording is named.
 """
@@ -195,7 +195,7 @@ _HEADER = (
     "problem",
     "samples",
     "windows",
-    "default [ms]",
+    "genetic [ms]",
     "separable [ms]",
     "tries",
     "variable projection, NumPy [ms]",

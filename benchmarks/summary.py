@@ -269,7 +269,9 @@ def claims(store: Store, order: list[str]) -> list[Claim]:
             f"{1e6 * candidate[COMPRESSED]:.3f} µs",
         ),
         *_growth(store),
-        _at_most("default `identify()` ≤ 10 ms", whole, 10e-3, f"{1e3 * whole:.1f} ms"),
+        _at_most(
+            "`identify()` with default windows ≤ 10 ms", whole, 10e-3, f"{1e3 * whole:.1f} ms"
+        ),
         _from_good_start(found),
         *_presets(candidate, store.of("literal")[0]["total"]),
         *_hour(store),

@@ -20,7 +20,7 @@ TRUTH = {
 
 def main() -> jid.Estimate:
     recording = jid.load(data / "well_excited.csv.gz")
-    estimate = jid.identify(recording, jid.thesis_joint(), search=jid.Search(seed=1))
+    estimate = jid.identify(recording, jid.thesis_joint())
     print(estimate.report())
     print()
     for name, truth in TRUTH.items():

@@ -36,7 +36,9 @@ def draw(gallery: Gallery) -> None:
     seen: list[jid.Generation] = []
     options = jid.GaOptions.thesis().replace(generations=30 if gallery.quick else 300)
     jid.identify(
-        first_recording(), hanging_joint(), search=jid.Search(ga=options, callback=seen.append)
+        first_recording(),
+        hanging_joint(),
+        search=jid.Search("ga", ga=options, callback=seen.append),
     )
     with gallery.picture("3-2_dynamic_adaptation") as axes:
         jid.plot.adaptation(options, seen, axes)

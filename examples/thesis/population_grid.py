@@ -62,7 +62,7 @@ def run_grid(
         hanging_joint(),
         grid={"ga.population": populations, "ga.generations": generations},
         trials=trials,
-        search=jid.Search(ga=options),
+        search=jid.Search("ga", ga=options),
     )
     cells: Cells = {}
     for number, (labels, summary) in enumerate(

@@ -43,7 +43,7 @@ def test_demo_writes_a_report_with_its_pictures(tmp_path: Path) -> None:
     result = _run("demo", "--output", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     page = (tmp_path / "out" / "report.html").read_text()
-    assert page.count("<svg ") == 6
+    assert page.count("<svg ") == 5
     assert "http" not in page.replace("http://www.w3.org", "")
     assert "viscous" in result.stdout
     estimate = jid.Estimate.from_json((tmp_path / "out" / "estimate.json").read_text())

@@ -28,7 +28,7 @@ DESIGN = "--position -1,1 --velocity 3 --torque 160 --duration 4 --evaluations 6
 
 # A call of every command, in a folder with joint.toml and estimate.json.
 CALLS: dict[str, list[str]] = {
-    "demo": ["demo", "--quiet"],
+    "demo": ["demo"],
     "new": ["new", "new.toml", KR300],
     "identify": ["identify", KR300, "--gear-ratio", "256.86", "--selftest", "--bootstrap", "50"],
     "identify with causes": ["identify", WELL, "--quiet", "--causes", "--save", "saved.json"],

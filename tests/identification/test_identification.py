@@ -1,6 +1,8 @@
 """The promise of `identify`: known parameters recovered, published values reproduced, same bits for a seed."""
 
+import dataclasses
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -35,7 +37,7 @@ def separable(well_excited: jid.Recording) -> jid.Estimate:
 def test_simulated_joint_is_recovered(
     well_excited: jid.Recording, separable: jid.Estimate, seed: int
 ) -> None:
-    estimate = jid.identify(well_excited, jid.thesis_joint(), search=jid.Search(seed=seed))
+    estimate = jid.identify(well_excited, jid.thesis_joint(), search=jid.Search("ga", seed=seed))
     for name, truth in TRUTH.items():
         tolerance = 0.01 if name == "stribeck" else 0.005
         assert estimate.parameters[name].value == pytest.approx(truth, rel=tolerance), name
@@ -86,6 +88,33 @@ def test_same_bits_for_any_number_of_threads(well_excited: jid.Recording) -> Non
         assert np.array_equal(found[0].convergence.mean, other.convergence.mean)
         for name, parameter in found[0].parameters.items():
             assert other.parameters[name].value == parameter.value
+
+
+GENETIC: dict[str, dict[str, Any]] = {
+    "ga": {"ga": jid.GaOptions(generations=2)},
+    "a preset": {"ga": "default"},
+    "callback": {"callback": print},
+    "checkpoint": {"checkpoint": "state"},
+    "resume": {"resume": "state"},
+}
+
+
+@pytest.mark.parametrize("given", GENETIC.values(), ids=GENETIC)
+def test_what_only_the_genetic_search_has_asks_for_it(given: dict[str, Any]) -> None:
+    assert jid.Search(**given).chosen_method == "ga"
+    assert dataclasses.replace(jid.Search(seed=3), **given).chosen_method == "ga"
+    assert jid.Search(seed=3, threads=1).chosen_method == "separable"
+
+
+def test_a_stated_method_is_the_one_that_runs(well_excited: jid.Recording) -> None:
+    seen: list[jid.Generation] = []
+    search = jid.Search("separable", ga=jid.GaOptions(population=50), callback=seen.append)
+    stated = jid.identify(well_excited, jid.thesis_joint(), search=search)
+    default = jid.identify(well_excited, jid.thesis_joint())
+    assert seen == []
+    assert stated.convergence is None
+    assert stated.settings == default.settings
+    assert stated.settings["method"] == "separable"
 
 
 def test_another_seed_searches_elsewhere(well_excited: jid.Recording) -> None:
@@ -203,7 +232,7 @@ def test_bounds_hold(well_excited: jid.Recording) -> None:
         well_excited,
         jid.thesis_joint(),
         parameters={"coulomb": {"max": 22.0}},
-        search=jid.Search(seed=1),
+        search="ga",
     )
     exact = jid.identify(
         well_excited, jid.thesis_joint(), parameters={"coulomb": {"max": 22.0}}, search="separable"

@@ -63,7 +63,6 @@ def test_it_compresses_nothing(
             {"parameters": {"stribeck": {"min": 1.0, "max": 20.0}}},
             "near the end of a shape's range",
         ),
-        ({"parameters": {"stribeck": 100.0}}, "no shape is searched"),
         ({"parameters": {"static": {"max": 1e-3}}}, "hardly depends on the shapes"),
         ({"windows": 60}, "few windows"),
         ({"windows": "cumulative"}, "running sums"),
@@ -77,8 +76,16 @@ def test_what_projection_cannot_tell_is_compressed_and_said(
     estimate = jid.identify(well_excited, joint, search="separable", **options)  # type: ignore[arg-type]
     assert "not by projection: " in estimate.message
     assert reason in estimate.message
-    genetic = jid.identify(well_excited, joint, **options)  # type: ignore[arg-type]
+    genetic = jid.identify(well_excited, joint, search="ga", **options)  # type: ignore[arg-type]
     assert estimate.penalty <= genetic.penalty * (1.0 + 1e-6)
+
+
+def test_without_a_shape_it_is_least_squares(well_excited: jid.Recording) -> None:
+    fixed = {"stribeck": 100.0}
+    estimate = jid.identify(well_excited, jid.thesis_joint(), parameters=fixed)
+    assert estimate.message == "least squares, as no shape is searched"
+    genetic = jid.identify(well_excited, jid.thesis_joint(), parameters=fixed, search="ga")
+    assert estimate.penalty <= genetic.penalty * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize("model", ["stribeck", "stribeck_general"])

@@ -84,7 +84,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     ),
     "report": ("report", "@estimate.json", "--output", "report.html"),
     "new": ("new", "joint.toml", "@run.npz", "--gear-ratio", "101", "--no-questions"),
-    "demo": ("demo", "--quiet", "--output", "demo"),
+    "demo": ("demo", "--output", "demo"),
     "sweep": (*_SWEEP, "--table", "table.csv"),
     "sweep drawn": (
         *(*_SWEEP, "--table", "table.parquet"),

@@ -54,7 +54,7 @@ def identify(report: Report, call: Call) -> tuple[Estimate, str]:
         report(generation.number / total, f"generation {generation.number} of {total}")
 
     search = Search.of(call.identify.get("search"))
-    if search.method == "ga":
+    if search.chosen_method == "ga":
         search = replace(search, callback=shown)
     recordings = call.recordings()
     estimate = call.run(recordings, search=search)

@@ -179,6 +179,15 @@ def whole_seed(text: str) -> int:
     return value
 
 
+def method_argument(command: CommandParser) -> None:
+    """Add the method of the search."""
+    command.add_argument(
+        "--method",
+        help="separable (default), ga or random; an option of the genetic algorithm alone means ga, which takes six "
+        "times as long with stribeck_general",
+    )
+
+
 def term_argument(command: argparse.ArgumentParser) -> None:
     """Add the own terms of a model."""
     command.add_argument(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
@@ -29,12 +30,10 @@ def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
     from jointid.base.files import make_folder
     from jointid.cli.demo import demonstrate
-    from jointid.cli.progress import Progress
     from jointid.report.saving import save_report
 
     check_output_folder("output", arguments.output)
-    with Progress(enabled=not arguments.quiet) as progress:
-        demonstration = demonstrate(callback=progress)
+    demonstration = demonstrate()
     estimate = demonstration.estimate
     make_folder(arguments.output)
     page = save_report(
@@ -82,7 +81,6 @@ def identify(arguments: argparse.Namespace) -> int:
         for name in ("population", "generations")
         if getattr(arguments, name) is not None
     }
-    options = GaOptions(**budget)
     file = joint_file(arguments)
     if file is not None and file.voltage is not None:
         from jointid.cli.servo import identify_runs
@@ -94,21 +92,23 @@ def identify(arguments: argparse.Namespace) -> int:
     usable = torque_needed(arguments, file)
     recordings = load_all(arguments.recordings, arguments, [merged], usable=usable)
     joint = joint_of(arguments, file, recordings)
-    with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
+    search = Search(
+        arguments.method,
+        ga=GaOptions(**budget) if budget else None,
+        seed=arguments.seed,
+        threads=arguments.threads,
+        checkpoint=arguments.checkpoint,
+        resume=arguments.resume,
+    )
+    with Progress(total=search.genetic.generations, enabled=not arguments.quiet) as progress:
+        if search.chosen_method != "separable":  # which has no generations
+            search = replace(search, callback=progress)
         estimate = identification.identify(
             recordings,
             joint,
             parameters=changes or None,
             model=model,
-            search=Search(
-                arguments.method,
-                ga=options,
-                seed=arguments.seed,
-                threads=arguments.threads,
-                callback=progress,
-                checkpoint=arguments.checkpoint,
-                resume=arguments.resume,
-            ),
+            search=search,
             residual=arguments.residual,
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,

@@ -1,13 +1,10 @@
 """The demonstration: identify joint 1 of a KUKA KR300 from its log, which ships with the package."""
 
-from collections.abc import Callable
 from pathlib import Path
 
-from jointid._core import Generation
 from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
-from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
@@ -36,10 +33,10 @@ def data_folder() -> Path:
     return Path(__file__).resolve().parents[3] / "examples" / "data"  # run from the source folder
 
 
-def demonstrate(callback: Callable[[Generation], bool | None] | None = None) -> Demonstration:
+def demonstrate() -> Demonstration:
     """Identify the robot's joint 1, with the inertia over its pose and the Coriolis torque of its authors' model."""
     folder = data_folder()
     recording = load(folder / "kr300_joint1.csv.gz", extra=COLUMNS)
     joint = Joint.load(folder / "kr300_joint1.toml")
-    estimate = identify(recording, joint, terms=TERMS, search=Search(callback=callback))
+    estimate = identify(recording, joint, terms=TERMS)
     return Demonstration(estimate=estimate, recording=recording, nominal=dict(NOMINAL))

@@ -8,6 +8,7 @@ from jointid._core import model_names
 from jointid.cli.arguments import (
     Once,
     file_kinds,
+    method_argument,
     pair,
     reading_arguments,
     refinement_arguments,
@@ -19,7 +20,6 @@ from jointid.cli.arguments import (
 )
 from jointid.cli.joint_options import joint_arguments
 from jointid.cli.parser import CommandParser
-from jointid.identification.search.search import METHODS
 
 
 def add_demo(demo: CommandParser) -> None:
@@ -29,7 +29,6 @@ def add_demo(demo: CommandParser) -> None:
         "--output", default="demo", type=Path, help="folder for report.html and estimate.json"
     )
     demo.add_argument("--json", action="store_true", help="print the estimate as JSON")
-    demo.add_argument("--quiet", action="store_true", help="no progress bar")
 
 
 def add_identify(identify: CommandParser) -> None:
@@ -45,7 +44,7 @@ def add_identify(identify: CommandParser) -> None:
         "  jointid identify runs/*.csv --joint servo.toml --rollout   (a servo that logs its duty, no torque)"
     )
     several_recordings(identify)
-    _identification_arguments(identify, method="ga")
+    _identification_arguments(identify)
     identify.add_argument(
         "--model",
         metavar="NAME[:OPTION[=VALUE]]",
@@ -124,7 +123,7 @@ def add_compare(compare: CommandParser) -> None:
         "one recording is cut into blocks; of several, whole recordings are held out"
     )
     several_recordings(compare)
-    _identification_arguments(compare, method="separable")
+    _identification_arguments(compare)
     _robot_arguments(compare)
     compare.add_argument(
         "--inertia",
@@ -176,10 +175,9 @@ def add_info(info: CommandParser) -> None:
     info.add_argument("--json", action="store_true", help="print JSON")
 
 
-def _identification_arguments(command: CommandParser, *, method: str) -> None:
-    others = " or ".join(name for name in METHODS if name != method)
+def _identification_arguments(command: CommandParser) -> None:
     joint_arguments(command)
-    command.add_argument("--method", default=method, help=f"{method} (default), {others}")
+    method_argument(command)
     command.add_argument("--residual", help="instruments, sensor or torque")
     command.add_argument(
         "--torque-hold", help="torque between samples: zoh (held command) or linear (measured)"

@@ -78,7 +78,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
             parameters=changes or None,
             search=Search(
                 arguments.method,
-                ga=GaOptions(**budget),
+                ga=GaOptions(**budget) if budget else None,
                 seed=arguments.seed,
                 threads=arguments.threads,
             ),

@@ -6,6 +6,7 @@ import argparse
 import errno
 import select
 import sys
+from importlib import import_module
 
 from jointid.base.errors import InputError
 from jointid.base.interruption import INTERRUPTED, raise_on_interruption
@@ -28,6 +29,7 @@ def run_command(arguments: argparse.Namespace) -> int:
         from jointid.cli.outputs import check_distinct
 
         run = runner_of(arguments.command)
+        import_module("numpy")  # every command needs it, and it makes another error of Ctrl-C
         raise_on_interruption()
         check_distinct(arguments)
         code = run(arguments)

@@ -15,6 +15,7 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import (
     by_name,
     fixed_values,
+    method_argument,
     number_or_text,
     pair,
     refinement_arguments,
@@ -70,11 +71,11 @@ def add_sweep(sweep: CommandParser) -> None:
     )
     for name, explanation in (
         ("--ga", "default, thesis or thesis_code"),
-        ("--method", "ga (default), separable or random"),
         ("--model", "friction model, such as stribeck:ripple=2"),
         ("--residual", "instruments, sensor or torque"),
     ):
         sweep.add_argument(name, help=explanation)
+    method_argument(sweep)
     term_argument(sweep)
     sweep.add_argument(
         "--windows",
@@ -168,8 +169,8 @@ def sweep(arguments: argparse.Namespace) -> None:
             grid=_grid(arguments.grid),
             trials=arguments.trials,
             search=Search(
-                arguments.method or "ga",
-                ga=arguments.ga or "default",
+                arguments.method,
+                ga=arguments.ga,
                 seed=arguments.seed,
                 threads=arguments.threads or 0,
             ),

@@ -103,7 +103,7 @@ def compare_models(
     parameters : mapping, optional
         As in `identify`; for all models.
     search : Search or str, optional
-        As in `identify`; default "separable".
+        As in `identify`.
     residual, torque_hold, mask_standstill
         As in `identify`.
     shift : mapping of str to float, optional
@@ -168,7 +168,7 @@ def compare_models(
     parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
     if residual is None and any(spec.load_friction for spec in specs):
         residual = "torque"  # the one that all of them have: fits by different residuals are not comparable
-    chosen = Search.of(search, method="separable")
+    chosen = Search.of(search)
     fitter = Fitter(
         joint=joint,
         common={
@@ -226,7 +226,7 @@ def compare_models(
             "folds": parts,
             "held_out": kind,
             "windows": duration,
-            "method": chosen.method,
+            "method": chosen.chosen_method,
             "residual": first.settings["residual"],
             "left_out": left_out,
         },

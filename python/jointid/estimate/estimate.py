@@ -68,7 +68,7 @@ class Estimate(Questions):
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
-        None without a genetic search.
+        None without a genetic or random search.
     findings : tuple of Finding
         What the data and the fit show, the most severe first; `docs/findings.md` lists the codes.
     derived : mapping of str to DerivedValue

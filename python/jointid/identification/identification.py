@@ -58,7 +58,7 @@ def identify(
         Changes by name: a number fixes the parameter; {"value", "min", "max", "vary"} or a `Parameter`
         changes those fields. Values in SI units.
     search : Search or str, optional
-        Settings of the search, or a method: "ga" (default), "separable" or "random".
+        Settings of the search, or a method: "separable" (default), "ga" or "random".
     residual : str, optional
         "instruments" (default with a sensor): the gain from the part of the reading that gravity and
         inertia of a rigid link explain, which neither the reading's noise nor friction that the model

@@ -200,7 +200,7 @@ class Prepared:
         return {
             "version": _core.__version__,
             "kind": self.given[0].kind,
-            "method": search.method,
+            "method": search.chosen_method,
             "model": str(choice.model.resolved),
             "terms": list(choice.terms),
             "dropped": choice.dropped,
@@ -214,7 +214,7 @@ class Prepared:
             "min_speed": problem.min_speed,
             **_of_instant(self.refinements.sensor_instant),
             "seed": search.seed,
-            "ga": None if search.method == "separable" else search.genetic.asdict(),
+            "ga": None if search.chosen_method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
         }
 

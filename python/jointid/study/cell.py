@@ -79,6 +79,8 @@ class Cell:
         method = self.values.get("method", base.method)
         search = Search(method, ga=ga, seed=seed, threads=threads)
         changes = {n.removeprefix("ga."): v for n, v in self.values.items() if n.startswith("ga.")}
+        if not changes:
+            return search
         return replace(search, ga=_with_settings(search.genetic, changes))
 
 

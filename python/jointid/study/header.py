@@ -39,7 +39,7 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
         else [{"name": run.name, "fingerprint": run.fingerprint} for run in subject],
         "joint": None if work.joint is None else repr(work.joint),
         "options": {name: repr(value) for name, value in sorted(work.common.items())},
-        "search": repr((work.search.method, work.search.ga)),
+        "search": repr((work.search.chosen_method, work.search.ga or "default")),
         "standard_errors": work.standard_errors,
         "tracking": work.tracking,
         "version": _core.__version__,

@@ -215,7 +215,7 @@ def _outcomes(
     searches: list[Search], prepared: Prepared, engine: Callable[[], Engine]
 ) -> list[Outcome]:
     penalty, domain = prepared.penalty, prepared.domain
-    if searches[0].method == "separable":  # which has no seed
+    if searches[0].chosen_method == "separable":  # which has no seed
         return [separable(searches[0], penalty, domain, engine)] * len(searches)
     ready = engine()
     results = _core.minimise_trials(
@@ -224,7 +224,7 @@ def _outcomes(
         domain.upper,
         options=[search.genetic for search in searches],
         seeds=[search.seed for search in searches],
-        random=searches[0].method == "random",
+        random=searches[0].chosen_method == "random",
         threads=searches[0].threads,
     )
     return [

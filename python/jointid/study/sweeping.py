@@ -143,7 +143,8 @@ def sweep(
     search : Search or str, optional
         As in `identify`. In every cell, trial t adds t to its seed, for the search and for the noise of a
         simulated recording; `identify` with a row's seed gives the row. Threads of 0 are all threads in
-        this process, and 1 for each trial in an executor. Callback, checkpoint and resume are refused.
+        this process, and 1 for each trial in an executor. A grid over "ga" or a field of it means the method
+        "ga", unless one is stated. Callback, checkpoint and resume are refused.
     standard_errors : bool
         Whether to compute standard errors, which takes some milliseconds more per trial. Default False.
     tracking : bool

@@ -85,7 +85,7 @@ class Engine:
         With one free shape and the direct sum: near the start only. Two shapes: by projection, where that is at
         least as good as the start.
         """
-        shapes = _free_shapes(self.direct, domain)
+        shapes = free_shapes(self.direct, domain)
         if self.form is self.direct and shapes < 2:
             found = _core.polish(self.direct, domain.lower, domain.upper, start)
             return found.best, found.iterations, found.converged
@@ -123,7 +123,8 @@ class Engine:
         return replace(outcome, best=found.best, message=message)
 
 
-def _free_shapes(penalty: _core.Penalty, domain: SearchDomain) -> int:
+def free_shapes(penalty: _core.Penalty, domain: SearchDomain) -> int:
+    """Return how many shapes are searched."""
     shapes = slice(penalty.coefficients, None)
     ranges = zip(domain.lower[shapes].tolist(), domain.upper[shapes].tolist(), strict=True)
     return sum(low < high for low, high in ranges)

@@ -15,7 +15,7 @@ from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.estimate.statistics import Convergence
 from jointid.identification.search.domain import SearchDomain
-from jointid.identification.search.engine import Engine, Outcome
+from jointid.identification.search.engine import Engine, Outcome, free_shapes
 from jointid.identification.search.search import Search
 
 Array = NDArray[np.float64]
@@ -37,11 +37,12 @@ def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> 
     KeyboardInterrupt
         Ctrl-C.
     """
-    made = functools.partial(Engine.of, penalty, domain, search.threads, ahead)
-    if search.method == "separable":
+    made = functools.partial(Engine.of, penalty, domain, search.threads)
+    if search.chosen_method == "separable":
         return separable(search, penalty, domain, made)
     engine = made()
-    result = (_random if search.method == "random" else _genetic)(search, engine, domain)
+    run = _random if search.chosen_method == "random" else _genetic
+    result = run(search, engine, domain)
     convergence = _convergence(result)
     outcome = concluded(search, engine, domain, result, int(convergence.generation[-1]))
     return replace(outcome, convergence=convergence)
@@ -58,18 +59,25 @@ def separable(
     lower, upper = domain.lower, domain.upper
     projected = _core.minimise_projected(penalty, lower, upper, threads=search.threads)
     if projected.found is not None:
-        return _found(projected.found, "by projection")
+        return _found(projected.found, f"{_effort(projected.found)}, by projection")
     ready = engine()
     found = _core.minimise_separable(ready.form, lower, upper, threads=search.threads)
-    return ready.verified(_found(found, f"not by projection: {projected.reason}"), domain)
+    message = "least squares, as no shape is searched"
+    if free_shapes(penalty, domain):
+        message = f"{_effort(found)}, not by projection: {projected.reason}"
+    return ready.verified(_found(found, message), domain)
 
 
-def _found(found: _core.SeparableResult, way: str) -> Outcome:
+def _effort(found: _core.SeparableResult) -> str:
+    return f"separable optimum after {found.evaluations} shapes"
+
+
+def _found(found: _core.SeparableResult, message: str) -> Outcome:
     return Outcome(
         best=found.best,
         convergence=None,
         status="converged",
-        message=f"separable optimum after {found.evaluations} shapes, {way}",
+        message=message,
         evaluations=found.evaluations,
     )
 
@@ -154,7 +162,7 @@ def _finished(
 ) -> tuple[Array, str, str]:
     """Return best parameters, status and message after the polish, if there is one."""
     effort = f"{generations} generations, {result.evaluations} penalties"
-    polish = search.genetic.polish and search.method == "ga"
+    polish = search.genetic.polish and search.chosen_method == "ga"
     if result.stop == _core.Stop.observer:
         return result.best, "stopped", f"stopped by the callback after {effort}"
     if polish:

@@ -16,7 +16,7 @@ from jointid.joint.checks import check_choice
 Callback = Callable[[_core.Generation], bool | None]
 StatePath = str | os.PathLike[str]
 
-Method = Literal["ga", "separable", "random"]
+Method = Literal["separable", "ga", "random"]
 Preset = Literal["default", "thesis", "thesis_code"]
 METHODS: tuple[str, ...] = get_args(Method)
 PRESETS: Mapping[str, Callable[[], _core.GaOptions]] = MappingProxyType(
@@ -34,18 +34,20 @@ class Search:
 
     Parameters
     ----------
-    method : {"ga", "separable", "random"}
-        "ga" (default): genetic algorithm, then a local polish. "separable": the linear parameters are
-        eliminated exactly and only the shapes are searched. "random": random search with the genetic
-        algorithm's budget and no polish, for comparison.
-    ga : GaOptions or {"default", "thesis", "thesis_code"}
+    method : {"separable", "ga", "random"}, optional
+        "separable": the linear parameters are eliminated exactly and only the shapes are searched. "ga":
+        genetic algorithm, then a local polish; `identify` takes six times as long by it with the model
+        "stribeck_general" (12,000 samples). "random": random search with the genetic algorithm's budget and
+        no polish, for comparison. Default: "ga" where `ga`, `callback`, `checkpoint` or `resume` is given,
+        which "separable" does not use; else "separable".
+    ga : GaOptions or {"default", "thesis", "thesis_code"}, optional
         Settings of the genetic algorithm. Default "default".
     seed : int
         The same seed gives the same bits for any number of threads. Default 0.
     threads : int
         0 (default): all.
     callback : callable, optional
-        Called with each `Generation`; returning True stops the search. "separable" does not call it.
+        Called with each `Generation`; returning True stops the search. "separable" has none, and does not call it.
     checkpoint : path, optional
         File for the state of the genetic search; it is replaced every 50 generations and at the end.
     resume : path, optional
@@ -58,18 +60,19 @@ class Search:
 
     Examples
     --------
-    >>> Search("separable").method
+    >>> Search(seed=3).chosen_method
     'separable'
-    >>> Search(ga=jid.GaOptions(population=50), seed=3).genetic.population
-    50
+    >>> search = Search(ga=jid.GaOptions(population=50), seed=3)
+    >>> search.chosen_method, search.genetic.population
+    ('ga', 50)
     >>> seen = []
     >>> estimate = jid.identify(recording, joint, model="stribeck", search=Search(callback=seen.append))
     >>> isinstance(seen[-1], jid.Generation), seen[-1].best <= seen[0].best
     (True, True)
     """
 
-    method: Method = "ga"
-    ga: _core.GaOptions | Preset = "default"
+    method: Method | None = None
+    ga: _core.GaOptions | Preset | None = None
     seed: int = 0
     threads: int = 0
     callback: Callback | None = None
@@ -77,10 +80,11 @@ class Search:
     resume: StatePath | None = None
 
     def __post_init__(self) -> None:
-        check_choice("", "method", self.method, METHODS)
+        if self.method is not None:
+            check_choice("", "method", self.method, METHODS)
         if isinstance(self.ga, str):
             check_choice("", "ga", self.ga, PRESETS)
-        elif not isinstance(self.ga, _core.GaOptions):
+        elif self.ga is not None and not isinstance(self.ga, _core.GaOptions):
             raise InputError(
                 f"GaOptions or one of {', '.join(PRESETS)} is expected",
                 argument="ga",
@@ -91,7 +95,7 @@ class Search:
         for name in ("checkpoint", "resume"):
             if getattr(self, name) is not None:
                 require_path(name, getattr(self, name))
-                if self.method != "ga":
+                if self.chosen_method != "ga":
                     raise InputError(
                         "only the method ga has a checkpoint to write or to resume",
                         argument="method",
@@ -101,14 +105,12 @@ class Search:
             raise InputError("a function is expected", argument="callback", value=self.callback)
 
     @classmethod
-    def of(cls, value: object, *, method: Method = "ga") -> Search:
+    def of(cls, value: object) -> Search:
         """Return a search from a search, a method's name, or None.
 
         Parameters
         ----------
         value : Search, str or None
-        method : str
-            The method for None. Default "ga".
 
         Raises
         ------
@@ -118,7 +120,7 @@ class Search:
         if isinstance(value, Search):
             return value
         if value is None:
-            return cls(method)
+            return cls()
         if isinstance(value, str):
             return cls(cast("Method", value))  # checked there
         raise InputError(
@@ -126,6 +128,15 @@ class Search:
         )
 
     @property
+    def chosen_method(self) -> Method:
+        """The method that runs: "ga" where none is stated but something that "separable" does not use."""
+        if self.method is not None:
+            return self.method
+        stated = (self.ga, self.callback, self.checkpoint, self.resume)
+        return "separable" if all(each is None for each in stated) else "ga"
+
+    @property
     def genetic(self) -> _core.GaOptions:
         """Settings of the genetic algorithm; a preset's settings if `ga` is its name."""
-        return PRESETS[self.ga]() if isinstance(self.ga, str) else self.ga
+        ga = self.ga or "default"
+        return PRESETS[ga]() if isinstance(ga, str) else ga
