@@ -42,8 +42,6 @@ ROOMS: dict[str, set[str]] = {
 ROOMS["bind"] = ROOMS["tests"] = set(ROOMS)
 PRINTING = {"iostream", "cstdio", "stdio.h", "print"}
 WRITES_TEXT = ("base/digits.cpp", "cstdio")  # numbers in messages, by snprintf
-# Counts threads where there is the GNU C library, so that none is kept from ThreadSanitizer.
-COUNTS_THREADS = {("tests/check.cpp", "dlfcn.h"), ("tests/check.cpp", "pthread.h")}
 
 # --- Python: the folders of jointid, those each may use (itself always), and the packages. ---
 
@@ -374,8 +372,6 @@ def _includes(path: Path, repository: Path) -> Iterator[str]:
         elif name in PRINTING and room != "tests":
             if (path.relative_to(root).as_posix(), name) != WRITES_TEXT:
                 yield f"includes <{name}>: the core prints nothing"
-        elif (path.relative_to(root).as_posix(), name) in COUNTS_THREADS:
-            continue
         elif not name.startswith("Eigen/") and not re.fullmatch(r"[a-z0-9_]+|stdio\.h", name):
             yield f"includes <{name}>: the core uses std and Eigen only"
     if room != "tests" and re.search(r"std::(cout|cerr|clog)\b|\b(?:f|v|vf)?printf\s*\(", text):

@@ -5,7 +5,7 @@
 // (-ffp-contract=off), and sums keep the order in which they are written.
 // Needs ifunc (GNU libc); sanitizers run before it is resolved. Of clang those that have been
 // tried: version 14 leaves the clones of a function out that a header declares without the
-// attribute. There one clone less, since wheels are built by clang and have to be small.
+// attribute.
 // JOINTID_CLONED says that there are any.
 // A compiler that is given -DJOINTID_CLONES= makes none, to see what that costs.
 

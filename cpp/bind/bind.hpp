@@ -4,6 +4,7 @@
 #include <Python.h>
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
+#include <pybind11/native_enum.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -13,15 +14,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
-#include "bind/enumeration.hpp"
 #include "bind/value.hpp"
-
-// What private functions are for: in wheels, whose size is limited, the source alone says it.
-#ifdef JOINTID_SMALL
-#define JOINTID_TEXT(text) ""
-#else
-#define JOINTID_TEXT(text) text
-#endif
 
 namespace jointid::bind {
 

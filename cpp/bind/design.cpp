@@ -60,12 +60,11 @@ void bind_values(py::module_& m) {
 }
 
 void bind_results(py::module_& m) {
-  py::class_<Column>(m, "BalanceColumn",
-                     JOINTID_TEXT("What a free parameter does to the torque balance."))
+  py::class_<Column>(m, "BalanceColumn", "What a free parameter does to the torque balance.")
       .def(py::init(&column), py::kw_only(), py::arg("key"), py::arg("shape") = -1,
            py::arg("coefficient") = 0.0, py::arg("frequency") = 0.0,
            py::arg("shapes") = std::vector<double>{});
-  py::class_<Drawn>(m, "DrawnJoint", JOINTID_TEXT("A joint that the prior allows."))
+  py::class_<Drawn>(m, "DrawnJoint", "A joint that the prior allows.")
       .def(py::init([](simulate::Setup setup, std::vector<Column> columns, Noise noise,
                        Eigen::VectorXd scale, Eigen::VectorXd weight, Eigen::MatrixXd known,
                        double inertia, double viscous) {
@@ -79,29 +78,24 @@ void bind_results(py::module_& m) {
            }),
            py::kw_only(), py::arg("setup"), py::arg("columns"), py::arg("noise"), py::arg("scale"),
            py::arg("weight"), py::arg("known"), py::arg("inertia"), py::arg("viscous"))
-      .def_readonly("weight", &Drawn::weight, JOINTID_TEXT("1: asked for, 0: not."));
-  py::class_<Judgement>(m, "MotionJudgement", JOINTID_TEXT("What a motion is worth for one joint."))
-      .def_readonly("errors", &Judgement::errors,
-                    JOINTID_TEXT("Expected errors (RMS) over their scales."))
-      .def_readonly("bias", &Judgement::bias,
-                    JOINTID_TEXT("The part of them that each recording shows."))
-      .def_readonly("information", &Judgement::information, JOINTID_TEXT("Of this motion alone."))
-      .def_readonly("lowest", &Judgement::lowest,
-                    JOINTID_TEXT("Position that the joint reaches [rad]."))
-      .def_readonly("highest", &Judgement::highest,
-                    JOINTID_TEXT("Position that the joint reaches [rad]."))
+      .def_readonly("weight", &Drawn::weight, "1: asked for, 0: not.");
+  py::class_<Judgement>(m, "MotionJudgement", "What a motion is worth for one joint.")
+      .def_readonly("errors", &Judgement::errors, "Expected errors (RMS) over their scales.")
+      .def_readonly("bias", &Judgement::bias, "The part of them that each recording shows.")
+      .def_readonly("information", &Judgement::information, "Of this motion alone.")
+      .def_readonly("lowest", &Judgement::lowest, "Position that the joint reaches [rad].")
+      .def_readonly("highest", &Judgement::highest, "Position that the joint reaches [rad].")
       .def_readonly("velocity", &Judgement::velocity, "[rad/s]")
       .def_readonly("acceleration", &Judgement::acceleration, "[rad/s²]")
-      .def_readonly("torque", &Judgement::torque, JOINTID_TEXT("Of the drive [N·m]."))
-      .def_readonly("link_torque", &Judgement::link_torque, JOINTID_TEXT("At the sensor [N·m]."))
+      .def_readonly("torque", &Judgement::torque, "Of the drive [N·m].")
+      .def_readonly("link_torque", &Judgement::link_torque, "At the sensor [N·m].")
       .def_readonly("excess", &Judgement::excess,
-                    JOINTID_TEXT("Largest share by which a limit is exceeded; 0: none."));
+                    "Largest share by which a limit is exceeded; 0: none.");
 }
 
 void bind_excitation(py::module_& m) {
   using Function = std::optional<py::function>;
-  py::class_<Excitation>(m, "Excitation",
-                         JOINTID_TEXT("Judges motions, and searches for the best."))
+  py::class_<Excitation>(m, "Excitation", "Judges motions, and searches for the best.")
       .def(py::init([](const Family& family, const simulate::Scenario& scenario,
                        std::vector<Drawn> joints, const Held& held, Criterion criterion,
                        int window) {
@@ -112,7 +106,7 @@ void bind_excitation(py::module_& m) {
       .def_property_readonly("joints", &Excitation::joints)
       .def_property_readonly(
           "genes", [](const Excitation& self) { return self.family().genes(); },
-          JOINTID_TEXT("How many numbers make a motion."))
+          "How many numbers make a motion.")
       .def(
           "judge",
           [](const Excitation& self, const simulate::Trajectory& trajectory) {
@@ -124,7 +118,7 @@ void bind_excitation(py::module_& m) {
                 1);
             return found;
           },
-          py::arg("trajectory"), JOINTID_TEXT("One judgement a joint."))
+          py::arg("trajectory"), "One judgement a joint.")
       .def(
           "motion",
           [](const Excitation& self, const Eigen::VectorXd& genes) {
@@ -138,7 +132,7 @@ void bind_excitation(py::module_& m) {
             arguments["duration"] = sines.duration;
             return arguments;
           },
-          py::arg("genes"), JOINTID_TEXT("Arguments of Trajectory.multisine."))
+          py::arg("genes"), "Arguments of Trajectory.multisine.")
       .def(
           "leave_out",
           [](Excitation& self, const Eigen::MatrixXd& candidates, double largest, int threads) {
@@ -147,8 +141,8 @@ void bind_excitation(py::module_& m) {
             self.leave_out(candidates, largest, pool);
           },
           py::arg("candidates"), py::kw_only(), py::arg("largest"), py::arg("threads") = 0,
-          JOINTID_TEXT("Leave out, for each joint, what none of these motions determines to within "
-                       "`largest`."))
+          "Leave out, for each joint, what none of these motions determines to within "
+          "`largest`.")
       .def(
           "search",
           [](const Excitation& self, const search::GaOptions& options, std::uint64_t seed,
@@ -168,7 +162,7 @@ void bind_excitation(py::module_& m) {
           },
           py::kw_only(), py::arg("options"), py::arg("seed") = 0, py::arg("trial") = 0,
           py::arg("threads") = 0, py::arg("callback") = py::none(),
-          JOINTID_TEXT("Genetic search for the motion of the smallest cost."));
+          "Genetic search for the motion of the smallest cost.");
 }
 
 }  // namespace

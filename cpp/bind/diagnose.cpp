@@ -21,45 +21,42 @@ using Array = SharedRecording::Array;
 }  // namespace
 
 void bind_diagnose(py::module_& m) {
-  enumeration<SpikeRule>(m, "SpikeRule", "What a spike of a signal is held against.",
-                         {{"position", SpikeRule::position},
-                          {"command", SpikeRule::command},
-                          {"other", SpikeRule::other}});
-  py::class_<Limit>(m, "Limit", JOINTID_TEXT("Samples at one of a signal's extremes."))
+  py::native_enum<SpikeRule>(m, "SpikeRule", "enum.Enum",
+                             "What a spike of a signal is held against.")
+      .value("position", SpikeRule::position)
+      .value("command", SpikeRule::command)
+      .value("other", SpikeRule::other)
+      .finalize();
+  py::class_<Limit>(m, "Limit", "Samples at one of a signal's extremes.")
       .def_readonly("there", &Limit::there, "On it.")
-      .def_readonly("moving", &Limit::moving, JOINTID_TEXT("On it while the joint moves."))
-      .def_readonly("near", &Limit::near,
-                    JOINTID_TEXT("Within 1 % of the range, those on it too."));
-  py::class_<SignalFacts>(m, "SignalFacts", JOINTID_TEXT("What a single signal shows by itself."))
+      .def_readonly("moving", &Limit::moving, "On it while the joint moves.")
+      .def_readonly("near", &Limit::near, "Within 1 % of the range, those on it too.");
+  py::class_<SignalFacts>(m, "SignalFacts", "What a single signal shows by itself.")
       .def_property_readonly("lowest", [](const SignalFacts& f) { return f.range.lowest; })
       .def_property_readonly("highest", [](const SignalFacts& f) { return f.range.highest; })
-      .def_readonly("fine", &SignalFacts::fine,
-                    JOINTID_TEXT("The usual step is at least 30 smallest ones."))
-      .def_readonly("changes", &SignalFacts::changes, JOINTID_TEXT("Steps that are not zero."))
-      .def_readonly("smallest", &SignalFacts::smallest,
-                    JOINTID_TEXT("The smallest of those; infinite: none."))
+      .def_readonly("fine", &SignalFacts::fine, "The usual step is at least 30 smallest ones.")
+      .def_readonly("changes", &SignalFacts::changes, "Steps that are not zero.")
+      .def_readonly("smallest", &SignalFacts::smallest, "The smallest of those; infinite: none.")
       .def_readonly("lower", &SignalFacts::lower)
       .def_readonly("upper", &SignalFacts::upper)
-      .def_readonly("moving", &SignalFacts::moving, JOINTID_TEXT("Intervals at a fair speed."))
-      .def_readonly("stale", &SignalFacts::stale,
-                    JOINTID_TEXT("Of those: no step, and not on a limit."))
-      .def_readonly("frozen", &SignalFacts::frozen, JOINTID_TEXT("Of those: in long runs."));
-  py::class_<Spike>(m, "Spike", JOINTID_TEXT("The largest spike of a signal."))
+      .def_readonly("moving", &SignalFacts::moving, "Intervals at a fair speed.")
+      .def_readonly("stale", &SignalFacts::stale, "Of those: no step, and not on a limit.")
+      .def_readonly("frozen", &SignalFacts::frozen, "Of those: in long runs.");
+  py::class_<Spike>(m, "Spike", "The largest spike of a signal.")
       .def_readonly("height", &Spike::height)
       .def_readonly("index", &Spike::index)
       .def_readonly("count", &Spike::count, "0: none.");
   py::class_<diagnose::Agreement>(
-      m, "Agreement",
-      JOINTID_TEXT("position change = scale * integrated velocity + lag * velocity change."))
+      m, "Agreement", "position change = scale * integrated velocity + lag * velocity change.")
       .def_readonly("scale", &diagnose::Agreement::scale)
       .def_readonly("lag", &diagnose::Agreement::lag, "[s]")
       .def_readonly("lag_error", &diagnose::Agreement::lag_error, "[s]");
-  py::class_<Inspection>(m, "Inspection", JOINTID_TEXT("What a recording shows by itself."))
+  py::class_<Inspection>(m, "Inspection", "What a recording shows by itself.")
       .def_readonly("peak_speed", &Inspection::peak_speed)
       .def_readonly("facts", &Inspection::facts, "One a channel.")
       .def_readonly("spikes", &Inspection::spikes, "One a channel.")
       .def_readonly("jump", &Inspection::jump,
-                    JOINTID_TEXT("The sample before a jump of the position; -1: none."))
+                    "The sample before a jump of the position; -1: none.")
       .def_readonly("agreement", &Inspection::agreement)
       .def_property_readonly(
           "swing", [](const Inspection& i) { return i.position.highest - i.position.lowest; })
@@ -68,8 +65,8 @@ void bind_diagnose(py::module_& m) {
           [](const Inspection& i) {
             return std::make_pair(i.timing.as_stamped, i.timing.as_uniform);
           },
-          JOINTID_TEXT(
-              "Scatter of the samples' times about the stamps and about an even grid [s]."));
+
+          "Scatter of the samples' times about the stamps and about an even grid [s].");
   m.def(
       "inspect",
       [](const Array& time, const Array& position, const Array& velocity, bool velocity_derived,
@@ -90,9 +87,9 @@ void bind_diagnose(py::module_& m) {
       },
       py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
       py::arg("velocity_derived"), py::arg("period"), py::arg("channels"), py::arg("threads") = 0,
-      JOINTID_TEXT(
-          "Look at a recording's signals; a channel is a signal, its rule, and whether to look for "
-          "spikes."));
+
+      "Look at a recording's signals; a channel is a signal, its rule, and whether to look for "
+      "spikes.");
   m.def(
       "ripple",
       [](const Recordings& recordings, const std::vector<std::string>& terms,
@@ -110,8 +107,8 @@ void bind_diagnose(py::module_& m) {
       py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
       py::arg("residual"), py::arg("mask_standstill"), py::arg("gear_ratio"),
       py::arg("per_recording"), py::arg("theta"), py::arg("halves"), py::arg("threads") = 0,
-      JOINTID_TEXT("Of short windows: their number, the sum of squared mean residuals, and the "
-                   "magnitude of their sum over each half multiple of the motor's angle."));
+      "Of short windows: their number, the sum of squared mean residuals, and the "
+      "magnitude of their sum over each half multiple of the motor's angle.");
 }
 
 }  // namespace jointid::bind

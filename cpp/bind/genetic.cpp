@@ -155,24 +155,22 @@ clamped to the domain, where the listing takes absolute values and half the uppe
 void bind_state(py::module_& m) {
   py::class_<GaState>(
       m, "GaState",
-      JOINTID_TEXT(
-          "A genetic search between two generations, from which it goes on to the same bits."))
+
+      "A genetic search between two generations, from which it goes on to the same bits.")
       .def_readonly("options", &GaState::options)
       .def_readonly("seed", &GaState::seed)
       .def_readonly("trial", &GaState::trial)
-      .def_readonly("generation", &GaState::generation, JOINTID_TEXT("The last evaluated."))
-      .def_readonly(
-          "genes", &GaState::genes,
-          JOINTID_TEXT("Free parameters scaled to [0, 1], shape (parameters, individuals)."))
-      .def_readonly("penalties", &GaState::penalties, JOINTID_TEXT("Of the individuals."))
-      .def_readonly("best", &GaState::best, JOINTID_TEXT("Parameters of the best so far."))
+      .def_readonly("generation", &GaState::generation, "The last evaluated.")
+      .def_readonly("genes", &GaState::genes,
+                    "Free parameters scaled to [0, 1], shape (parameters, individuals).")
+      .def_readonly("penalties", &GaState::penalties, "Of the individuals.")
+      .def_readonly("best", &GaState::best, "Parameters of the best so far.")
       .def_readonly("penalty", &GaState::penalty, "Its penalty.")
       .def_readonly("evaluations", &GaState::evaluations)
       .def_readonly("history", &GaState::history)
-      .def("to_bytes", &bytes_of,
-           JOINTID_TEXT("Exact, with a checksum: the content of a checkpoint file."))
+      .def("to_bytes", &bytes_of, "Exact, with a checksum: the content of a checkpoint file.")
       .def_static("from_bytes", &state_of, py::arg("content"),
-                  JOINTID_TEXT("What `to_bytes` gave; ValueError for anything else."))
+                  "What `to_bytes` gave; ValueError for anything else.")
       .def("__eq__",
            [](const GaState& self, const py::object& other) {
              return py::isinstance<GaState>(other) &&
@@ -184,7 +182,7 @@ void bind_state(py::module_& m) {
 
 void bind_trials(py::module_& m) {
   using search::TrialResult;
-  py::class_<TrialResult>(m, "TrialResult", JOINTID_TEXT("What is left of one of many searches."))
+  py::class_<TrialResult>(m, "TrialResult", "What is left of one of many searches.")
       .def_readonly("best", &TrialResult::best)
       .def_readonly("penalty", &TrialResult::penalty)
       .def_readonly("evaluations", &TrialResult::evaluations)
@@ -211,18 +209,19 @@ void bind_trials(py::module_& m) {
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("options"),
       py::arg("seeds"), py::arg("random") = false, py::arg("threads") = 0,
-      JOINTID_TEXT(
-          "Many genetic (or random) searches side by side, a thread each: the same bits as one by "
-          "one."));
+
+      "Many genetic (or random) searches side by side, a thread each: the same bits as one by "
+      "one.");
 }
 
 }  // namespace
 
 void bind_genetic(py::module_& m) {
-  enumeration<Stop>(m, "Stop", "Why a search ended.",
-                    {{"generations", Stop::generations},
-                     {"converged", Stop::converged},
-                     {"observer", Stop::observer}});
+  py::native_enum<Stop>(m, "Stop", "enum.Enum", "Why a search ended.")
+      .value("generations", Stop::generations)
+      .value("converged", Stop::converged)
+      .value("observer", Stop::observer)
+      .finalize();
   bind_options(m);
   py::class_<Generation>(m, "Generation", "One generation, as the callback sees it.")
       .def_readonly("number", &Generation::number)
@@ -236,19 +235,17 @@ void bind_genetic(py::module_& m) {
                     "That the next generation is bred with; mean of the islands.")
       .def_readonly("evaluations", &Generation::evaluations);
   bind_state(m);
-  py::class_<GaResult>(m, "GaResult",
-                       JOINTID_TEXT("Best individual, history and why the search ended."))
+  py::class_<GaResult>(m, "GaResult", "Best individual, history and why the search ended.")
       .def_readonly("best", &GaResult::best)
       .def_readonly("penalty", &GaResult::penalty)
       .def_readonly("history", &GaResult::history)
-      .def_property_readonly(
-          "series", &series_of,
-          JOINTID_TEXT("A row a generation: number, best, mean, diversity, probabilities of "
-                       "crossover and mutation, evaluations."))
+      .def_property_readonly("series", &series_of,
+                             "A row a generation: number, best, mean, diversity, probabilities of "
+                             "crossover and mutation, evaluations.")
       .def_readonly("evaluations", &GaResult::evaluations)
       .def_readonly("stop", &GaResult::stop)
       .def_readonly("state", &GaResult::state,
-                    JOINTID_TEXT("From which the search can go on; None after a random search."));
+                    "From which the search can go on; None after a random search.");
 
   m.def(
       "minimise_genetic",
@@ -268,11 +265,11 @@ void bind_genetic(py::module_& m) {
       py::arg("seed") = 0, py::arg("trial") = 0, py::arg("threads") = 0,
       py::arg("callback") = py::none(), py::arg("resume") = py::none(),
       py::arg("checkpoint") = py::none(), py::arg("checkpoint_interval") = 50,
-      JOINTID_TEXT(
-          "Genetic search. `resume` goes on from a state made with the same options, seed, trial, "
-          "bounds "
-          "and penalty; `checkpoint` is called with the state every `checkpoint_interval` "
-          "generations."));
+
+      "Genetic search. `resume` goes on from a state made with the same options, seed, trial, "
+      "bounds "
+      "and penalty; `checkpoint` is called with the state every `checkpoint_interval` "
+      "generations.");
   m.def(
       "minimise_random",
       [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
@@ -287,9 +284,9 @@ void bind_genetic(py::module_& m) {
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("options"),
       py::arg("seed") = 0, py::arg("trial") = 0, py::arg("threads") = 0,
       py::arg("callback") = py::none(),
-      JOINTID_TEXT("Random search with the budget of the genetic one: population, islands and "
-                   "generations of "
-                   "the options count, nothing else."));
+      "Random search with the budget of the genetic one: population, islands and "
+      "generations of "
+      "the options count, nothing else.");
   bind_trials(m);
 }
 

@@ -9,19 +9,18 @@ using identify::SlidingPenalty;
 
 void bind_online(py::module_& m) {
   py::class_<MotionScale>(m, "MotionScale",
-                          JOINTID_TEXT("Scale of a motion, which the mask compares speeds with."))
+                          "Scale of a motion, which the mask compares speeds with.")
       .def(py::init([](SharedRecording& recording) {
              const py::gil_scoped_release nogil;
              return identify::motion_scale(recording.view());
            }),
            py::arg("recording"))
       .def_readonly("peak", &MotionScale::peak, "Largest speed.")
-      .def_readonly("travel", &MotionScale::travel,
-                    JOINTID_TEXT("From the lowest position to the highest."))
+      .def_readonly("travel", &MotionScale::travel, "From the lowest position to the highest.")
       .def_property_readonly("moves", &MotionScale::moves)
       .def_property_readonly(
           "memory", &MotionScale::memory,
-          JOINTID_TEXT("Time at rest that distinguishes a standing joint from a slow one [s]."));
+          "Time at rest that distinguishes a standing joint from a slow one [s].");
   m.def(
       "window_duration",
       [](SharedRecording& recording, std::int64_t parameters, bool mask_standstill) {
@@ -30,10 +29,9 @@ void bind_online(py::module_& m) {
             .duration;
       },
       py::arg("recording"), py::arg("parameters"), py::arg("mask_standstill"),
-      JOINTID_TEXT("The duration of a window that the velocity's noise asks for [s]."));
-  py::class_<SlidingPenalty>(
-      m, "SlidingPenalty",
-      JOINTID_TEXT("The penalty over the last seconds of a motion that goes on."))
+      "The duration of a window that the velocity's noise asks for [s].");
+  py::class_<SlidingPenalty>(m, "SlidingPenalty",
+                             "The penalty over the last seconds of a motion that goes on.")
       .def(py::init([](std::vector<std::string> terms, identify::Residual residual,
                        double gear_ratio, double window_duration, bool mask_standstill,
                        const MotionScale& scale, Eigen::VectorXd lower, Eigen::VectorXd upper,
@@ -51,13 +49,13 @@ void bind_online(py::module_& m) {
              Eigen::Index end) { p.append(samples->view(), begin, end); },
           py::arg("samples"), py::arg("begin"), py::arg("end"),
           py::call_guard<py::gil_scoped_release>(),
-          JOINTID_TEXT(
-              "Digest the sample intervals begin to end - 1; the other samples are context."))
+
+          "Digest the sample intervals begin to end - 1; the other samples are context.")
       .def("forget", &SlidingPenalty::forget, py::arg("time"),
-           JOINTID_TEXT("Drop the stretches that end no later than this time [s]."))
+           "Drop the stretches that end no later than this time [s].")
       .def("compressed", &SlidingPenalty::compressed, py::call_guard<py::gil_scoped_release>(),
-           JOINTID_TEXT(
-               "The penalty over all stretches; None while there is no window with motion."))
+
+           "The penalty over all stretches; None while there is no window with motion.")
       .def(
           "linearised",
           [](const SlidingPenalty& p, const Eigen::VectorXd& theta) {
@@ -69,13 +67,12 @@ void bind_online(py::module_& m) {
             }
             return py::make_tuple(residual.squaredNorm(), std::move(residual), std::move(jacobian));
           },
-          py::arg("theta"),
-          JOINTID_TEXT("Penalty, window residuals and derivatives, by the direct sum."))
+          py::arg("theta"), "Penalty, window residuals and derivatives, by the direct sum.")
       .def("total", &SlidingPenalty::total, py::arg("coefficient"),
-           JOINTID_TEXT("Sum of a constant column over all windows."))
+           "Sum of a constant column over all windows.")
       .def_property_readonly("window_count", &SlidingPenalty::window_count)
       .def_property_readonly("usable_duration", &SlidingPenalty::usable_duration,
-                             JOINTID_TEXT("Integrated time of all windows [s]."))
+                             "Integrated time of all windows [s].")
       .def_property_readonly("stretches", &SlidingPenalty::stretches)
       .def_property_readonly("begin", &SlidingPenalty::begin, "[s]")
       .def_property_readonly("end", &SlidingPenalty::end, "[s]");

@@ -17,17 +17,18 @@ using identify::Residual;
 using identify::WindowOptions;
 
 void bind_penalty(py::module_& m) {
-  enumeration<Residual>(m, "Residual", "What a window's residual is compared with.",
-                        {{"sensor", Residual::sensor},
-                         {"torque", Residual::torque},
-                         {"instruments", Residual::instruments}});
+  py::native_enum<Residual>(m, "Residual", "enum.Enum",
+                            "What a window's residual is compared with.")
+      .value("sensor", Residual::sensor)
+      .value("torque", Residual::torque)
+      .value("instruments", Residual::instruments)
+      .finalize();
   py::class_<PenaltyFunction>(m, "PenaltyFunction",
-                              JOINTID_TEXT("What every form of the penalty offers to a search."))
+                              "What every form of the penalty offers to a search.")
       .def(
           "__call__",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) { return p(theta); },
-          py::arg("theta"), py::call_guard<py::gil_scoped_release>(),
-          JOINTID_TEXT("Sum of squared residuals."))
+          py::arg("theta"), py::call_guard<py::gil_scoped_release>(), "Sum of squared residuals.")
       .def(
           "evaluate",
           [](const PenaltyFunction& p, const Eigen::MatrixXd& candidates, int threads) {
@@ -43,7 +44,7 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("candidates"), py::kw_only(), py::arg("threads") = 0,
           py::call_guard<py::gil_scoped_release>(),
-          JOINTID_TEXT("Penalties of many candidates, one a column, shape (parameters, count)."))
+          "Penalties of many candidates, one a column, shape (parameters, count).")
       .def(
           "residuals",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
@@ -51,7 +52,7 @@ void bind_penalty(py::module_& m) {
             p.residuals(theta, residual, nullptr);
             return residual;
           },
-          py::arg("theta"), JOINTID_TEXT("Residuals, one a row."))
+          py::arg("theta"), "Residuals, one a row.")
       .def(
           "jacobian",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
@@ -60,7 +61,7 @@ void bind_penalty(py::module_& m) {
             p.residuals(theta, residual, &jacobian);
             return jacobian;
           },
-          py::arg("theta"), JOINTID_TEXT("Derivatives of the residuals, shape (rows, parameters)."))
+          py::arg("theta"), "Derivatives of the residuals, shape (rows, parameters).")
       .def(
           "columns",
           [](const PenaltyFunction& p, const Eigen::VectorXd& shapes) {
@@ -68,8 +69,7 @@ void bind_penalty(py::module_& m) {
             p.columns(shapes, columns);
             return columns;
           },
-          py::arg("shapes"),
-          JOINTID_TEXT("Columns of all coefficients, shape (rows, coefficients)."))
+          py::arg("shapes"), "Columns of all coefficients, shape (rows, coefficients).")
       .def(
           "linear_columns",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
@@ -78,36 +78,30 @@ void bind_penalty(py::module_& m) {
             p.linear_columns(theta.tail(theta.size() - c), theta.head(c), columns);
             return columns;
           },
-          py::arg("theta"),
-          JOINTID_TEXT("Columns of the balance made linear there, shape (rows, coefficients)."))
-      .def_property_readonly(
-          "is_linear", &PenaltyFunction::is_linear,
-          JOINTID_TEXT("Whether the balance is linear in the coefficients for given shapes."))
+          py::arg("theta"), "Columns of the balance made linear there, shape (rows, coefficients).")
+      .def_property_readonly("is_linear", &PenaltyFunction::is_linear,
+                             "Whether the balance is linear in the coefficients for given shapes.")
       .def_property_readonly("target", &PenaltyFunction::target,
-                             JOINTID_TEXT("What the columns add up to [N m s], one a row."))
+                             "What the columns add up to [N m s], one a row.")
       .def_property_readonly("names", &PenaltyFunction::names)
       .def_property_readonly("coefficients", &PenaltyFunction::coefficients)
       .def_property_readonly("residual", &PenaltyFunction::residual);
   using identify::FirstStage;
-  py::class_<FirstStage>(
-      m, "FirstStage",
-      JOINTID_TEXT("The sensor's reading, explained by the motion of a rigid link."))
-      .def_readonly(
-          "acceleration", &FirstStage::acceleration,
-          JOINTID_TEXT("Whether the velocity change is among the instruments; it is left out where "
-                       "gravity suffices."))
+  py::class_<FirstStage>(m, "FirstStage",
+                         "The sensor's reading, explained by the motion of a rigid link.")
+      .def_readonly("acceleration", &FirstStage::acceleration,
+                    "Whether the velocity change is among the instruments; it is left out where "
+                    "gravity suffices.")
       .def_readonly("strength", &FirstStage::strength,
-                    JOINTID_TEXT("F statistic of the link's columns beyond those of the balance."))
-      .def_readonly(
-          "share", &FirstStage::share,
-          JOINTID_TEXT("Share of the reading's square without its mean that only they explain."))
-      .def_property_readonly(
-          "weak", &FirstStage::weak,
-          JOINTID_TEXT("Whether they explain too little for an estimate of the gain."));
+                    "F statistic of the link's columns beyond those of the balance.")
+      .def_readonly("share", &FirstStage::share,
+                    "Share of the reading's square without its mean that only they explain.")
+      .def_property_readonly("weak", &FirstStage::weak,
+                             "Whether they explain too little for an estimate of the gain.");
   py::class_<Penalty, PenaltyFunction>(
       m, "Penalty",
-      JOINTID_TEXT(
-          "The integral penalty of recordings and terms, by the direct sum; a row is a window."))
+
+      "The integral penalty of recordings and terms, by the direct sum; a row is a window.")
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
@@ -137,10 +131,10 @@ void bind_penalty(py::module_& m) {
             return py::make_tuple(penalty, std::move(residual), std::move(jacobian));
           },
           py::arg("theta"),
-          JOINTID_TEXT(
-              "Penalty, window residuals with the reading itself, and the derivatives of the "
-              "penalty's "
-              "residuals, in one pass: what the sandwich of an estimate's covariance is made of."))
+
+          "Penalty, window residuals with the reading itself, and the derivatives of the "
+          "penalty's "
+          "residuals, in one pass: what the sandwich of an estimate's covariance is made of.")
       .def(
           "balance_at",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
@@ -155,7 +149,7 @@ void bind_penalty(py::module_& m) {
             return std::make_tuple(penalty, std::move(residual), std::move(jacobian),
                                    std::move(columns));
           },
-          py::arg("theta"), JOINTID_TEXT("The same, and what `columns` returns at its shapes."))
+          py::arg("theta"), "The same, and what `columns` returns at its shapes.")
       .def(
           "residuals",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
@@ -165,7 +159,7 @@ void bind_penalty(py::module_& m) {
             p.observe(theta, residual);
             return residual;
           },
-          py::arg("theta"), JOINTID_TEXT("Residuals of the windows, with the reading itself."))
+          py::arg("theta"), "Residuals of the windows, with the reading itself.")
       .def(
           "columns",
           [](const Penalty& p, const Eigen::VectorXd& shapes) {
@@ -176,12 +170,11 @@ void bind_penalty(py::module_& m) {
             return columns;
           },
           py::arg("shapes"),
-          JOINTID_TEXT(
-              "Window integrals of all coefficients, shape (windows, coefficients), of the reading "
-              "itself."))
-      .def_property_readonly(
-          "reading", &Penalty::reading,
-          JOINTID_TEXT("Window integrals of the sensor's reading. Only with a gain."))
+
+          "Window integrals of all coefficients, shape (windows, coefficients), of the reading "
+          "itself.")
+      .def_property_readonly("reading", &Penalty::reading,
+                             "Window integrals of the sensor's reading. Only with a gain.")
       .def(
           "project_reading",
           [](Penalty& p, const std::vector<Eigen::Index>& free, int threads) {
@@ -192,14 +185,13 @@ void bind_penalty(py::module_& m) {
             });
           },
           py::arg("free"), py::kw_only(), py::arg("threads") = 0,
-          JOINTID_TEXT("Replace the gain's column by the part of the reading that the motion "
-                       "explains; `free` "
-                       "are the parameters that vary. Only with the residual 'instruments', which "
-                       "is that of "
-                       "the torque before."))
-      .def_property_readonly(
-          "first_stage", &Penalty::first_stage,
-          JOINTID_TEXT("How the motion explains the reading; None if it is not projected."))
+          "Replace the gain's column by the part of the reading that the motion "
+          "explains; `free` "
+          "are the parameters that vary. Only with the residual 'instruments', which "
+          "is that of "
+          "the torque before.")
+      .def_property_readonly("first_stage", &Penalty::first_stage,
+                             "How the motion explains the reading; None if it is not projected.")
       .def(
           "torque_steps",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill) {
@@ -207,7 +199,7 @@ void bind_penalty(py::module_& m) {
             return p.torque_steps(all_masked(recordings, mask_standstill, nullptr));
           },
           py::arg("recordings"), py::arg("mask_standstill"),
-          JOINTID_TEXT("How far the torque rises over each window's usable intervals."))
+          "How far the torque rises over each window's usable intervals.")
       .def(
           "link_motion",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill,
@@ -221,15 +213,15 @@ void bind_penalty(py::module_& m) {
                                          periods, slow);
           },
           py::arg("recordings"), py::arg("mask_standstill"), py::arg("periods"), py::arg("slow"),
-          JOINTID_TEXT(
-              "How a rigid link moves in each window, shape (window_count, 11): how much faster it "
-              "becomes; cosine and sine of the angle in its middle, times the integrated time; "
-              "that "
-              "time; how far the torque rises over the usable intervals, times the recording's "
-              "period "
-              "in `periods`; friction of one size, viscous, and fading with the speed over `slow`; "
-              "the integrals of the torque and of the reading; the time from first to last "
-              "sample."))
+
+          "How a rigid link moves in each window, shape (window_count, 11): how much faster it "
+          "becomes; cosine and sine of the angle in its middle, times the integrated time; "
+          "that "
+          "time; how far the torque rises over the usable intervals, times the recording's "
+          "period "
+          "in `periods`; friction of one size, viscous, and fading with the speed over `slow`; "
+          "the integrals of the torque and of the reading; the time from first to last "
+          "sample.")
       .def(
           "bending",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill,
@@ -238,15 +230,13 @@ void bind_penalty(py::module_& m) {
             return p.bending(all_masked(recordings, mask_standstill, nullptr), theta);
           },
           py::arg("recordings"), py::arg("mask_standstill"), py::arg("theta"),
-          JOINTID_TEXT(
-              "What the windows' friction lacks because the trapezoid rule takes it as straight."))
-      .def_property_readonly("terms", &Penalty::terms,
-                             JOINTID_TEXT("The term of each coefficient."))
+
+          "What the windows' friction lacks because the trapezoid rule takes it as straight.")
+      .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")
       .def_property_readonly("cumulative", &Penalty::cumulative)
       .def_property_readonly("window_count", &Penalty::window_count)
-      .def_property_readonly(
-          "windows", &Penalty::window_bounds,
-          JOINTID_TEXT("First and last sample of each window, shape (window_count, 2)."))
+      .def_property_readonly("windows", &Penalty::window_bounds,
+                             "First and last sample of each window, shape (window_count, 2).")
       .def_property_readonly(
           "recording_of",
           [](const Penalty& p) {  // an array: a list is made and read number by number
@@ -255,9 +245,9 @@ void bind_penalty(py::module_& m) {
                 Eigen::Map<const Eigen::VectorXi>(run.data(), static_cast<Eigen::Index>(run.size()))
                     .cast<std::int64_t>());
           },
-          JOINTID_TEXT("Which recording each window belongs to, shape (window_count,)."))
+          "Which recording each window belongs to, shape (window_count,).")
       .def_property_readonly("usable_duration", &Penalty::usable_duration,
-                             JOINTID_TEXT("Integrated time of each window [s]."))
+                             "Integrated time of each window [s].")
       .def_property_readonly("window_duration",
                              [](const Penalty& p) { return p.window_choice().duration; })
       .def_property_readonly("noise_share",
@@ -269,8 +259,8 @@ void bind_penalty(py::module_& m) {
       .def_property_readonly("total_samples", &Penalty::total_samples);
   py::class_<CompressedPenalty, PenaltyFunction>(
       m, "CompressedPenalty",
-      JOINTID_TEXT("The same penalty within bounds, at a cost that does not depend on the "
-                   "recording's length."))
+      "The same penalty within bounds, at a cost that does not depend on the "
+      "recording's length.")
       .def(py::init([](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
                        int threads) {
              const search::Domain domain{std::move(lower), std::move(upper)};
@@ -279,20 +269,16 @@ void bind_penalty(py::module_& m) {
            }),
            py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(),
            py::arg("threads") = 0, py::call_guard<py::gil_scoped_release>())
-      .def_property_readonly(
-          "exact", &CompressedPenalty::exact,
-          JOINTID_TEXT("Whether it meets the tolerance; else use the direct sum."))
-      .def_property_readonly("reason", &CompressedPenalty::reason,
-                             JOINTID_TEXT("Why not; empty if it does."))
+      .def_property_readonly("exact", &CompressedPenalty::exact,
+                             "Whether it meets the tolerance; else use the direct sum.")
+      .def_property_readonly("reason", &CompressedPenalty::reason, "Why not; empty if it does.")
       .def_property_readonly("passes", &CompressedPenalty::passes,
-                             JOINTID_TEXT("Shapes at which the samples were summed."))
-      .def_property_readonly(
-          "error", &CompressedPenalty::error,
-          JOINTID_TEXT("Largest error found between those, of the columns' squared size."));
+                             "Shapes at which the samples were summed.")
+      .def_property_readonly("error", &CompressedPenalty::error,
+                             "Largest error found between those, of the columns' squared size.");
   using identify::PenaltyParts;
   py::class_<PenaltyParts>(
-      m, "PenaltyParts",
-      JOINTID_TEXT("A penalty that is summed part by part, for what needs it once or twice."))
+      m, "PenaltyParts", "A penalty that is summed part by part, for what needs it once or twice.")
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
@@ -319,7 +305,7 @@ void bind_penalty(py::module_& m) {
             });
           },
           py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
-          py::arg("threads") = 0, JOINTID_TEXT("The minimum within bounds near a start."));
+          py::arg("threads") = 0, "The minimum within bounds near a start.");
 }
 
 }  // namespace jointid::bind

@@ -70,11 +70,13 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
 }
 
 void bind_recording(py::module_& m) {
-  enumeration<Hold>(m, "Hold", "The torque signal between samples.",
-                    {{"zero_order", Hold::zero_order}, {"linear", Hold::linear}});
+  py::native_enum<Hold>(m, "Hold", "enum.Enum", "The torque signal between samples.")
+      .value("zero_order", Hold::zero_order)
+      .value("linear", Hold::linear)
+      .finalize();
   using Array = SharedRecording::Array;
   py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
-      m, "Recording", JOINTID_TEXT("Signals of one run; arrays of floats are kept, not copied."))
+      m, "Recording", "Signals of one run; arrays of floats are kept, not copied.")
       .def(py::init([](Array time, Array position, Array velocity, Array torque,
                        std::optional<Array> sensor, Hold torque_hold,
                        std::vector<std::int64_t> gap_after, double min_speed,
@@ -91,7 +93,7 @@ void bind_recording(py::module_& m) {
            py::arg("torque"), py::arg("sensor"), py::arg("torque_hold"), py::arg("gap_after"),
            py::arg("min_speed") = 0.0, py::arg("doubtful") = std::vector<std::int64_t>{},
            py::arg("own") = std::vector<std::pair<std::string, Array>>{},
-           JOINTID_TEXT("own: key of an own term and its integral from the first sample to each."))
+           "own: key of an own term and its integral from the first sample to each.")
       .def_property_readonly("samples", &SharedRecording::samples);
   m.def(
       "usable_intervals",
@@ -106,8 +108,8 @@ void bind_recording(py::module_& m) {
         return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(flags.size()), flags.data());
       },
       py::arg("recording"), py::arg("mask_standstill") = true,
-      JOINTID_TEXT(
-          "One flag per sample interval: 1 where the joint moves and the recording has no gap."));
+
+      "One flag per sample interval: 1 where the joint moves and the recording has no gap.");
   value(
       m, "WindowOptions",
       "How to cut a recording into windows: a number, a duration, or neither (chosen from the "

@@ -28,7 +28,7 @@ void bind_regression(py::module_& m) {
                          [&](base::Pool* pool) { return identify::triangle(matrix, pool); });
       },
       py::arg("matrix"), py::kw_only(), py::arg("threads") = 0,
-      JOINTID_TEXT("R of the QR decomposition of a tall matrix."));
+      "R of the QR decomposition of a tall matrix.");
   m.def(
       "non_negative_least_squares",
       [](const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
@@ -49,8 +49,8 @@ void bind_regression(py::module_& m) {
         return std::make_pair(std::move(found), misfit);
       },
       py::arg("matrix"), py::arg("target"),
-      JOINTID_TEXT(
-          "The solution without negative entries, and the norm of what is left of the target."));
+
+      "The solution without negative entries, and the norm of what is left of the target.");
   m.def(
       "solve_independent",
       [](const Matrix& triangle, const std::vector<Eigen::Index>& columns, Eigen::Index target) {
@@ -61,9 +61,9 @@ void bind_regression(py::module_& m) {
         return identify::solve_independent(triangle, columns, target);
       },
       py::arg("triangle"), py::arg("columns"), py::arg("target"),
-      JOINTID_TEXT("Coefficients of columns for another one, and the norm of what they leave; None "
-                   "unless they "
-                   "are clearly independent."));
+      "Coefficients of columns for another one, and the norm of what they leave; None "
+      "unless they "
+      "are clearly independent.");
   using identify::Cuts;
   m.def(
       "covariance",
@@ -94,7 +94,7 @@ void bind_regression(py::module_& m) {
                                std::move(found.weakest));
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("triangle"), py::arg("cuts"),
-      py::arg("centre"), JOINTID_TEXT("The fields of a `Covariance`, in their order."));
+      py::arg("centre"), "The fields of a `Covariance`, in their order.");
   using Series = Eigen::Ref<const Eigen::VectorXd>;
   m.def(
       "motion_cuts",
@@ -114,12 +114,11 @@ void bind_regression(py::module_& m) {
         return cuts;
       },
       py::arg("start"), py::arg("stop"), py::arg("travel"), py::arg("edges"), py::arg("length"),
-      JOINTID_TEXT("First windows of the segments of motion, and the end of the last one; `edges` "
-                   "are the first "
-                   "windows of the recordings, and the end of the last one."));
+      "First windows of the segments of motion, and the end of the last one; `edges` "
+      "are the first "
+      "windows of the recordings, and the end of the last one.");
   using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  py::class_<identify::Folds>(m, "Folds",
-                              JOINTID_TEXT("Cross-validated least squares on any of many columns."))
+  py::class_<identify::Folds>(m, "Folds", "Cross-validated least squares on any of many columns.")
       .def(py::init([](const Rows& rows, const std::vector<std::int64_t>& edges) {
              if (rows.ndim() != 2 || rows.shape(1) < 1 || edges.size() < 2 ||
                  !std::is_sorted(edges.begin(), edges.end()) || edges.front() < 0 ||
@@ -128,11 +127,10 @@ void bind_regression(py::module_& m) {
              }
              return identify::Folds(rows.data(), static_cast<std::size_t>(rows.shape(1)), edges);
            }),
-           py::arg("rows"), py::arg("edges"), JOINTID_TEXT("The last column is the target."))
-      .def(
-          "misfit", &identify::Folds::misfit, py::arg("columns"),
-          JOINTID_TEXT(
-              "Sum of squares left in each block, with these columns fitted to the other blocks."));
+           py::arg("rows"), py::arg("edges"), "The last column is the target.")
+      .def("misfit", &identify::Folds::misfit, py::arg("columns"),
+
+           "Sum of squares left in each block, with these columns fitted to the other blocks.");
 }
 
 }  // namespace jointid::bind

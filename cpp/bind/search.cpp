@@ -23,17 +23,15 @@ search::ResidualFunction residual_function(const PenaltyFunction& penalty, const
 
 void bind_search(py::module_& m) {
   bind_genetic(m);
-  py::class_<identify::SeparableResult>(m, "SeparableResult",
-                                        JOINTID_TEXT("The separable optimum."))
+  py::class_<identify::SeparableResult>(m, "SeparableResult", "The separable optimum.")
       .def_readonly("best", &identify::SeparableResult::best)
       .def_readonly("penalty", &identify::SeparableResult::penalty)
       .def_readonly("evaluations", &identify::SeparableResult::evaluations);
-  py::class_<identify::Projected>(m, "Projected",
-                                  JOINTID_TEXT("The projected search's optimum, if any."))
+  py::class_<identify::Projected>(m, "Projected", "The projected search's optimum, if any.")
       .def_readonly("found", &identify::Projected::found)
       .def_readonly("reason", &identify::Projected::reason,
-                    JOINTID_TEXT("Why nothing was found; empty otherwise."));
-  py::class_<search::PolishResult>(m, "PolishResult", JOINTID_TEXT("A local optimum."))
+                    "Why nothing was found; empty otherwise.");
+  py::class_<search::PolishResult>(m, "PolishResult", "A local optimum.")
       .def_readonly("best", &search::PolishResult::best)
       .def_readonly("penalty", &search::PolishResult::penalty)
       .def_readonly("iterations", &search::PolishResult::iterations)
@@ -60,8 +58,8 @@ void bind_search(py::module_& m) {
         return identify::minimise_projected(penalty, domain, pool);
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("threads") = 0,
-      JOINTID_TEXT(
-          "The separable optimum by a dozen direct sums; nothing where that is not safe."));
+
+      "The separable optimum by a dozen direct sums; nothing where that is not safe.");
   m.def(
       "refine_separable",
       [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
@@ -73,8 +71,8 @@ void bind_search(py::module_& m) {
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
       py::arg("everywhere") = true, py::arg("threads") = 0,
-      JOINTID_TEXT("The local optimum near a start; `everywhere` also searches the free shapes' "
-                   "whole ranges."));
+      "The local optimum near a start; `everywhere` also searches the free shapes' "
+      "whole ranges.");
   m.def(
       "polish",
       [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
@@ -104,8 +102,8 @@ void bind_search(py::module_& m) {
       py::arg("penalty"), py::kw_only(), py::arg("recordings"), py::arg("terms"),
       py::arg("mask_standstill"), py::arg("gear_ratio"), py::arg("per_recording"), py::arg("lower"),
       py::arg("upper"), py::arg("best"), py::arg("threads") = 0,
-      JOINTID_TEXT("The minima with each window halved and with neighbours joined in pairs; None "
-                   "where there are no such windows."));
+      "The minima with each window halved and with neighbours joined in pairs; None "
+      "where there are no such windows.");
 }
 
 }  // namespace jointid::bind

@@ -76,8 +76,7 @@ ShiftRows rows_of(const Windows& windows, const std::vector<Array>& signals,
 
 void bind_shifts(py::module_& m) {
   using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
-  py::class_<WindowsOfArrays>(m, "SmoothWindows",
-                              JOINTID_TEXT("Smooth windows over a stretch without a gap."))
+  py::class_<WindowsOfArrays>(m, "SmoothWindows", "Smooth windows over a stretch without a gap.")
       .def(py::init([](Array time, Array position, Array velocity, Flags usable, bool derived,
                        std::int64_t half, std::int64_t margin, std::int64_t clear,
                        bool usable_only) {
@@ -93,13 +92,13 @@ void bind_shifts(py::module_& m) {
             const auto& used = of.windows.used;
             return py::array_t<std::int64_t>(static_cast<py::ssize_t>(used.size()), used.data());
           },
-          JOINTID_TEXT("Middle samples of the windows that are used."))
+          "Middle samples of the windows that are used.")
       .def(
           "rates",
           [](const WindowsOfArrays& of, const Array& values) {
             return signals::mean_rates(of.own(values), of.windows);
           },
-          py::arg("signal"), JOINTID_TEXT("Mean rate of a signal in each window."))
+          py::arg("signal"), "Mean rate of a signal in each window.")
       .def(
           "columns",
           [](const WindowsOfArrays& of, const Array& cosine, const Array& sine, bool varying,
@@ -116,18 +115,15 @@ void bind_shifts(py::module_& m) {
           py::arg("cosine"), py::arg("sine"), py::kw_only(), py::arg("varying"),
           py::arg("friction"), py::arg("own") = std::vector<Array>{},
           py::arg("own_friction") = std::vector<Array>{}, py::arg("jumping") = py::none(),
-          py::arg("answer") = 0.0,
-          JOINTID_TEXT("What a torque or a reading may be a sum of; a row a window."));
-  py::class_<signals::FittedShift>(m, "FittedShift",
-                                   JOINTID_TEXT("A shift, with its standard error [s]."))
+          py::arg("answer") = 0.0, "What a torque or a reading may be a sum of; a row a window.");
+  py::class_<signals::FittedShift>(m, "FittedShift", "A shift, with its standard error [s].")
       .def_readonly("whole", &signals::FittedShift::whole)
       .def_readonly("conservative", &signals::FittedShift::conservative)
       .def_readonly("friction", &signals::FittedShift::friction)
       .def_readonly("unexplained", &signals::FittedShift::unexplained)
-      .def_readonly(
-          "leading", &signals::FittedShift::leading,
-          JOINTID_TEXT(
-              "The first column's coefficient without a shift; None where one was searched."));
+      .def_readonly("leading", &signals::FittedShift::leading,
+
+                    "The first column's coefficient without a shift; None where one was searched.");
   m.def(
       "fit_shift",
       [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
@@ -138,7 +134,7 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(),
       py::arg("conservative"), py::arg("held"), py::arg("reach"), py::arg("robust"),
-      py::arg("least"), JOINTID_TEXT("The shift that a balance asks for, or None."));
+      py::arg("least"), "The shift that a balance asks for, or None.");
   m.def(
       "leading_coefficient",
       [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
@@ -148,8 +144,8 @@ void bind_shifts(py::module_& m) {
         return signals::leading_coefficient(rows);
       },
       py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(), py::arg("held"),
-      JOINTID_TEXT(
-          "Of the first column, in least squares of the signals, not shifted, on the columns."));
+
+      "Of the first column, in least squares of the signals, not shifted, on the columns.");
   m.def(
       "even_grid",
       [](const Array& time) {
@@ -157,8 +153,7 @@ void bind_shifts(py::module_& m) {
         auto found = signals::even_grid(signal_of(time));
         return std::make_pair(std::move(found.time), found.apart);
       },
-      py::arg("time"),
-      JOINTID_TEXT("Even times from the first to the last, and how far off the times are [s]."));
+      py::arg("time"), "Even times from the first to the last, and how far off the times are [s].");
   m.def(
       "half_length",
       [](const Array& values, double period, bool position) {
@@ -166,7 +161,7 @@ void bind_shifts(py::module_& m) {
         return signals::half_length(signal_of(values), period, position);
       },
       py::arg("signal"), py::arg("period"), py::kw_only(), py::arg("position"),
-      JOINTID_TEXT("Half the length of a window that averages the acceleration's noise."));
+      "Half the length of a window that averages the acceleration's noise.");
   m.def(
       "window_integrals",
       [](const Array& values, const Array& weights, const Indices& windows, bool rise) {
@@ -183,25 +178,22 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("values"), py::arg("weights"), py::arg("windows"), py::kw_only(),
       py::arg("rise") = false,
-      JOINTID_TEXT("Integrals over windows, one row a window, or how far the values rise there."));
+      "Integrals over windows, one row a window, or how far the values rise there.");
   m.def(
       "circle",
       [](const Array& angle) {
         auto found = signals::circle_of(signal_of(angle));
         return std::make_pair(std::move(found.cosine), std::move(found.sine));
       },
-      py::arg("angle"), JOINTID_TEXT("Cosine and sine."));
+      py::arg("angle"), "Cosine and sine.");
   m.def(
       "roughness", [](const Array& values) { return signals::roughness(signal_of(values)); },
-      py::arg("signal"), JOINTID_TEXT("Standard deviation of a signal's third differences."));
-  py::class_<signals::RepeatedNoise>(m, "RepeatedNoise",
-                                     JOINTID_TEXT("Noise of a reading in the torque."))
+      py::arg("signal"), "Standard deviation of a signal's third differences.");
+  py::class_<signals::RepeatedNoise>(m, "RepeatedNoise", "Noise of a reading in the torque.")
       .def_readonly("earlier", &signals::RepeatedNoise::earlier,
-                    JOINTID_TEXT("By how many samples the torque has it earlier."))
-      .def_readonly("error", &signals::RepeatedNoise::error,
-                    JOINTID_TEXT("Standard error, in samples."))
-      .def_readonly("share", &signals::RepeatedNoise::share,
-                    JOINTID_TEXT("Correlation of both noises."));
+                    "By how many samples the torque has it earlier.")
+      .def_readonly("error", &signals::RepeatedNoise::error, "Standard error, in samples.")
+      .def_readonly("share", &signals::RepeatedNoise::share, "Correlation of both noises.");
   m.def(
       "repeated_noise",
       [](const std::vector<std::pair<Array, Array>>& pairs) {
@@ -216,8 +208,8 @@ void bind_shifts(py::module_& m) {
         return signals::repeated_noise(both);
       },
       py::arg("pairs"),
-      JOINTID_TEXT("The noise of readings that the torque repeats, of pairs of both; None where it "
-                   "does not."));
+      "The noise of readings that the torque repeats, of pairs of both; None where it "
+      "does not.");
 }
 
 }  // namespace jointid::bind

@@ -22,21 +22,17 @@ PositionNoise noise_of(const Array& time, const Array& position,
 }  // namespace
 
 void bind_signals(py::module_& m) {
-  py::class_<PositionNoise>(m, "PositionNoise", JOINTID_TEXT("Noise of a position signal."))
+  py::class_<PositionNoise>(m, "PositionNoise", "Noise of a position signal.")
       .def_readonly("quantum", &PositionNoise::quantum,
-                    JOINTID_TEXT("The encoder's step [rad or m]; 0: positions lie on no grid."))
-      .def_readonly(
-          "sigma", &PositionNoise::sigma,
-          JOINTID_TEXT("Standard deviation at a sample, apart from that of the stamps [rad or m]."))
-      .def_readonly("timing", &PositionNoise::timing,
-                    JOINTID_TEXT("Scatter of the time stamps [s]."));
-  py::class_<LocalVelocity>(m, "LocalVelocity", JOINTID_TEXT("Velocity derived from position."))
+                    "The encoder's step [rad or m]; 0: positions lie on no grid.")
+      .def_readonly("sigma", &PositionNoise::sigma,
+                    "Standard deviation at a sample, apart from that of the stamps [rad or m].")
+      .def_readonly("timing", &PositionNoise::timing, "Scatter of the time stamps [s].");
+  py::class_<LocalVelocity>(m, "LocalVelocity", "Velocity derived from position.")
       .def_readonly("velocity", &LocalVelocity::velocity)
-      .def_readonly("noise", &LocalVelocity::noise,
-                    JOINTID_TEXT("Its standard deviation at each sample."))
-      .def_readonly(
-          "refined", &LocalVelocity::refined,
-          JOINTID_TEXT("False: the noise is harmless, every velocity is the difference."));
+      .def_readonly("noise", &LocalVelocity::noise, "Its standard deviation at each sample.")
+      .def_readonly("refined", &LocalVelocity::refined,
+                    "False: the noise is harmless, every velocity is the difference.");
   m.def(
       "position_noise",
       [](const Array& time, const Array& position, const std::vector<std::int64_t>& gap_after,
@@ -52,7 +48,7 @@ void bind_signals(py::module_& m) {
         });
       },
       py::arg("time"), py::arg("position"), py::arg("gap_after"), py::arg("period"),
-      JOINTID_TEXT("Noise of a position: the encoder's step, white noise, errors of the stamps."));
+      "Noise of a position: the encoder's step, white noise, errors of the stamps.");
   m.def(
       "timing_errors",
       [](const Array& time, const Array& position, double period) {
@@ -62,7 +58,7 @@ void bind_signals(py::module_& m) {
         return std::make_pair(errors.as_stamped, errors.as_uniform);
       },
       py::arg("time"), py::arg("position"), py::arg("period"),
-      JOINTID_TEXT("Scatter of the samples' times about the stamps and about an even grid [s]."));
+      "Scatter of the samples' times about the stamps and about an even grid [s].");
   m.def(
       "local_velocity",
       [](const Array& time, const Array& position, const Array& difference,
@@ -76,9 +72,9 @@ void bind_signals(py::module_& m) {
       },
       py::arg("time"), py::arg("position"), py::arg("difference"), py::arg("gap_after"),
       py::arg("noise"), py::arg("threads") = 0,
-      JOINTID_TEXT(
-          "Velocity by local cubics whose length follows the noise; the differences where they are "
-          "fine."));
+
+      "Velocity by local cubics whose length follows the noise; the differences where they are "
+      "fine.");
 }
 
 }  // namespace jointid::bind

@@ -32,8 +32,7 @@ py::dict signals_of(const Outcome& outcome) {
 }
 
 void bind_trajectory(py::module_& m) {
-  py::class_<Trajectory>(m, "Trajectory",
-                         JOINTID_TEXT("A desired motion; use it through jointid.Trajectory."))
+  py::class_<Trajectory>(m, "Trajectory", "A desired motion; use it through jointid.Trajectory.")
       .def_static("multisine", &Trajectory::multisine, py::kw_only(), py::arg("amplitude"),
                   py::arg("frequency"), py::arg("phase"), py::arg("offset"), py::arg("duration"),
                   py::arg("fade") = 0.0)
@@ -51,7 +50,7 @@ void bind_trajectory(py::module_& m) {
             const Reference wanted = trajectory.at(time);
             return py::make_tuple(wanted.position, wanted.velocity, wanted.acceleration);
           },
-          py::arg("time"), JOINTID_TEXT("Position, velocity and acceleration at a time."))
+          py::arg("time"), "Position, velocity and acceleration at a time.")
       .def(
           "sample",
           [](const Trajectory& trajectory, const Eigen::VectorXd& time) {
@@ -62,7 +61,7 @@ void bind_trajectory(py::module_& m) {
             }
             return wanted;
           },
-          py::arg("time"), JOINTID_TEXT("Position, velocity and acceleration, shape (times, 3)."))
+          py::arg("time"), "Position, velocity and acceleration, shape (times, 3).")
       .def_property_readonly("duration", &Trajectory::duration);
 }
 
@@ -111,24 +110,20 @@ void bind_scenario(py::module_& m) {
         Field{"position", &Setup::position, "At the start [rad]."},
         Field{"velocity", &Setup::velocity, "At the start [rad/s]."},
         Field{"seed", &Setup::seed, "Of the noise."});
-  py::class_<Outcome>(m, "Outcome", JOINTID_TEXT("The result of one simulation."))
-      .def_property_readonly("signals", &signals_of,
-                             JOINTID_TEXT("Recorded and true signals by name."))
-      .def_readonly("rms_error", &Outcome::rms_error,
-                    JOINTID_TEXT("Of tracking, after settling [rad]."))
-      .def_readonly("peak_error", &Outcome::peak_error,
-                    JOINTID_TEXT("Of tracking, after settling [rad]."))
+  py::class_<Outcome>(m, "Outcome", "The result of one simulation.")
+      .def_property_readonly("signals", &signals_of, "Recorded and true signals by name.")
+      .def_readonly("rms_error", &Outcome::rms_error, "Of tracking, after settling [rad].")
+      .def_readonly("peak_error", &Outcome::peak_error, "Of tracking, after settling [rad].")
       .def_readonly("saturations", &Outcome::saturations,
-                    JOINTID_TEXT("Control periods in which the torque limit cut the command."));
+                    "Control periods in which the torque limit cut the command.");
 }
 
 void bind_stepped(py::module_& m) {
-  py::class_<Observation>(m, "Observation", JOINTID_TEXT("What sensors show at one instant."))
+  py::class_<Observation>(m, "Observation", "What sensors show at one instant.")
       .def_readonly("position", &Observation::position, "[rad]")
       .def_readonly("velocity", &Observation::velocity, "[rad/s]")
-      .def_readonly("reading", &Observation::reading, JOINTID_TEXT("Of the torque sensor."));
-  py::class_<SteppedJoint>(m, "SteppedJoint",
-                           JOINTID_TEXT("A simulated joint that is moved step by step."))
+      .def_readonly("reading", &Observation::reading, "Of the torque sensor.");
+  py::class_<SteppedJoint>(m, "SteppedJoint", "A simulated joint that is moved step by step.")
       .def(py::init([](const model::Joint& joint, const Sensors& sensors, double gear_ratio,
                        double sensor_gain, double sensor_offset, double period, double step,
                        double position, double velocity, std::uint64_t seed) {
@@ -139,9 +134,8 @@ void bind_stepped(py::module_& m) {
            py::arg("sensor_gain"), py::arg("sensor_offset"), py::arg("period"), py::arg("step"),
            py::arg("position"), py::arg("velocity"), py::arg("seed"))
       .def("advance", &SteppedJoint::advance, py::arg("torque"), py::arg("duration"),
-           JOINTID_TEXT("Hold a torque [N·m] for a time [s]."))
-      .def("observe", &SteppedJoint::observe,
-           JOINTID_TEXT("What the sensors show; advances their noise."))
+           "Hold a torque [N·m] for a time [s].")
+      .def("observe", &SteppedJoint::observe, "What the sensors show; advances their noise.")
       .def_property_readonly("time", &SteppedJoint::time, "[s]")
       .def_property_readonly("position", &SteppedJoint::position, "[rad]")
       .def_property_readonly("velocity", &SteppedJoint::velocity, "[rad/s]")
@@ -168,7 +162,7 @@ void bind_simulate(py::module_& m) {
       },
       py::arg("scenario"), py::arg("trajectory"), py::arg("setups"), py::kw_only(),
       py::arg("signals"), py::arg("threads") = 0,
-      JOINTID_TEXT("One Outcome a setup; InputError when a loop is not stable."));
+      "One Outcome a setup; InputError when a loop is not stable.");
 }
 
 }  // namespace jointid::bind

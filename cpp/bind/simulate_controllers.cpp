@@ -50,7 +50,7 @@ py::class_<Law> compensating(py::module_& m, const char* name, const char* text,
 }  // namespace
 
 void bind_controllers(py::module_& m) {
-  py::class_<ControlRun>(m, "ControlRun", JOINTID_TEXT("A controller at work, one step at a time."))
+  py::class_<ControlRun>(m, "ControlRun", "A controller at work, one step at a time.")
       .def(
           "step",
           [](ControlRun& run, double time, double position, double velocity, double sensor,
@@ -83,7 +83,7 @@ ValueError
       .def_property_readonly("period", &ControlRun::period)
       .def_property_readonly("torque_limit", &ControlRun::torque_limit)
       .def_property_readonly("saturations", &ControlRun::saturations,
-                             JOINTID_TEXT("How often the limit cut the torque."));
+                             "How often the limit cut the torque.");
 
   auto open_loop =
       value(m, "OpenLoop", "No feedback: the trajectory is read as the torque.",

@@ -63,8 +63,8 @@ void bind_servo(py::module_& m) {
         return result;
       },
       py::arg("loops"), py::arg("logs"), py::kw_only(), py::arg("step"), py::arg("threads") = 0,
-      JOINTID_TEXT(
-          "Position and velocity at each sample of each log: time, command, supply and driven."));
+
+      "Position and velocity at each sample of each log: time, command, supply and driven.");
 }
 
 }  // namespace jointid::bind

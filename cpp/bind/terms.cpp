@@ -11,78 +11,72 @@ using identify::Shape;
 using identify::Term;
 
 void bind_terms(py::module_& m) {
-  enumeration<identify::Control>(m, "Control", "What a model-based controller does about a term.",
-                                 {{"refused", identify::Control::refused},
-                                  {"feedback", identify::Control::feedback},
-                                  {"compensated", identify::Control::compensated}});
-  py::class_<Term>(m, "Term",
-                   JOINTID_TEXT("One term of the torque balance: a coefficient times a basis."))
-      .def_readonly("key", &Term::key, JOINTID_TEXT("What a model lists; unique."))
-      .def_readonly("name", &Term::name, JOINTID_TEXT("The parameter's name."))
-      .def_readonly("shapes", &Term::shapes, JOINTID_TEXT("Names of the basis's shape parameters."))
+  py::native_enum<identify::Control>(m, "Control", "enum.Enum",
+                                     "What a model-based controller does about a term.")
+      .value("refused", identify::Control::refused)
+      .value("feedback", identify::Control::feedback)
+      .value("compensated", identify::Control::compensated)
+      .finalize();
+  py::class_<Term>(m, "Term", "One term of the torque balance: a coefficient times a basis.")
+      .def_readonly("key", &Term::key, "What a model lists; unique.")
+      .def_readonly("name", &Term::name, "The parameter's name.")
+      .def_readonly("shapes", &Term::shapes, "Names of the basis's shape parameters.")
       .def_readonly("non_negative", &Term::non_negative)
-      .def_property_readonly(
-          "friction", &identify::is_friction,
-          JOINTID_TEXT("Whether it opposes motion, and so belongs to the friction map."))
-      .def_property_readonly(
-          "needs_load", &identify::needs_load,
-          JOINTID_TEXT("Whether it is friction that depends on the drive's torque, too."))
+      .def_property_readonly("friction", &identify::is_friction,
+                             "Whether it opposes motion, and so belongs to the friction map.")
+      .def_property_readonly("needs_load", &identify::needs_load,
+                             "Whether it is friction that depends on the drive's torque, too.")
       .def_property_readonly(
           "decay", [](const Term& t) { return std::string(base::word(identify::decay_of(t))); },
-          JOINTID_TEXT(
-              "How its friction fades with speed: the simulated joint's field of that name."))
+
+          "How its friction fades with speed: the simulated joint's field of that name.")
       .def_property_readonly(
           "family",
           [](const Term& t) {
             return t.harmonic != identify::Harmonic::none || identify::is_own(t);
           },
-          JOINTID_TEXT(
-              "True if the row stands for a term an order, as in ripple_sin_2, or a signal."))
+
+          "True if the row stands for a term an order, as in ripple_sin_2, or a signal.")
       .def_property_readonly("own", &identify::is_own,
-                             JOINTID_TEXT("True for a term of a named signal, as viscous_of_q6."))
+                             "True for a term of a named signal, as viscous_of_q6.")
       .def_readonly("unit", &Term::unit)
       .def_readonly("unit_prismatic", &Term::unit_prismatic)
       .def_readonly("meaning", &Term::meaning)
-      .def_readonly("advice", &Term::advice, JOINTID_TEXT("Which motion determines it."))
-      .def_readonly(
-          "option", &Term::option,
-          JOINTID_TEXT("What adds it: \"name\" is a friction model, else an option of the model; "
-                       "empty: always there."))
-      .def_readonly("simulated", &Term::simulated,
-                    JOINTID_TEXT("Whether the simulated joint has it."))
+      .def_readonly("advice", &Term::advice, "Which motion determines it.")
+      .def_readonly("option", &Term::option,
+                    "What adds it: \"name\" is a friction model, else an option of the model; "
+                    "empty: always there.")
+      .def_readonly("simulated", &Term::simulated, "Whether the simulated joint has it.")
       .def_readonly("control", &Term::control);
-  py::class_<Shape>(m, "Shape",
-                    JOINTID_TEXT("A shape parameter: the basis of a term is not linear in it."))
+  py::class_<Shape>(m, "Shape", "A shape parameter: the basis of a term is not linear in it.")
       .def_readonly("name", &Shape::name)
       .def_readonly("unit", &Shape::unit)
       .def_readonly("unit_prismatic", &Shape::unit_prismatic)
       .def_readonly("meaning", &Shape::meaning)
-      .def_readonly("advice", &Shape::advice, JOINTID_TEXT("Which motion determines it."))
-      .def_readonly(
-          "speed_power", &Shape::speed_power,
-          JOINTID_TEXT(
-              "Default bounds are shares of the peak speed to this power; 0: lower, upper."))
-      .def_readonly("lower", &Shape::lower, JOINTID_TEXT("Default bound where speed_power is 0."))
-      .def_readonly("upper", &Shape::upper, JOINTID_TEXT("Default bound where speed_power is 0."));
-  py::class_<Model>(m, "Model", JOINTID_TEXT("A friction model by name, as the keys of its terms."))
+      .def_readonly("advice", &Shape::advice, "Which motion determines it.")
+      .def_readonly("speed_power", &Shape::speed_power,
+
+                    "Default bounds are shares of the peak speed to this power; 0: lower, upper.")
+      .def_readonly("lower", &Shape::lower, "Default bound where speed_power is 0.")
+      .def_readonly("upper", &Shape::upper, "Default bound where speed_power is 0.");
+  py::class_<Model>(m, "Model", "A friction model by name, as the keys of its terms.")
       .def_readonly("name", &Model::name)
       .def_readonly("equation", &Model::equation)
       .def_readonly("terms", &Model::terms);
-  m.def("terms", &identify::term_table, JOINTID_TEXT("All terms, in canonical order."));
-  m.def("shapes", &identify::shape_table, JOINTID_TEXT("All shape parameters."));
-  m.def("models", &identify::model_table, JOINTID_TEXT("All friction models."));
+  m.def("terms", &identify::term_table, "All terms, in canonical order.");
+  m.def("shapes", &identify::shape_table, "All shape parameters.");
+  m.def("models", &identify::model_table, "All friction models.");
   m.def("term", &identify::find_term, py::arg("key"),
-        JOINTID_TEXT("The term of that key; \"ripple_sin_2\" is order 2 of its family, "
-                     "viscous_of_q6 the signal "
-                     "q6's."));
-  m.def("shape", &identify::find_shape, py::arg("name"),
-        JOINTID_TEXT("The shape parameter of that name."));
+        "The term of that key; \"ripple_sin_2\" is order 2 of its family, "
+        "viscous_of_q6 the signal "
+        "q6's.");
+  m.def("shape", &identify::find_shape, py::arg("name"), "The shape parameter of that name.");
   m.def("model_terms", &identify::model_terms, py::arg("name"), py::kw_only(),
         py::arg("asymmetric") = false,
-        JOINTID_TEXT("Keys of a friction model's terms; asymmetric: two for each, one a direction "
-                     "of motion."));
+        "Keys of a friction model's terms; asymmetric: two for each, one a direction "
+        "of motion.");
   m.def("is_parameter", &identify::is_parameter, py::arg("name"),
-        JOINTID_TEXT("Whether a parameter can have this name."));
+        "Whether a parameter can have this name.");
   m.def(
       "friction_basis",
       [](const std::string& key, const Eigen::VectorXd& velocity, const Eigen::VectorXd& shapes,
@@ -90,9 +84,9 @@ void bind_terms(py::module_& m) {
         return identify::friction_basis(identify::find_term(key), velocity, shapes, load);
       },
       py::arg("key"), py::arg("velocity"), py::arg("shapes"), py::arg("load") = 0.0,
-      JOINTID_TEXT("The friction term's basis at each velocity [rad/s or m/s] while the drive "
-                   "transmits a load "
-                   "[N·m or N]: what its coefficient multiplies."));
+      "The friction term's basis at each velocity [rad/s or m/s] while the drive "
+      "transmits a load "
+      "[N·m or N]: what its coefficient multiplies.");
   m.def("model_names", [] {
     std::vector<std::string> names;
     for (const auto& model : identify::model_table()) names.emplace_back(model.name);
@@ -112,7 +106,7 @@ void bind_terms(py::module_& m) {
         }
         return py::tuple(py::cast(names));
       },
-      JOINTID_TEXT("All parameters but the harmonics, a shape parameter after its first term."));
+      "All parameters but the harmonics, a shape parameter after its first term.");
 }
 
 }  // namespace jointid::bind

@@ -15,16 +15,15 @@ void bind_text(py::module_& m) {
         return text::number_table(text, below, separator, columns);
       },
       py::arg("text"), py::arg("below"), py::arg("separator"), py::arg("columns"),
-      JOINTID_TEXT("The numbers of all rows below the first lines; None where a cell is not a "
-                   "plain number."));
+      "The numbers of all rows below the first lines; None where a cell is not a "
+      "plain number.");
   m.def(
       "number_list",
       [](const Eigen::VectorXd& values) {
         const py::gil_scoped_release nogil;
         return text::number_list({values.data(), static_cast<std::size_t>(values.size())});
       },
-      py::arg("values"),
-      JOINTID_TEXT("A list of finite numbers as JSON; None where Python has to write it."));
+      py::arg("values"), "A list of finite numbers as JSON; None where Python has to write it.");
   m.def(
       "find_control_character",
       [](const py::bytes& content) -> py::ssize_t {
@@ -32,8 +31,8 @@ void bind_text(py::module_& m) {
         return found == std::string_view::npos ? -1 : static_cast<py::ssize_t>(found);
       },
       py::arg("content"),
-      JOINTID_TEXT(
-          "The place of the first byte that no text contains in any encoding; -1 without one."));
+
+      "The place of the first byte that no text contains in any encoding; -1 without one.");
 }
 
 }  // namespace jointid::bind

@@ -14,11 +14,9 @@ namespace jointid::simulate {
 namespace {
 
 using Wide = base::Lanes<kSideBySide / 2>;
-#ifndef JOINTID_ONE_WIDTH
 using Narrow = base::Lanes<kSideBySide / 4>;  ///< no lane is idle where half as many run
-#endif
-constexpr double kOutOfBounds = 1e12;  // radians: no motion, a loop that diverges
-constexpr std::size_t kBlock = 64;     // control periods between looks at the cancel flag
+constexpr double kOutOfBounds = 1e12;         // radians: no motion, a loop that diverges
+constexpr std::size_t kBlock = 64;            // control periods between looks at the cancel flag
 
 std::int64_t rounded(double value) {
   return static_cast<std::int64_t>(std::floor(value + 0.5));
@@ -163,10 +161,8 @@ void run_group(const Scenario& scenario, const Wanted& reference, std::span<cons
                std::span<Outcome> outcomes, Kept kept, const base::Cancel& cancel) {
   if (setups.size() == 1) {
     run<double>(scenario, reference, setups, outcomes, kept, cancel);
-#ifndef JOINTID_ONE_WIDTH
   } else if (setups.size() <= Narrow::width) {
     run<Narrow>(scenario, reference, setups, outcomes, kept, cancel);
-#endif
   } else {
     run<Wide>(scenario, reference, setups, outcomes, kept, cancel);
   }

@@ -1,24 +1,14 @@
 #include "check.hpp"
 
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-
-// Where the C library can be asked, threads are counted, so that no check that starts one is kept
-// from ThreadSanitizer. Sanitizers look at the same call themselves.
-#if defined(__GLIBC__) && !defined(JOINTID_SANITIZED)
-#define JOINTID_COUNTS_THREADS
-#include <dlfcn.h>
-#include <pthread.h>
-#endif
 
 namespace jointid::tests {
 
 namespace {
 
-int failures_here = 0;              // conditions that failed in the check that runs
-std::atomic<int> threads_here = 0;  // that it has started, where they are counted
+int failures_here = 0;  // conditions that failed in the check that runs
 
 }  // namespace
 
@@ -39,7 +29,6 @@ namespace {
 
 bool passes(const Named& check) {
   failures_here = 0;
-  threads_here = 0;
   const auto start = std::chrono::steady_clock::now();
   try {
     check.body();
@@ -47,9 +36,6 @@ bool passes(const Named& check) {
     expect(false, "ended by an exception", error.what(), check.name.data(), 0);
   } catch (...) {
     expect(false, "ended by an exception", "not a std::exception", check.name.data(), 0);
-  }
-  if (threads_here > 0 && !check.threaded) {
-    expect(false, "starts threads, so it is a THREADED_CASE", "", check.name.data(), 0);
   }
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   std::printf("%-6s %6.2f s  %s\n", failures_here == 0 ? "passed" : "FAILED", spent.count(),
@@ -60,22 +46,7 @@ bool passes(const Named& check) {
 
 }  // namespace
 
-void count_thread() {
-  ++threads_here;
-}
-
 }  // namespace jointid::tests
-
-#ifdef JOINTID_COUNTS_THREADS
-/// In the place of the C library's, which it calls.
-extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
-                              void* (*work)(void*), void* argument) {
-  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
-  static const auto create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
-  jointid::tests::count_thread();
-  return create(thread, attributes, work, argument);
-}
-#endif
 
 /// core_check [part of a name]: runs all checks, or those whose name contains the part.
 int main(int argc, char** argv) {
@@ -84,9 +55,6 @@ int main(int argc, char** argv) {
   int failed = 0;
   for (const auto& check : jointid::tests::registered()) {
     if (check.name.find(part) == std::string_view::npos) continue;
-#ifdef JOINTID_ONLY_THREADED
-    if (!check.threaded) continue;
-#endif
     ++(jointid::tests::passes(check) ? passed : failed);
   }
   if (passed + failed == 0) {

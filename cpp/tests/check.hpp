@@ -17,16 +17,13 @@ using Body = void (*)();
 struct Named {
   std::string_view name;
   Body body;
-  bool threaded;  ///< starts threads
 };
 
 /// All named checks of the program, in the order of the files.
 std::vector<Named>& registered();
 
 struct Registration {
-  Registration(std::string_view name, Body body, bool threaded) {
-    registered().push_back({name, body, threaded});
-  }
+  Registration(std::string_view name, Body body) { registered().push_back({name, body}); }
 };
 
 /// Prints file, line and what differs when `holds` is false.
@@ -68,14 +65,11 @@ inline bool contains(const std::string& text, std::string_view part) {
 #define JOINTID_JOIN(a, b) JOINTID_JOIN_AGAIN(a, b)
 
 /// A named check: CHECK_CASE("room: promise") { ... }
-#define CHECK_CASE(name) JOINTID_CHECK_CASE(name, false, __COUNTER__)
-/// One that starts threads. ThreadSanitizer is given these alone (CMakeLists.txt): on one thread
-/// nothing races.
-#define THREADED_CASE(name) JOINTID_CHECK_CASE(name, true, __COUNTER__)
-#define JOINTID_CHECK_CASE(name, threaded, number)                                 \
+#define CHECK_CASE(name) JOINTID_CHECK_CASE(name, __COUNTER__)
+#define JOINTID_CHECK_CASE(name, number)                                           \
   static void JOINTID_JOIN(check_, number)();                                      \
   static const ::jointid::tests::Registration JOINTID_JOIN(registration_, number){ \
-      name, JOINTID_JOIN(check_, number), threaded};                               \
+      name, JOINTID_JOIN(check_, number)};                                         \
   static void JOINTID_JOIN(check_, number)()
 
 #define CHECK(condition) ::jointid::tests::expect((condition), #condition, "", __FILE__, __LINE__)

@@ -132,7 +132,7 @@ CHECK_CASE("binary: mutation flips the expected number of bits, or exactly one")
   }
 }
 
-THREADED_CASE(
+CHECK_CASE(
     "binary: finds a sphere's minimum as near as a Hamming cliff lets it, and nothing between "
     "codes") {
   GaOptions options;

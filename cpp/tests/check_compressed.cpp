@@ -110,7 +110,7 @@ void check_equal(const Names& names, Residual residual, const WindowOptions& win
   CHECK_WITH(worst <= 1.0, names.back() + ": " + std::to_string(worst) + " of what is allowed");
 }
 
-THREADED_CASE("compressed: equal to the direct sum on random candidates and at the optimum") {
+CHECK_CASE("compressed: equal to the direct sum on random candidates and at the optimum") {
   for (const auto residual : {Residual::sensor, Residual::torque}) {
     check_equal(kCoulomb, residual, {0, 0.02}, 2000);
     check_equal(kStribeck, residual, {0, 0.02}, 2000);
@@ -118,15 +118,15 @@ THREADED_CASE("compressed: equal to the direct sum on random candidates and at t
   }
 }
 
-THREADED_CASE("compressed: equal for the general decay with a fixed exponent") {
+CHECK_CASE("compressed: equal for the general decay with a fixed exponent") {
   check_equal(kGeneral, Residual::sensor, {0, 0.05}, 400);
 }
 
-THREADED_CASE("compressed: equal with running integrals") {
+CHECK_CASE("compressed: equal with running integrals") {
   check_equal(kStribeck, Residual::sensor, {0, 0.05, 1.0, true}, 1000);
 }
 
-THREADED_CASE("compressed: running integrals go on from one block of rows to the next") {
+CHECK_CASE("compressed: running integrals go on from one block of rows to the next") {
   base::Pool pool(2);
   const auto direct = penalty_of(kStribeck, Residual::sensor, {0, 0.001, 1.0, true}, 0.5, 20'000);
   const auto domain = domain_of(direct);
@@ -170,7 +170,7 @@ CHECK_CASE("compressed: an exponent that is searched is left to the direct sum")
   }
 }
 
-THREADED_CASE("compressed: accurate and never negative where the penalty all but vanishes") {
+CHECK_CASE("compressed: accurate and never negative where the penalty all but vanishes") {
   base::Pool pool(1);
   const auto direct = penalty_of(kStribeck, Residual::torque, {0, 0.02}, 0.0);
   const auto domain = domain_of(direct);
@@ -191,7 +191,7 @@ THREADED_CASE("compressed: accurate and never negative where the penalty all but
   }
 }
 
-THREADED_CASE("compressed: the same bits for any number of threads") {
+CHECK_CASE("compressed: the same bits for any number of threads") {
   const auto direct = penalty_of(kStribeck, Residual::sensor, {0, 0.02}, 0.5, 20'000);
   const auto domain = domain_of(direct);
   std::vector<double> values;
@@ -248,7 +248,7 @@ CHECK_CASE("compressed: refuses shapes it was not made for, and says why it is n
                 "domain must have 7 parameters");
 }
 
-THREADED_CASE("compressed: finds the same optimum, by elimination and near a start") {
+CHECK_CASE("compressed: finds the same optimum, by elimination and near a start") {
   base::Pool pool(2);
   for (const auto residual : {Residual::sensor, Residual::torque}) {
     const auto direct = penalty_of(kStribeck, residual);

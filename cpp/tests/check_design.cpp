@@ -160,8 +160,7 @@ CHECK_CASE("design: what is slow tells nothing, a reversal little, noise at the 
               1e-12);
 }
 
-THREADED_CASE(
-    "design: costs are the same bits on one thread and on four, before and after others") {
+CHECK_CASE("design: costs are the same bits on one thread and on four, before and after others") {
   const Excitation judge = excitation();
   Eigen::MatrixXd candidates(family().genes(), 9);
   for (Eigen::Index i = 0; i < candidates.cols(); ++i) {
@@ -178,7 +177,7 @@ THREADED_CASE(
   CHECK(base::exp(judge.cost(judge.judge(trajectory, base::Cancel{}))) == one[3]);
 }
 
-THREADED_CASE("design: what no motion determines is not asked for") {
+CHECK_CASE("design: what no motion determines is not asked for") {
   Excitation judge = excitation();
   Eigen::MatrixXd candidates(family().genes(), 2);
   candidates << genes(0), genes(1);

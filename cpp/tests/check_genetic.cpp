@@ -19,7 +19,7 @@ using search::Generation;
 using search::minimise_genetic;
 using search::Stop;
 
-THREADED_CASE("genetic: the same bits for 1, 2 and 7 threads") {
+CHECK_CASE("genetic: the same bits for 1, 2 and 7 threads") {
   for (const int population : {60, 11}) {
     GaOptions options;
     options.population = population;
@@ -38,7 +38,7 @@ THREADED_CASE("genetic: the same bits for 1, 2 and 7 threads") {
   }
 }
 
-THREADED_CASE("genetic: the default's bits are known") {
+CHECK_CASE("genetic: the default's bits are known") {
   // Every operation is our own or exactly rounded, so these hold on any x86-64 host.
   const auto result = search_for(rippled, cube(3, -4.0, 5.0), {}, 42);
   CHECK(result.best ==
@@ -48,7 +48,7 @@ THREADED_CASE("genetic: the default's bits are known") {
   CHECK(result.evaluations == 984);
 }
 
-THREADED_CASE("genetic: finds a sphere's minimum, and the deepest of many valleys") {
+CHECK_CASE("genetic: finds a sphere's minimum, and the deepest of many valleys") {
   GaOptions options;
   options.generations = 300;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
@@ -60,7 +60,7 @@ THREADED_CASE("genetic: finds a sphere's minimum, and the deepest of many valley
   }
 }
 
-THREADED_CASE("genetic: with an elite the population's best never worsens") {
+CHECK_CASE("genetic: with an elite the population's best never worsens") {
   for (const int elite : {1, 2, 5, 19}) {
     GaOptions options;
     options.population = 20;
@@ -85,7 +85,7 @@ THREADED_CASE("genetic: with an elite the population's best never worsens") {
   }
 }
 
-THREADED_CASE("genetic: without an elite the best ever seen is kept") {
+CHECK_CASE("genetic: without an elite the best ever seen is kept") {
   GaOptions options;
   options.elite = 0;
   options.tolerance = 0.0;
@@ -96,7 +96,7 @@ THREADED_CASE("genetic: without an elite the best ever seen is kept") {
   }
 }
 
-THREADED_CASE("genetic: the observer sees every generation and stops") {
+CHECK_CASE("genetic: the observer sees every generation and stops") {
   base::Pool pool(2);
   std::vector<int> numbers;
   GaOptions options;
@@ -112,7 +112,7 @@ THREADED_CASE("genetic: the observer sees every generation and stops") {
   for (int i = 0; i < 18; ++i) CHECK(numbers[static_cast<std::size_t>(i)] == i);
 }
 
-THREADED_CASE("genetic: stops when the population has collapsed, and when the poll throws") {
+CHECK_CASE("genetic: stops when the population has collapsed, and when the poll throws") {
   GaOptions options;
   options.generations = 5000;
   options.mutation_probability = 0.0;
@@ -127,7 +127,7 @@ THREADED_CASE("genetic: stops when the population has collapsed, and when the po
             __FILE__, __LINE__) == "interrupted");
 }
 
-THREADED_CASE("genetic: stays in the domain to the last bit; fixed parameters stay") {
+CHECK_CASE("genetic: stays in the domain to the last bit; fixed parameters stay") {
   Domain domain{Eigen::VectorXd(6), Eigen::VectorXd(6)};
   const double next = std::nextafter(0.1, 1.0);
   domain.lower << 0.1, -1e308, 0.1, 1e-310, 0.7, -3.0;
@@ -163,7 +163,7 @@ THREADED_CASE("genetic: stays in the domain to the last bit; fixed parameters st
   CHECK(search_for(sphere, point, {}, 1).best == point.lower);
 }
 
-THREADED_CASE("genetic: a penalty that is not a number loses") {
+CHECK_CASE("genetic: a penalty that is not a number loses") {
   const auto result = search_for(
       [](const Candidate& x) {
         return x[0] < 0.0 ? std::numeric_limits<double>::quiet_NaN() : sphere(x);

@@ -45,7 +45,7 @@ std::vector<GaOptions> variants() {
   return all;
 }
 
-THREADED_CASE("genetic state: every checkpoint leads to the uninterrupted run's bits") {
+CHECK_CASE("genetic state: every checkpoint leads to the uninterrupted run's bits") {
   for (const auto& options : variants()) {
     std::vector<std::string> states;
     const auto whole =
@@ -60,7 +60,7 @@ THREADED_CASE("genetic state: every checkpoint leads to the uninterrupted run's 
   }
 }
 
-THREADED_CASE("genetic state: stopped, resumed, stopped and resumed again") {
+CHECK_CASE("genetic state: stopped, resumed, stopped and resumed again") {
   for (const auto& options : variants()) {
     const auto whole = go(options, {});
     const auto stop_at = [](int number) {
@@ -82,7 +82,7 @@ THREADED_CASE("genetic state: stopped, resumed, stopped and resumed again") {
   }
 }
 
-THREADED_CASE("genetic state: a converged run stays converged") {
+CHECK_CASE("genetic state: a converged run stays converged") {
   GaOptions options;
   options.generations = 5000;
   options.mutation_probability = 0.0;
@@ -93,7 +93,7 @@ THREADED_CASE("genetic state: a converged run stays converged") {
   CHECK(same_run(go(options, {&*whole.state, {}, 50}, 2, {}, raised), whole));
 }
 
-THREADED_CASE("genetic state: alike is relative to the best, and a tolerance of 0 is none") {
+CHECK_CASE("genetic state: alike is relative to the best, and a tolerance of 0 is none") {
   GaOptions options;
   options.generations = 5;
   options.tolerance = 1e-3;
@@ -107,7 +107,7 @@ THREADED_CASE("genetic state: alike is relative to the best, and a tolerance of 
   CHECK(go(options, {}, 2, {}, same).stop != Stop::converged);
 }
 
-THREADED_CASE("genetic state: another penalty is refused, also an infinite one") {
+CHECK_CASE("genetic state: another penalty is refused, also an infinite one") {
   GaOptions options;
   options.generations = 5;
   const Function raised = [](const Candidate& x) { return 1.0 + sphere(x); };
@@ -125,7 +125,7 @@ THREADED_CASE("genetic state: another penalty is refused, also an infinite one")
   CHECK_REFUSED(go(options, {&nowhere, {}, 50}, 2, {}, raised), "another recording");
 }
 
-THREADED_CASE("genetic state: bytes that are not a whole state are refused") {
+CHECK_CASE("genetic state: bytes that are not a whole state are refused") {
   GaOptions options;
   options.generations = 3;
   options.population = 4;
@@ -143,7 +143,7 @@ THREADED_CASE("genetic state: bytes that are not a whole state are refused") {
   CHECK_REFUSED(state_from_bytes(bytes + "x"), "checkpoint");
 }
 
-THREADED_CASE("genetic state: another run's state is refused by what differs") {
+CHECK_CASE("genetic state: another run's state is refused by what differs") {
   GaOptions options;
   options.generations = 5;
   options.population = 10;

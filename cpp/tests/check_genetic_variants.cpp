@@ -100,7 +100,7 @@ CHECK_CASE(
   CHECK(share() == 1.0);
 }
 
-THREADED_CASE("islands: the same bits for 1, 2 and 7 threads") {
+CHECK_CASE("islands: the same bits for 1, 2 and 7 threads") {
   for (const bool adaptive : {false, true}) {
     GaOptions options;
     options.population = 13;
@@ -119,7 +119,7 @@ THREADED_CASE("islands: the same bits for 1, 2 and 7 threads") {
   }
 }
 
-THREADED_CASE("islands: the best goes round the ring, and the first island is a run of its own") {
+CHECK_CASE("islands: the best goes round the ring, and the first island is a run of its own") {
   // With a full elite but one nothing else moves: each migration brings the best one island on.
   GaOptions options;
   options.population = 5;
@@ -156,7 +156,7 @@ THREADED_CASE("islands: the best goes round the ring, and the first island is a 
   CHECK(many.state->genes.leftCols(several.population) == one.state->genes);
 }
 
-THREADED_CASE("presets: the thesis's settings, deterministic, adapting") {
+CHECK_CASE("presets: the thesis's settings, deterministic, adapting") {
   const auto text = GaOptions::thesis();
   const auto code = GaOptions::thesis_code();
   text.validate();
@@ -179,7 +179,7 @@ THREADED_CASE("presets: the thesis's settings, deterministic, adapting") {
   }
 }
 
-THREADED_CASE("islands: the same bits where their breeding is worth threads") {
+CHECK_CASE("islands: the same bits where their breeding is worth threads") {
   GaOptions options;
   options.population = 700;
   options.generations = 6;
@@ -191,7 +191,7 @@ THREADED_CASE("islands: the same bits where their breeding is worth threads") {
   }
 }
 
-THREADED_CASE("random search: the genetic algorithm's budget, uniform, deterministic, and worse") {
+CHECK_CASE("random search: the genetic algorithm's budget, uniform, deterministic, and worse") {
   GaOptions options;
   options.population = 60;
   options.generations = 120;

@@ -76,7 +76,7 @@ CHECK_CASE("instruments: before the first stage the residual is that of the torq
   CHECK(!waiting.first_stage());
 }
 
-THREADED_CASE("instruments: neither noise of the reading nor drifting friction biases the gain") {
+CHECK_CASE("instruments: neither noise of the reading nor drifting friction biases the gain") {
   const double gain = Truth{}.sensor_gain;
   const auto noisy = hanging(12.0, 0.0);
   CHECK(by(noisy, Residual::torque)[kGain] < 0.8 * gain);
@@ -86,11 +86,11 @@ THREADED_CASE("instruments: neither noise of the reading nor drifting friction b
   CHECK_CLOSE(by(drifting, Residual::instruments)[kGain], gain, 0.05 * gain);
 }
 
-THREADED_CASE("instruments: the exact reading gives the exact gain") {
+CHECK_CASE("instruments: the exact reading gives the exact gain") {
   CHECK_CLOSE(by(hanging(0.0, 0.0), Residual::instruments)[kGain], Truth{}.sensor_gain, 1e-3);
 }
 
-THREADED_CASE("instruments: direct, compressed and part by part have one minimum") {
+CHECK_CASE("instruments: direct, compressed and part by part have one minimum") {
   const auto r = hanging(3.0, 0.0);
   Penalty direct = penalty_of(r, Residual::instruments);
   direct.project_reading(domain().free());
@@ -108,7 +108,7 @@ THREADED_CASE("instruments: direct, compressed and part by part have one minimum
     CHECK_CLOSE(again[i], best[i], 2e-5 * std::fabs(best[i]) + 1e-6);
 }
 
-THREADED_CASE("instruments: the observed residual has the reading itself") {
+CHECK_CASE("instruments: the observed residual has the reading itself") {
   const auto r = hanging(3.0, 0.0);
   const auto torque = penalty_of(r, Residual::torque);
   Penalty projected = penalty_of(r, Residual::instruments);

@@ -107,7 +107,7 @@ CHECK_CASE("load friction: the Jacobian is the residuals' difference, also of ru
   }
 }
 
-THREADED_CASE("load friction: search, refit and parts find it, whatever the threads") {
+CHECK_CASE("load friction: search, refit and parts find it, whatever the threads") {
   for (const bool by_link : {false, true}) {
     for (const auto residual : {Residual::torque, Residual::sensor}) {
       const auto penalty = penalty_for(by_link, residual);
@@ -132,7 +132,7 @@ THREADED_CASE("load friction: search, refit and parts find it, whatever the thre
   }
 }
 
-THREADED_CASE("load friction: without a sensor the share of the inertia behind the gear is found") {
+CHECK_CASE("load friction: without a sensor the share of the inertia behind the gear is found") {
   auto r = moving(4001, 1e-3, false, 5);
   Truth truth;
   truth.static_excess = 0.0;

@@ -103,7 +103,7 @@ CHECK_CASE("own terms: a window has the rise of the series over what is usable")
       "needs a recording with its series");
 }
 
-THREADED_CASE("own terms: fifty of them are found, and the penalty stays compressed") {
+CHECK_CASE("own terms: fifty of them are found, and the penalty stays compressed") {
   const Own own(50, 0.05);
   const auto direct =
       penalty_of(own, own.terms({"inertia", "coulomb", "static", "viscous", "torque_offset"}));

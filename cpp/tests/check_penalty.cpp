@@ -178,7 +178,7 @@ CHECK_CASE("penalty: several recordings add up, and keep their windows apart") {
   }
 }
 
-THREADED_CASE("penalty: a population's penalties are the same bits as one by one") {
+CHECK_CASE("penalty: a population's penalties are the same bits as one by one") {
   const auto penalty = penalty_of({recorded({}, true)}, kWithSensor, Residual::sensor);
   Eigen::MatrixXd candidates = parameters({}, true).replicate(1, 41);
   base::Random random(1, 0, 0, 0);

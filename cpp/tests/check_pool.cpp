@@ -31,7 +31,7 @@ bool wait_for(Done done) {
   return true;
 }
 
-THREADED_CASE("pool: covers every index exactly once") {
+CHECK_CASE("pool: covers every index exactly once") {
   for (const int threads : {1, 2, 3, 7}) {
     Pool pool(threads);
     CHECK(pool.threads() == threads);
@@ -50,7 +50,7 @@ THREADED_CASE("pool: covers every index exactly once") {
   }
 }
 
-THREADED_CASE("pool: many short calls in a row") {
+CHECK_CASE("pool: many short calls in a row") {
   Pool pool(3);
   std::vector<int> values(17, 0);  // plain ints: an unsynchronised read is a race
   for (int round = 0; round < 3000; ++round) {
@@ -61,7 +61,7 @@ THREADED_CASE("pool: many short calls in a row") {
   for (const int value : values) CHECK(value == 3000);
 }
 
-THREADED_CASE("pool: work runs on other threads, all threads take part, the poll stays here") {
+CHECK_CASE("pool: work runs on other threads, all threads take part, the poll stays here") {
   std::set<std::thread::id> workers;
   std::mutex mutex;
   bool poll_elsewhere = false;
@@ -87,7 +87,7 @@ THREADED_CASE("pool: work runs on other threads, all threads take part, the poll
   CHECK(!poll_elsewhere);
 }
 
-THREADED_CASE("pool: an exception of the work comes out, and the pool works on") {
+CHECK_CASE("pool: an exception of the work comes out, and the pool works on") {
   for (const int threads : {1, 4}) {
     Pool pool(threads);
     for (int round = 0; round < 20; ++round) {
@@ -114,7 +114,7 @@ THREADED_CASE("pool: an exception of the work comes out, and the pool works on")
   }
 }
 
-THREADED_CASE("pool: after a failure no further chunk starts") {
+CHECK_CASE("pool: after a failure no further chunk starts") {
   Pool pool(1);
   int chunks = 0;
   message_of<std::runtime_error>(
@@ -128,7 +128,7 @@ THREADED_CASE("pool: after a failure no further chunk starts") {
   CHECK(chunks == 1);
 }
 
-THREADED_CASE("pool: a poll that throws ends one long evaluation in well under a second") {
+CHECK_CASE("pool: a poll that throws ends one long evaluation in well under a second") {
   for (const int threads : {1, 3}) {
     std::atomic<bool> asked{false};
     std::atomic<bool> deadline_passed{false};

@@ -88,8 +88,7 @@ bool is_inside(const Eigen::VectorXd& theta, const Domain& domain, Eigen::Index 
   return true;
 }
 
-THREADED_CASE(
-    "projection: the optimum of the separable search, with and without bounds that hold") {
+CHECK_CASE("projection: the optimum of the separable search, with and without bounds that hold") {
   base::Pool pool(2);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for (const auto residual : {Residual::torque, Residual::sensor}) {
@@ -120,8 +119,7 @@ THREADED_CASE(
   }
 }
 
-THREADED_CASE(
-    "projection: coefficients that nothing tells apart get some value within their bounds") {
+CHECK_CASE("projection: coefficients that nothing tells apart get some value within their bounds") {
   base::Pool pool(2);
   // The offset is half the difference of the directions' Coulomb frictions.
   const Names terms{"coulomb_positive", "coulomb_negative", "static",

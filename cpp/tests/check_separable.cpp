@@ -121,7 +121,7 @@ CHECK_CASE("separable: recovers the truth without a shape, positive and negative
   }
 }
 
-THREADED_CASE("separable: recovers the truth with one shape, positive and negative gains") {
+CHECK_CASE("separable: recovers the truth with one shape, positive and negative gains") {
   base::Pool pool(2);
   for (const double gain : {1.4, -0.7}) {
     Truth truth;
@@ -182,7 +182,7 @@ CHECK_CASE("separable: a sensor that reads raw counts") {
   }
 }
 
-THREADED_CASE("separable: fixed parameters stay, the others are the best beside them") {
+CHECK_CASE("separable: fixed parameters stay, the others are the best beside them") {
   const Truth truth;
   const auto theta = vector({truth.coulomb, truth.static_excess, truth.viscous, truth.sensor_gain,
                              truth.sensor_offset, truth.stribeck});
@@ -201,7 +201,7 @@ THREADED_CASE("separable: fixed parameters stay, the others are the best beside 
   }
 }
 
-THREADED_CASE("separable: a shape at its bound is the bound itself") {
+CHECK_CASE("separable: a shape at its bound is the bound itself") {
   const Truth truth;
   const auto theta = vector({truth.coulomb, truth.static_excess, truth.viscous, truth.sensor_gain,
                              truth.sensor_offset, truth.stribeck});
@@ -215,7 +215,7 @@ THREADED_CASE("separable: a shape at its bound is the bound itself") {
   CHECK(minimise_separable(penalty, domain, pool).best[5] == 83.3);
 }
 
-THREADED_CASE("separable: the same bits for any number of threads") {
+CHECK_CASE("separable: the same bits for any number of threads") {
   const Truth truth;
   const auto penalty = stribeck_penalty(truth, Residual::sensor, 1.0);
   const Domain domain{vector({0, 0, 0, 0.1, -30, 0}), vector({50, 40, 40, 5, 30, 200})};
@@ -228,7 +228,7 @@ THREADED_CASE("separable: the same bits for any number of threads") {
   }
 }
 
-THREADED_CASE("separable: what cannot be is refused by name") {
+CHECK_CASE("separable: what cannot be is refused by name") {
   base::Pool pool(2);
   const auto sensor = stribeck_penalty({}, Residual::sensor, 0.0);
   Domain domain{vector({0, 0, 0, -0.1, -30, 0}), vector({50, 40, 40, 5, 30, 200})};

@@ -51,7 +51,7 @@ std::vector<double> all(const Outcome& o) {
   return values;
 }
 
-THREADED_CASE("simulator: alone or in lanes, on one thread or three, the bits are the same") {
+CHECK_CASE("simulator: alone or in lanes, on one thread or three, the bits are the same") {
   Scenario scenario = short_scenario();
   scenario.sensors.encoder_counts = 8000;
   scenario.sensors.velocity = simulate::VelocityEstimate::counts;
@@ -72,7 +72,7 @@ THREADED_CASE("simulator: alone or in lanes, on one thread or three, the bits ar
   }
 }
 
-THREADED_CASE("simulator: noise is a function of the seed") {
+CHECK_CASE("simulator: noise is a function of the seed") {
   Scenario scenario = short_scenario();
   scenario.sensors.torque_noise = 0.5;
   const auto trajectory = thesis_trajectory(60.0, 0.5, 0.4);
@@ -86,7 +86,7 @@ THREADED_CASE("simulator: noise is a function of the seed") {
   CHECK(first[0].signals.reading != other[0].signals.reading);
 }
 
-THREADED_CASE("simulator: a true estimate tracks better than a wrong one") {
+CHECK_CASE("simulator: a true estimate tracks better than a wrong one") {
   Scenario scenario = short_scenario();
   scenario.duration = 3.0;
   const auto trajectory = thesis_trajectory(60.0, 3.0, 3.0);
@@ -104,7 +104,7 @@ THREADED_CASE("simulator: a true estimate tracks better than a wrong one") {
   CHECK(both[0].signals.position.empty());
 }
 
-THREADED_CASE("simulator: the poll ends a long run") {
+CHECK_CASE("simulator: the poll ends a long run") {
   Scenario scenario = short_scenario();
   scenario.duration = 1e5;
   int calls = 0;
@@ -120,7 +120,7 @@ THREADED_CASE("simulator: the poll ends a long run") {
   CHECK(message == "enough");
 }
 
-THREADED_CASE("simulator: an unstable loop is reported, not returned") {
+CHECK_CASE("simulator: an unstable loop is reported, not returned") {
   Setup setup = thesis_setup();
   setup.joint.torque_limit = 1e200;
   setup.controller = simulate::Pd{1e9, 0.0};
@@ -134,7 +134,7 @@ THREADED_CASE("simulator: an unstable loop is reported, not returned") {
   CHECK(contains(message, "not stable"));
 }
 
-THREADED_CASE("simulator: what cannot be simulated is refused by name") {
+CHECK_CASE("simulator: what cannot be simulated is refused by name") {
   base::Pool pool(1);
   const auto trajectory = thesis_trajectory(60.0, 0.5, 0.4);
   const auto tried = [&](auto change) {

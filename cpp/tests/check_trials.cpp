@@ -45,7 +45,7 @@ std::vector<Trial> trials() {
 
 }  // namespace
 
-THREADED_CASE("trials: each is the search alone, for 1, 2 and 7 threads") {
+CHECK_CASE("trials: each is the search alone, for 1, 2 and 7 threads") {
   for (const auto searcher : {search::Searcher::genetic, search::Searcher::random}) {
     for (const int threads : {1, 2, 7}) {
       base::Pool pool(threads);
@@ -75,7 +75,7 @@ CHECK_CASE("trials: none are no work, and bad options are refused before it") {
                 "population");
 }
 
-THREADED_CASE("trials: what the poll throws ends all of them") {
+CHECK_CASE("trials: what the poll throws ends all of them") {
   struct Enough {};
   auto endless = trials();
   for (auto& trial : endless) {

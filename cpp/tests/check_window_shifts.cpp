@@ -52,7 +52,7 @@ std::shared_ptr<const identify::MaskedRecording> masked(const Recording& recordi
       recording, identify::usable_intervals(recording, true));
 }
 
-THREADED_CASE("window shifts: as by windows that are cut anew, whatever the threads") {
+CHECK_CASE("window shifts: as by windows that are cut anew, whatever the threads") {
   const Recording recording = drifting();
   const auto run = masked(recording);
   // An even number of windows, so that both others nest.

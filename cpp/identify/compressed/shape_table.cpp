@@ -114,7 +114,8 @@ inline void horner_slope(const double* rows, std::size_t order, std::size_t stri
   std::array<double, kTableLanes> sum{};
   for (std::size_t k = order - 1; k >= 1; --k) {
     const double* row = rows + k * stride;
-    for (std::size_t l = 0; l < kTableLanes; ++l) sum[l] = sum[l] * x + static_cast<double>(k) * row[l];
+    for (std::size_t l = 0; l < kTableLanes; ++l)
+      sum[l] = sum[l] * x + static_cast<double>(k) * row[l];
   }
   for (std::size_t l = 0; l < kTableLanes; ++l) result[l] = sum[l];
 }
