@@ -94,7 +94,7 @@ bound() {
   "$(tools/find_python.sh)" -m venv "$environment"
   "$python" -m pip install --quiet --no-input 'pip>=25.1'
   "$python" tools/constraints.py --bound "$1" >"$here/$1.txt"
-  "$python" -m pip install --quiet --no-input --constraint "$here/$1.txt" ".[pandas,parquet,ros,hdf5]" \
+  "$python" -m pip install --quiet --no-input --constraint "$here/$1.txt" ".[pandas,parquet,ros,hdf5,matlab]" \
     'pytest>=8.3,<10' 'pytest-xdist>=3.8,<4' 'hypothesis>=6.100,<7' pyyaml canopen
   "$python" -m pip list --format freeze | grep -iE '^(numpy|scipy|matplotlib|pandas|pyarrow|h5py|pin|python-can|tomlkit|mcap|rosbags)=='
   "$python" -m pytest -q --numprocesses auto --dist loadfile --ignore tests/exports --ignore tests/repository

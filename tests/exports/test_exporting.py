@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -121,6 +122,19 @@ def test_wrong_input_is_refused(
         jid.export(LOADED, **arguments)
     assert says in str(refused.value)
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_without_scipy_a_matlab_file_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("scipy", "scipy.io"):
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(jid.InputError) as refused:
+        jid.export(LOADED, tmp_path / "joint.mat")
+    assert str(refused.value) == (
+        "a MATLAB file needs the package scipy, which is not installed; pip install scipy"
+    )
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_source_without_values_is_refused(tmp_path: Path) -> None:

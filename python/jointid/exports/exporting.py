@@ -73,8 +73,8 @@ def export(
     Raises
     ------
     InputError
-        An ending that no target has, a parameter without a value, no such joint in `into`, or a model that the
-        target cannot express.
+        An ending that no target has, a parameter without a value, no such joint in `into`, a model that the
+        target cannot express, or scipy is not installed, which writes ``.mat``.
     OSError
         The file cannot be written.
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from jointid.base.errors import InputError
 from jointid.exports.identifiers import identifier, parameter_identifier
 from jointid.exports.law import Centred
 from jointid.exports.provenance import statements
@@ -20,8 +21,13 @@ _LONGEST = 63  # letters of a field's name in MATLAB
 
 
 def _write(subject: Subject, order: Order) -> bytes:
-    from scipy.io import savemat
-
+    try:
+        from scipy.io import savemat
+    except ModuleNotFoundError as error:
+        raise InputError(
+            "a MATLAB file needs the package scipy, which is not installed",
+            remedy="pip install scipy",
+        ) from error
     notes = [
         "friction.velocity has no 0: between its two middle rows a lookup is a steep line through 0",
         "NaN stands for what is not known",
