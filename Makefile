@@ -30,7 +30,7 @@ MODULES := $(sort $(filter python/%.py,$(SOURCES)))
 IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
-.PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
+.PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint format \
         develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants write-faults soak clean
 
 help:  ## list the targets
@@ -76,21 +76,18 @@ browser: .venv/.strict .venv/.test-tools  ## install Chromium (root or sudo), th
 	@tools/install_browser.sh
 	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py tests/app/test_app_in_browser.py
 
-lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub, workflow
+lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, workflow
 	@echo "ruff check";         $(BIN)/ruff check
 	@echo "ruff format";        $(BIN)/ruff format --check --quiet
+	@$(BIN)/python -c 'import shutil, sysconfig; shutil.copy(sysconfig.get_path("platlib") + "/jointid/_core.pyi", "python/jointid")'
 	@echo "mypy";               $(BIN)/mypy
 	@echo "clang-format";       find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format --dry-run -Werror
-	@echo stub;                 $(BIN)/python tools/stub.py --check
 	@echo workflow;             $(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/ci.yml
 
 format: .venv/.lint-tools  ## format Python and C++ in place
 	@$(BIN)/ruff check --fix --quiet || true
 	@$(BIN)/ruff format --quiet
 	@find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format -i
-
-stub: .venv/.installed .venv/.lint-tools  ## write python/jointid/_core.pyi anew
-	@$(BIN)/python tools/stub.py
 
 define INSTALL_IN_PLACE
 @echo "Installing jointid in place, warnings are errors"
@@ -202,7 +199,7 @@ tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of th
 	@touch $@
 
 .venv/.lint-tools: .venv/.created pyproject.toml
-	@echo "Installing ruff, mypy, clang-format and the stub generator"
+	@echo "Installing ruff, mypy and clang-format"
 	@$(TOOLS) lint
 	@touch $@
 

@@ -68,7 +68,7 @@ def change(tree: Path, name: str) -> None:
     os.utime(path, (NEW, NEW))
 
 
-@pytest.mark.parametrize("target", ["lint", "pytest", "demo", "stub"])
+@pytest.mark.parametrize("target", ["lint", "pytest", "demo"])
 def test_nothing_is_installed_anew_without_a_change(tree: Path, target: str) -> None:
     assert installations(tree, target) == []
     develop(tree)

@@ -1,4 +1,4 @@
-"""The committed stub describes the extension that is installed: same names, same option fields."""
+"""The stub beside the extension describes it: same names, same option fields."""
 
 import ast
 import enum
@@ -11,7 +11,7 @@ import pytest
 import jointid as jid
 from jointid import _core
 
-STUB = Path(__file__).resolve().parents[2] / "python" / "jointid" / "_core.pyi"
+STUB = Path(_core.__file__).with_name("_core.pyi")
 
 
 def names_in(body: list[ast.stmt]) -> set[str]:
