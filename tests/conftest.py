@@ -1,14 +1,12 @@
 """Fixtures that several test modules share."""
 
-import os
 import signal
-from itertools import chain
 from pathlib import Path
 
 import pytest
 from emps_files import TABLE, WITHOUT_EMPS, folder_of_emps, with_table
 from hypothesis import HealthCheck, settings
-from slowest_files import phases, place_of, slowest_files
+from lanes import QUICK, Lane
 
 # How long an example takes says how busy the machine is.
 settings.register_profile("jointid", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -46,21 +44,7 @@ def emps(repo: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return with_table(folder, tmp_path_factory.mktemp("emps"))
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let the longest files start first."""
-    items.sort(key=lambda item: place_of(item.path, Path(__file__).resolve().parent))
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """In CI, say what takes its time."""
-    if not os.environ.get("CI"):
-        return
-    reports = chain.from_iterable(terminalreporter.stats.values())
-    parts = [
-        (each.nodeid, each.duration) for each in reports if isinstance(each, pytest.TestReport)
-    ]
-    if before := phases():
-        terminalreporter.section("phases of CI before these tests")
-        terminalreporter.write_line("\n".join(before))
-    terminalreporter.section("slowest files")
-    terminalreporter.write_line("\n".join(slowest_files(parts)))
+def pytest_configure(config: pytest.Config) -> None:
+    """Measure the tests of the quick lane."""
+    if config.getoption("markexpr") == QUICK:
+        config.pluginmanager.register(Lane())
