@@ -6,80 +6,66 @@ SHELL := bash
 .NOTPARALLEL:  # each build uses every core by itself
 
 BIN := .venv/bin
-PIP := $(BIN)/python -m pip
-INSTALL := $(PIP) install --quiet --no-input --disable-pip-version-check
+INSTALL := $(BIN)/python -m pip install --quiet --no-input --disable-pip-version-check
 # Python compiles what is imported; most of what the tools bring never is.
 TOOLS := $(INSTALL) --no-compile --group
-STRICT := -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON -Ccmake.define.JOINTID_PRECOMPILED=$(if $(shell command -v ccache),OFF,ON)
+# One thread of BLAS in each process: several wait for each other, and take from the other processes what they wait.
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
-# What the installed package is made of; outside a git checkout (an unpacked sdist) whatever is there.
-PARTS := cpp python CMakeLists.txt pyproject.toml README.md LICENSE examples/data
-LISTED := $(shell git ls-files --cached --others --exclude-standard -- $(PARTS) 2>/dev/null)
-SOURCES := $(wildcard $(or $(LISTED),$(shell find $(PARTS) -type f -not -name '*.so' -not -path '*/__pycache__/*' 2>/dev/null)))
+# What the installed package is made of, and a wheel in dist that is newer than all of it (or WHEEL=path): it is installed
+# instead of compiled. An editable install (`make develop`) is renewed each time, which takes seconds.
+FILES := find cpp python examples/data CMakeLists.txt pyproject.toml README.md LICENSE tools/stub.py \
+  -type f -not -name '*.so' -not -name _core.pyi -not -path '*/__pycache__/*'
+EDITABLE := $(wildcard .venv/.editable)
+BUILT := $(if $(EDITABLE),,$(shell ls -t dist/jointid-*.whl 2>/dev/null | head -n 1))
+WHEEL := $(if $(BUILT),$(if $(shell $(FILES) -newer $(BUILT)),,$(BUILT)))
+SOURCES := $(if $(EDITABLE),always,$(shell $(FILES)))
 
-# Warnings are errors in CI and in `make test`, never when a user just wants the demo.
-INSTALLED := $(if $(filter true,$(CI)),.venv/.strict,.venv/.installed)
-
-# CI checks the core that it ships: the plain checks come out of the wheel's build, whose objects they link.
-SHIPPED_CHECKS := $(if $(filter true,$(CI)),dist/.wheel)
-CHECKS_TOO := $(if $(SHIPPED_CHECKS),-Cbuild-dir=$(CURDIR)/build/wheel -Ccmake.define.JOINTID_BUILD_CHECKS=ON)
-
-# After `make develop`, .venv/.editable lists the Python files that are used in place. Then only the compiled part,
-# or another list of files, needs an installation, and that one is in place again.
-MODULES := $(sort $(filter python/%.py,$(SOURCES)))
-IN_PLACE := $(wildcard .venv/.editable)
-MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
-
-.PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint format \
-        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants write-faults soak clean
+.PHONY: always help demo wheel test test-all night slow checks-address checks-thread vcan browser lint format develop \
+        check-sdist wheels cross matrix study bench notebooks docs fuzz mutants write-faults soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
 
-demo: $(INSTALLED)  ## identify a real robot joint from its log; writes demo/report.html
+demo: $(if $(findstring command,$(origin WHEEL)),wheel,.venv/.installed)  ## identify a real robot joint from its log; writes demo/report.html. WHEEL=path: without a compiler
 	@$(BIN)/jointid demo --output demo
 	@echo "Open demo/report.html in a browser."
 
-# DONE names parts that .ci/run has seen to already, beside other work.
-test: $(filter-out $(DONE),checks pytest-guest) pytest-rest  ## core checks (plain, ASan+UBSan, TSan), then pytest
+wheel: .venv/.created
+	@tools/install.sh $(WHEEL)
+	@touch .venv/.installed
 
-checks: .venv/.test-tools $(SHIPPED_CHECKS)
-	@mkdir -p build
-	@for name in plain address thread; do \
-	  echo "Core checks, $$name:"; \
-	  tools/core_checks.sh $$name; \
-	done
+test: .venv/.tested .venv/.test-tools  ## one build; plain core checks and all tests that are not marked slow
+	@echo "Core checks:"
+	@build/package/core_check
+	@echo "Python tests:"
+	@$(PYTEST) -m "not slow"
 
-check-plain: $(SHIPPED_CHECKS)
+# The guests without other tests: their drive has to answer within 200 ms.
+test-all: test checks-address vcan slow docs check-sdist  ## slow tests, guests, browser, ASan and UBSan, site, sdist too (root or sudo)
 
-check-plain check-address check-thread: check-%: .venv/.test-tools  ## (each alone)
-	@mkdir -p build
+night: test-all checks-thread write-faults notebooks soak mutants  ## by hand: everything else, but for the matrix; hours
+	@$(MAKE) fuzz CASES=$(or $(CASES),20000)
+
+slow: .venv/.installed .venv/.test-tools
+	@tools/install_browser.sh
+	@JOINTID_REQUIRE_BROWSER=1 $(PYTEST) -m slow --ignore tests/canlab
+
+checks-address checks-thread: checks-%: .venv/.created build/tools/.made
+	@echo "Core checks under sanitizers: $*"
 	@tools/core_checks.sh $*
 
-pytest: pytest-guest pytest-rest  ## the Python tests alone
-
-# The guest without other tests: its drive has to answer within 200 ms. Then the rest, whose summary closes the output.
-pytest-guest: .venv/.strict .venv/.test-tools
-	@echo "Python tests on the kernel's own CAN:"
-	@$(BIN)/python -m pytest tests/canlab
-
-# One thread of BLAS in each: several wait for each other, and take from the other processes what they wait.
-pytest-rest: .venv/.strict .venv/.test-tools
-	@echo "Python tests:"
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --ignore tests/canlab
-
-vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
+vcan: .venv/.installed .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
 	@tools/install_vcan.sh
 	@JOINTID_REQUIRE_VCAN=1 $(BIN)/python -m pytest tests/canlab
 
-browser: .venv/.strict .venv/.test-tools  ## install Chromium (root or sudo), then look at the pages in it
+browser: .venv/.installed .venv/.test-tools  ## install Chromium (root or sudo), then look at the pages in it
 	@tools/install_browser.sh
 	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py tests/app/test_app_in_browser.py
 
-lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, workflow
+lint: .venv/.installed .venv/.lint-tools  ## ruff, mypy, clang-format, workflow
 	@echo "ruff check";         $(BIN)/ruff check
 	@echo "ruff format";        $(BIN)/ruff format --check --quiet
-	@$(BIN)/python -c 'import shutil, sysconfig; shutil.copy(sysconfig.get_path("platlib") + "/jointid/_core.pyi", "python/jointid")'
 	@echo "mypy";               $(BIN)/mypy
 	@echo "clang-format";       find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format --dry-run -Werror
 	@echo workflow;             $(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/ci.yml
@@ -89,30 +75,16 @@ format: .venv/.lint-tools  ## format Python and C++ in place
 	@$(BIN)/ruff format --quiet
 	@find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format -i
 
-define INSTALL_IN_PLACE
-@echo "Installing jointid in place, warnings are errors"
-@PATH="$$PWD/$(BIN):$$PATH" $(INSTALL) --no-build-isolation -Cbuild-dir=build/editable $(STRICT) -e .
-@echo $(MODULES) > .venv/.editable
-@touch .venv/.installed .venv/.strict
-endef
-
-develop: .venv/.test-tools .venv/.lint-tools  ## editable install for contributors, used until `make clean`
-	$(INSTALL_IN_PLACE)
-
-sdist: .venv/.test-tools  ## dist/jointid-VERSION.tar.gz
-	@rm -f dist/jointid-*.tar.gz
-	@$(BIN)/python -m build -qq --sdist --outdir dist .
+develop: .venv/.lint-tools  ## editable install for contributors, used until `make clean`
+	@touch .venv/.editable
+	@tools/install.sh checks
+	@touch .venv/.installed .venv/.tested
 
 # In an environment that holds nothing but what pyproject.toml asks for.
-dist/.wheel: .venv/.build-tools $(SOURCES)
-	@echo "Building the sdist and a wheel from it, warnings are errors (a minute or two)"
-	@rm -rf dist/jointid-* build/wheel
-	@$(BIN)/python -m build -qq $(STRICT) $(CHECKS_TOO) --outdir dist .
-	@touch $@
-
-check-sdist: dist/.wheel  ## a wheel from the sdist installs, imports and runs in an environment of its own
-	@echo "Installing $$(ls dist/jointid-*.whl) into a fresh environment"
-	@rm -rf build/sdist-venv
+check-sdist: .venv/.created build/tools/.made  ## a wheel from the sdist, both in dist, installs and runs in an environment of its own
+	@echo "Building the sdist and a wheel from it"
+	@rm -rf dist/jointid-* build/sdist-venv
+	@PYTHONPATH=build/tools $(BIN)/python -m build -qq --outdir dist .
 	@$(BIN)/python -m venv build/sdist-venv
 	@build/sdist-venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check dist/jointid-*.whl
 	@sdist="$$PWD/build/sdist-venv/bin"; cd / && "$$sdist/python" -c 'import jointid' && "$$sdist/jointid" --help >/dev/null
@@ -122,10 +94,13 @@ check-sdist: dist/.wheel  ## a wheel from the sdist installs, imports and runs i
 wheels: .venv/.created  ## wheels for Linux in dist/wheels, each tried where no compiler is; by hand
 	@tools/wheels.sh $(PYTHONS)
 
+cross: .venv/.created build/tools/.made  ## every file of the core compiles for Windows and macOS; by hand, minutes
+	@tools/cross.sh
+
 matrix: .venv/.created  ## Debian 13 by chroot, gcc 14, clang 19 and 14, oldest and newest dependencies; by hand, as root, an hour
 	@tools/matrix.sh $(MATRIX)
 
-study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to docs/
+study: .venv/.installed .venv/.bench-tools  ## accuracy over many seeds; by hand, the results go to docs/
 	@$(BIN)/python benchmarks/accuracy_study.py
 	@$(BIN)/python benchmarks/coverage_study.py
 	@$(BIN)/python benchmarks/presets_study.py
@@ -137,7 +112,7 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 	@$(BIN)/python benchmarks/causes_study.py --joints 30 --seed 7001 --size .1 --output docs/causes.md --append
 	@$(BIN)/python benchmarks/robot_study.py --hour --output docs/robot_accuracy.md
 
-bench: $(INSTALLED) .venv/.bench-tools build/oldest/.installed  ## speed against other libraries (20 min); writes docs/performance.md
+bench: .venv/.installed .venv/.bench-tools build/oldest/.installed  ## speed against other libraries (20 min); writes docs/performance.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
 	@$(BIN)/python benchmarks/latency.py --oldest build/oldest/bin/python --output docs/latency.md
@@ -155,32 +130,30 @@ build/oldest/.installed: .venv/.created
 	@build/oldest/bin/python -m pip install --quiet --no-input --disable-pip-version-check ./build/oldest-sources
 	@touch $@
 
-notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
+notebooks: .venv/.installed .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
 
-docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site; LINKS=1 asks other hosts, too
+docs: .venv/.installed .venv/.docs-tools  ## the documentation site, build/docs/site; LINKS=1 asks other hosts, too
 	@PYTHONPATH=tools $(BIN)/python -m documentation $(if $(LINKS),--links)
 
 # CASES=5000 SEED=0 MINUTES=60 PROCESSES=1 make fuzz: another number, where to begin, and for how long. build/fuzz.jsonl
 # has what was done: the next run goes on there.
-fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
+fuzz: .venv/.installed .venv/.test-tools build/tools/.made  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
 	@tools/fuzz.sh build/fuzz.jsonl --cases $(or $(CASES),1000000) --first $(or $(SEED),0) \
 	  --minutes $(or $(MINUTES),1000000) --processes $(or $(PROCESSES),$$(getconf _NPROCESSORS_ONLN))
 
-mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
-	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
+mutants: .venv/.installed .venv/.test-tools build/tools/.made  ## change single lines, see whether tests notice; by hand, docs/mutants.md
+	@PATH="$$PWD/build/tools/bin:$$PATH" PYTHONPATH="tools:$$PWD/build/tools" $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
 
-write-faults: $(INSTALLED) .venv/.test-tools  ## a full disk, a bad one, a power loss at 1,000 calls that write; by hand
+write-faults: .venv/.installed .venv/.test-tools  ## a full disk, a bad one, a power loss at 1,000 calls that write; by hand
 	@JOINTID_WRITE_FAULTS=all $(BIN)/python -m pytest -s tests/base/test_write_faults.py
 
-soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
+soak: .venv/.installed  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py
 
 clean:  ## remove everything made here, .venv too
-	@rm -rf .venv build dist demo .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf .venv build dist demo python/jointid/_core.pyi .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
-
-tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of the others run at the same time
 
 .venv/.created:
 	@python="$$(tools/find_python.sh)"; \
@@ -189,8 +162,11 @@ tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of th
 	@$(INSTALL) --upgrade 'pip>=25.1'  # dependency groups
 	@touch $@
 
-.venv/.build-tools: .venv/.created pyproject.toml
-	@$(TOOLS) build
+# What builds lies apart from .venv, at one place: an isolated build's would be at another each time, and all objects old.
+build/tools/.made: pyproject.toml | .venv/.created
+	@echo "Installing what compiles"
+	@rm -rf build/tools
+	@$(TOOLS) build --target build/tools
 	@touch $@
 
 .venv/.test-tools: .venv/.created pyproject.toml
@@ -213,27 +189,10 @@ tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of th
 	@$(TOOLS) bench
 	@touch $@
 
-ifeq ($(IN_PLACE),)
 .venv/.installed: .venv/.created $(SOURCES)
-	@echo "Building and installing jointid (a minute or two)"
-	@$(INSTALL) .
+	@tools/install.sh $(WHEEL)
 	@touch $@
 
-ifeq ($(CI),true)  # what CI tests is the wheel that comes out of the sdist, so it is built once
-.venv/.strict: .venv/.created dist/.wheel
-	@$(PIP) uninstall -qq --yes jointid  # the version of a wheel does not tell that it is another
-	@$(INSTALL) dist/jointid-*.whl
+.venv/.tested: .venv/.created $(SOURCES)
+	@tools/install.sh checks
 	@touch .venv/.installed $@
-else
-.venv/.strict: .venv/.created $(SOURCES)
-	@echo "Building and installing jointid, warnings are errors (a minute or two)"
-	@$(INSTALL) $(STRICT) .
-	@touch .venv/.installed $@
-endif
-else
-.venv/.installed: .venv/.created $(filter-out $(MODULES) README.md LICENSE,$(SOURCES)) $(MOVED)
-	$(INSTALL_IN_PLACE)
-
-.venv/.strict: .venv/.installed
-	@touch $@
-endif

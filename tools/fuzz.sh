@@ -8,15 +8,11 @@ cd "$(dirname "$0")/.."
 build=build/checks-address
 site="$PWD/build/sanitized"
 mkdir -p build
-export PATH="$PWD/.venv/bin:$PATH"
-if command -v ccache >/dev/null; then
-  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
-fi
+export PATH="$PWD/.venv/bin:$PWD/build/tools/bin:$PATH" PYTHONPATH="$PWD/build/tools"
 echo "Building the extension under ASan and UBSan (minutes)"
 { cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DJOINTID_BUILD_CHECKS=ON -DJOINTID_BUILD_EXTENSION=ON \
     -DJOINTID_SANITIZE=address,undefined -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
-    -Dpybind11_DIR="$(python -m pybind11 --cmakedir)" ${launcher[@]+"${launcher[@]}"} &&
+    -Dpybind11_DIR="$(python -m pybind11 --cmakedir)" &&
   cmake --build "$build" --target _core --parallel "$(getconf _NPROCESSORS_ONLN)"; } >build/sanitized.log 2>&1 ||
   { cat build/sanitized.log; exit 1; }
 

@@ -17,6 +17,7 @@ from served import LARGEST, Served, require_nicegui, served
 import jointid as jid
 
 COUNTS, RATIO, CONSTANT = 1_048_576, 100.0, 0.05
+pytestmark = pytest.mark.slow
 PATIENCE = 60.0  # [s]: a loaded machine
 
 

@@ -10,6 +10,7 @@ from canlab import machine
 from canlab.machine import REQUIRED, Guest, GuestError, missing
 
 pytest_plugins = ["pytester"]
+pytestmark = pytest.mark.slow
 PATIENCE = 300.0  # [s]
 
 

@@ -15,6 +15,7 @@ from canlab.machine import Guest
 from canlab.outcome import Outcome
 from canlab.scenarios import SCENARIOS
 
+pytestmark = pytest.mark.slow
 PATIENCE = 600.0  # [s] for what takes a sixth of that on a machine that is not busy
 NUMBERS = [str(number) for number in range(KILLS)]
 

@@ -11,7 +11,7 @@ from fuzz import trying
 from fuzz.seeds import readers
 from fuzz.trying import faults
 
-_CASES = int(os.environ.get("JOINTID_FUZZ") or (5_000 if os.environ.get("CI") else 300))
+_CASES = int(os.environ.get("JOINTID_FUZZ") or 300)
 _START = int(os.environ.get("JOINTID_FUZZ_SEED") or 0)
 
 

@@ -10,6 +10,7 @@ from browser import REQUIRED, Browser, browser, require
 from report_pages import PAGES, of_a_joint, page
 from test_palette import LEAST, TEXT, contrast
 
+pytestmark = pytest.mark.slow
 WIDTHS = (390, 800, 1200)
 SMALLEST = 9.0  # pixels of a text's line on a screen: about 8 px of type
 

@@ -56,9 +56,6 @@ def built_core(folder: Path, mutants: list[Mutant], jobs: int) -> tuple[Path, Pa
     setup += [f"-Dpybind11_DIR={_pybind11()}", f"-DSKBUILD_PROJECT_VERSION={_version()}"]
     setup.append("-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=OFF")
     setup.append("-DJOINTID_BUILD_EXTENSION=ON")  # with the checks: the core is compiled once
-    if shutil.which("ccache"):
-        setup.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
-        environment["CCACHE_BASEDIR"] = str(sources)
     build: list[str | Path] = ["cmake", "--build", objects, "--parallel", str(jobs)]
     build += ["--", "-k", "0"]  # all errors at once
     for command in (setup, build):
@@ -79,7 +76,7 @@ def _pybind11() -> str:
     command = [sys.executable, "-m", "pybind11", "--cmakedir"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise MutantError("pybind11 is needed to compile: `make .venv/.test-tools` installs it")
+        raise MutantError("pybind11 is needed to compile: run it by `make mutants`")
     return done.stdout.strip()
 
 
