@@ -29,7 +29,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--lists", type=Path, default=LISTS, help="folder of the lists")
     parser.add_argument("--only", default="", metavar="TEXT", help="in the name of list or file")
     parser.add_argument("--python", action="store_true", help="Python alone: nothing is compiled")
-    parser.add_argument("--ci", action="store_true", help="those marked `ci`")
     parser.add_argument("--again", action="store_true", help="also those whose verdict still holds")
     parser.add_argument("--check", action="store_true", help="that each text is there, no trial")
     parser.add_argument("--verdicts", type=Path, default=VERDICTS, help="folder of what was found")
@@ -92,8 +91,6 @@ def _others(mutants: list[Mutant], known: list[Verdict]) -> list[Mutant]:
 
 def _chosen(mutant: Mutant, options: argparse.Namespace) -> bool:
     if options.python and not mutant.is_python:
-        return False
-    if options.ci and not mutant.ci:
         return False
     return options.only in f"{mutant.room}: {mutant.path}"
 

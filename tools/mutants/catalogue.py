@@ -10,7 +10,7 @@ from typing import Any
 REPOSITORY = Path(__file__).resolve().parents[2]
 LISTS = Path(__file__).resolve().parent / "lists"
 _OF_A_FILE = {"path", "checks", "tests", "mutants"}
-_OF_A_MUTANT = {"line", "was", "becomes", "checks", "tests", "justified", "ci", "named"}
+_OF_A_MUTANT = {"line", "was", "becomes", "checks", "tests", "justified", "named"}
 _BRACKETS = (("(", ")"), ("[", "]"), ("{", "}"))
 _OF_TWO_SIDES = ("/", "%", "<", ">", "=", "|", "^", "?", ":")
 
@@ -41,8 +41,6 @@ class Mutant:
         pytest's names of the tests that should notice.
     justified : str
         Why no test can or need notice; empty where one does.
-    ci : bool
-        Whether CI tries it.
     named : bool
         Whether it survived when mutants were first tried by hand (issue 17).
     """
@@ -56,7 +54,6 @@ class Mutant:
     checks: tuple[str, ...] = ()
     tests: tuple[str, ...] = ()
     justified: str = ""
-    ci: bool = False
     named: bool = field(default=False, compare=False)
 
     @property
@@ -138,7 +135,6 @@ def _made(number: int, path: Path, entry: dict[str, Any], each: dict[str, Any]) 
         checks=tuple(dict.fromkeys(checks)),
         tests=tuple(dict.fromkeys(tests)),
         justified=each.get("justified", ""),
-        ci=each.get("ci", False),
         named=each.get("named", False),
     )
 

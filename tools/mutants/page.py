@@ -67,7 +67,7 @@ def written(verdicts: Sequence[Verdict], mutants: Sequence[Mutant]) -> str:
         "ends and says so. C++ is compiled once, with all mutants in it, and a number in the environment chooses one.",
         "Verdicts lie in `tools/mutants/verdicts`, each with its date, until the line changes; where its file or its "
         "tests have",
-        "changed since, the next run tries it again. CI tries those that are marked `ci`.",
+        "changed since, the next run tries it again.",
         "",
         f"Of {len(mutants)} mutants in the lists these were tried: **{summary(verdicts)}**",
         f"({minutes:.0f} minutes on one processor, without the compiler's). Of {len(named) + skipped} places",
