@@ -167,6 +167,7 @@ CHECK_CASE("compressed: an exponent that is searched is left to the direct sum")
     const CompressedPenalty compressed(direct, domain, pool);
     CHECK(!compressed.exact() && compressed.passes() == 0);
     CHECK(contains(compressed.reason(), "stribeck_exponent is searched"));
+    CHECK_REFUSED(compressed(domain.upper), "not compressed: stribeck_exponent");
   }
 }
 

@@ -201,6 +201,10 @@ void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes, const D
   compare(found, functions.rightCols(probes), scale);
 }
 
+void CompressedPenalty::require_made() const {
+  if (target_.size() == 0) throw std::invalid_argument("it is not compressed: " + reason_);
+}
+
 void CompressedPenalty::require_inside(double shape) const {
   const double lower = table_->axis().lower();
   const double upper = table_->axis().upper();
@@ -213,6 +217,7 @@ void CompressedPenalty::require_inside(double shape) const {
 
 void CompressedPenalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                                 const base::Cancel* /*cancel*/) const {
+  require_made();
   result.setZero(target_.size(), coefficients_);
   for (std::size_t j = 0; j < constant_.size(); ++j) {
     result.col(constant_[j]).head(rows_) = triangle_.col(static_cast<Eigen::Index>(j)).head(rows_);
@@ -286,6 +291,7 @@ void CompressedPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd&
 
 void CompressedPenalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
                                  base::Pool& pool) const {
+  require_made();
   const View view{table_ ? &*table_ : nullptr,
                   triangle_.data(),
                   static_cast<std::size_t>(rows_),

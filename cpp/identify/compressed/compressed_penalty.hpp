@@ -63,6 +63,8 @@ class CompressedPenalty final : public PenaltyFunction {
   void compare(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected, double scale);
   void assemble(const std::optional<ShapeNodes>& nodes, const Digest& whole);
   [[nodiscard]] bool has_too_many_terms() const;
+  /// Refuses what could not be compressed.
+  void require_made() const;
   void require_inside(double shape) const;
   /// Shaped columns, rows x shaped.
   [[nodiscard]] Eigen::MatrixXd shaped_columns(double shape) const;
