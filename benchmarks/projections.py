@@ -21,6 +21,7 @@ from jointid import _core
 from jointid.base.files import write_whole
 from jointid.cli.demo import data_folder
 from jointid.identification.search.domain import SearchDomain, domain_for
+from jointid.identification.search.engine import Engine
 from jointid.joint.model import Model
 from jointid.problem.problem import Problem
 from jointid.problem.terms import Request, choose_terms
@@ -107,7 +108,7 @@ def projected(penalty: Projection, problem: Given) -> float:
 def genetic(problem: Given) -> float:
     """Compression, our default genetic search and its polish."""
     low, high = problem.domain.lower, problem.domain.upper
-    form = _core.CompressedPenalty(problem.direct, low, high)
+    form = Engine.of(problem.direct, problem.domain, 0).form
     found = _core.minimise_genetic(form, low, high, options=_core.GaOptions(), seed=0)
     return _core.refine_separable(form, low, high, found.best).penalty
 
@@ -118,7 +119,7 @@ def separable(problem: Given) -> float:
     projected = _core.minimise_projected(problem.direct, low, high).found
     if projected is not None:
         return projected.penalty
-    form = _core.CompressedPenalty(problem.direct, low, high)
+    form = Engine.of(problem.direct, problem.domain, 0).form
     return _core.minimise_separable(form, low, high).penalty
 
 
