@@ -94,7 +94,7 @@ check-sdist: .venv/.created build/tools/.made  ## a wheel from the sdist, both i
 wheels: .venv/.created  ## wheels for Linux in dist/wheels, each tried where no compiler is; by hand
 	@tools/wheels.sh $(PYTHONS)
 
-cross: .venv/.created build/tools/.made  ## every file of the core compiles for Windows and macOS; by hand, minutes
+cross: .venv/.created build/tools/.made  ## every file of the core compiles for Windows and macOS; by hand, 10 minutes of CPU
 	@tools/cross.sh
 
 matrix: .venv/.created  ## Debian 13 by chroot, gcc 14, clang 19 and 14, oldest and newest dependencies; by hand, as root, an hour
