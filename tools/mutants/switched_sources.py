@@ -74,10 +74,13 @@ def write(tree: Path, mutants: list[Mutant]) -> None:
     (tree / "cpp" / "jointid_mutant.cpp").write_text(SWITCH, encoding="utf-8")
     build = tree / "CMakeLists.txt"
     text = build.read_text(encoding="utf-8")
-    begin = "add_library(core STATIC\n"
-    if text.count(begin) != 1:
-        raise MutantError(f"CMakeLists.txt: `{begin.strip()}` is not there; adapt {__name__}")
-    text = text.replace(begin, f"{begin}  cpp/jointid_mutant.cpp\n")
     # The compiler takes longer than the trials: half of it, for the same bits.
-    text = text.replace(";-O3>", ";-O1>")
+    changes = {
+        "add_library(core STATIC)": "add_library(core STATIC cpp/jointid_mutant.cpp)",
+        ":-O3>": ":-O1>",
+    }
+    for old, new in changes.items():
+        if text.count(old) != 1:
+            raise MutantError(f"CMakeLists.txt: `{old}` is not there once; adapt {__name__}")
+        text = text.replace(old, new)
     build.write_text(text, encoding="utf-8")
