@@ -113,12 +113,14 @@ def _halves(recording: jid.Recording) -> list[jid.Recording]:
 
 
 CASES: dict[str, Callable[[], dict[str, str]]] = {
-    "thesis joint": lambda: _identify(_thesis(), jid.thesis_joint(), search=jid.Search(seed=1)),
+    "thesis joint": lambda: _identify(_thesis(), jid.thesis_joint()),
+    "thesis joint, genetic": lambda: _identify(
+        _thesis(), jid.thesis_joint(), search=jid.Search("ga", seed=1)
+    ),
     "thesis joint, torque": lambda: _identify(_thesis(), jid.thesis_joint(), residual="torque"),
     "thesis joint, two shapes": lambda: _identify(
         _thesis(), jid.thesis_joint(), model="stribeck_general"
     ),
-    "thesis joint, separable": lambda: _identify(_thesis(), jid.thesis_joint(), search="separable"),
     "thesis joint, random": lambda: _identify(
         _thesis(),
         jid.thesis_joint(),
