@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import random
 import sys
 import time
 from pathlib import Path
@@ -30,6 +31,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--only", default="", metavar="TEXT", help="in the name of list or file")
     parser.add_argument("--python", action="store_true", help="Python alone: nothing is compiled")
     parser.add_argument("--again", action="store_true", help="also those whose verdict still holds")
+    parser.add_argument("--sample", type=int, metavar="N", help="N drawn of those killed earlier")
+    parser.add_argument("--seed", type=int, default=1, help="of the draw")
+    parser.add_argument("--quick", action="store_true", help="no slow tests; nothing is kept")
     parser.add_argument("--check", action="store_true", help="that each text is there, no trial")
     parser.add_argument("--verdicts", type=Path, default=VERDICTS, help="folder of what was found")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes at a time")
@@ -44,13 +48,18 @@ def _tried(options: argparse.Namespace) -> int:
     mutants = [each for each in everything if _chosen(each, options)]
     print(f"{len(everything)} mutants in the lists, {len(mutants)} chosen", flush=True)
     kept = Kept(options.verdicts, everything)
+    if options.sample:
+        killed = [each.mutant for each in kept.find(mutants) if each.killed]
+        mutants = random.Random(options.seed).sample(killed, options.sample)
+        print(f"{options.sample} of {len(killed)} drawn with seed {options.seed}", flush=True)
     if options.check:
         _page(kept, everything, options.output)
         return 0
     began = time.monotonic()
     folder = options.folder.resolve()
-    known = [] if options.again else kept.current(mutants)
-    tried = _trials(folder, everything, _others(mutants, known), kept, options.jobs)
+    known = [] if options.again or options.quick else kept.current(mutants)
+    chosen = _others(mutants, known)
+    tried = _trials(folder, everything, chosen, kept, options)
     minutes = (time.monotonic() - began) / 60.0
     verdicts = sorted([*known, *tried], key=lambda each: each.mutant.number)
     print(f"{page.summary(verdicts)}; {len(known)} of them earlier; {minutes:.1f} minutes")
@@ -69,7 +78,11 @@ def _page(kept: Kept, everything: list[Mutant], output: Path | None) -> None:
 
 
 def _trials(
-    folder: Path, everything: list[Mutant], mutants: list[Mutant], kept: Kept, jobs: int
+    folder: Path,
+    everything: list[Mutant],
+    mutants: list[Mutant],
+    kept: Kept,
+    options: argparse.Namespace,
 ) -> list[Verdict]:
     if not mutants:
         return []
@@ -78,10 +91,12 @@ def _trials(
         # All of them, so that another choice needs no compiler.
         print("building the core with all mutants in it", flush=True)
         inside = [each for each in everything if not each.is_python]
-        extension, core_check = tree.built_core(folder, inside, jobs)
-    packages = [tree.package(folder / f"package_{number}", extension) for number in range(jobs)]
-    trials = Trials(packages, core_check, folder / "logs")
-    return trials.all_of(mutants, _told, kept.add)
+        extension, core_check = tree.built_core(folder, inside, options.jobs)
+    packages = [
+        tree.package(folder / f"package_{number}", extension) for number in range(options.jobs)
+    ]
+    trials = Trials(packages, core_check, folder / "logs", options.quick)
+    return trials.all_of(mutants, _told, (lambda _: None) if options.quick else kept.add)
 
 
 def _others(mutants: list[Mutant], known: list[Verdict]) -> list[Mutant]:

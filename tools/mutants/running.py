@@ -79,11 +79,16 @@ class Trials:
         The program of the core's checks, with all mutants in it.
     logs : Path
         What each trial said.
+    quick : bool, default False
+        Without tests that are marked slow.
     """
 
-    def __init__(self, packages: Sequence[Path], core_check: Path | None, logs: Path) -> None:
+    def __init__(
+        self, packages: Sequence[Path], core_check: Path | None, logs: Path, quick: bool = False
+    ) -> None:
         self._free = list(packages)
         self._core_check = core_check
+        self._quick = quick
         self._logs = logs
         logs.mkdir(parents=True, exist_ok=True)
         os.environ |= {"OPENBLAS_NUM_THREADS": "1", "HYPOTHESIS_STORAGE_DIRECTORY": str(logs)}
@@ -123,7 +128,7 @@ class Trials:
         for task, code, seconds, log in self._each(unchanged):
             for kind, names in (("check", task.checks), ("test", task.tests)):
                 alone |= {(kind, name): seconds for name in names}
-            if code:
+            if code and not self._is_without_test(code):
                 wrong.append(f"{task.checks or task.tests}: {_said(code, log)}; {log}")
         if wrong:
             raise MutantError("\n".join(("without a mutant, this does not pass:", *wrong)))
@@ -144,6 +149,8 @@ class Trials:
         verdicts = []
         for task, code, seconds, log in self._each(tasks):
             assert task.mutant is not None
+            if self._is_without_test(code):
+                code = 0
             if code in (_NO_TEST, _HIDDEN):
                 raise MutantError(f"{task.mutant}: {_said(code, log)}")
             by = _said(code, log) if code else ""
@@ -155,6 +162,9 @@ class Trials:
             state = "killed" if code else "justified" if task.mutant.justified else "SURVIVED"
             told(f"{len(verdicts):4} of {len(tasks)} {state:9} {seconds:6.1f} s  {task.mutant}")
         return sorted(verdicts, key=lambda each: each.mutant.number)
+
+    def _is_without_test(self, code: int) -> bool:
+        return self._quick and code == _NO_TEST
 
     def _each(self, tasks: Iterable[_Task]) -> Iterator[tuple[_Task, int, float, Path]]:
         """Each task's exit code, seconds and log, as they end; 0 is passed, negative a signal."""
@@ -186,7 +196,7 @@ class Trials:
         began = time.monotonic()
         child = os.fork()
         if child == 0:
-            os._exit(_in_the_child(task, package, self._core_check, log))
+            os._exit(_in_the_child(task, package, self._core_check, log, self._quick))
         return _Running(task=task, child=child, package=package, log=log, began=began)
 
     def _end(self, ended: _Running, code: int) -> tuple[_Task, int, float, Path]:
@@ -213,7 +223,9 @@ def _change(mutant: Mutant, package: Path) -> None:
     os.utime(path, (1e9 + mutant.number, 1e9 + mutant.number))
 
 
-def _in_the_child(task: _Task, package: Path, core_check: Path | None, log: Path) -> int:
+def _in_the_child(
+    task: _Task, package: Path, core_check: Path | None, log: Path, quick: bool
+) -> int:
     try:
         os.setpgid(
             0, 0
@@ -227,13 +239,13 @@ def _in_the_child(task: _Task, package: Path, core_check: Path | None, log: Path
             assert core_check is not None
             if subprocess.run([core_check, part], check=False).returncode:
                 return 1
-        return _tested(task.tests, package) if task.tests else 0
+        return _tested(task.tests, package, quick) if task.tests else 0
     except BaseException as error:  # the parent's code must not go on here
         os.write(2, repr(error).encode())
         return 1
 
 
-def _tested(tests: tuple[str, ...], package: Path) -> int:
+def _tested(tests: tuple[str, ...], package: Path, quick: bool) -> int:
     import pytest
 
     os.chdir(REPOSITORY)
@@ -246,6 +258,8 @@ def _tested(tests: tuple[str, ...], package: Path) -> int:
     if package not in Path(jointid.__file__).parents:
         return _HIDDEN
     options = ["-x", "-q", "--no-header", "--tb=short", "-p", "no:cacheprovider", "-p", "no:xdist"]
+    if quick:
+        options += ["-m", "not slow"]
     return int(pytest.main([*options, *tests]))
 
 
