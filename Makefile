@@ -112,23 +112,11 @@ study: .venv/.installed .venv/.bench-tools  ## accuracy over many seeds; by hand
 	@$(BIN)/python benchmarks/causes_study.py --joints 30 --seed 7001 --size .1 --output docs/causes.md --append
 	@$(BIN)/python benchmarks/robot_study.py --hour --output docs/robot_accuracy.md
 
-bench: .venv/.installed .venv/.bench-tools build/oldest/.installed  ## speed against other libraries (20 min); writes docs/performance.md
+bench: .venv/.installed .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
-	@$(BIN)/python benchmarks/latency.py --oldest build/oldest/bin/python --output docs/latency.md
+	@$(BIN)/python benchmarks/latency.py --output docs/latency.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/projections.py --output docs/projection.md
-
-# Version 0.1.0 as it was when limits in milliseconds were set: they are for a machine on which it takes 7.1 ms.
-OLDEST := 6800cc5c31f4fcec87d93d620137ff07dbc62481
-build/oldest/.installed: .venv/.created
-	@echo "Building version 0.1.0, for limits that are milliseconds"
-	@git cat-file -e $(OLDEST) || { echo "make bench: it builds version 0.1.0 from the history, which a shallow clone or an sdist lacks" >&2; exit 1; }
-	@rm -rf build/oldest build/oldest-sources
-	@mkdir -p build/oldest-sources
-	@git archive $(OLDEST) | tar --extract --directory build/oldest-sources
-	@$(BIN)/python -m venv build/oldest
-	@build/oldest/bin/python -m pip install --quiet --no-input --disable-pip-version-check ./build/oldest-sources
-	@touch $@
 
 notebooks: .venv/.installed .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)

@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import instructions
 from recordings import WELL_EXCITED
 
 import jointid as jid
@@ -70,21 +69,6 @@ for file in (path, path.with_suffix(".csv.gz")):
 print(json.dumps(found))
 """
 
-_OLDEST_CALL = """
-import sys, time
-import jointid
-recording, joint = jointid.load(sys.argv[1]), jointid.thesis_joint()
-if hasattr(recording, "ranges"):
-    sys.exit("this is not version 0.1.0 as it was when the limits were set")
-jointid.identify(recording, joint)
-spent = []
-for _ in range(20):
-    began = time.process_time()
-    jointid.identify(recording, joint)
-    spent.append(time.process_time() - began)
-print(min(spent))
-"""
-
 _NOTES = """
 - Bytecode is compiled before, as pip does it. `python -c pass` includes what the environment's own `.pth` files take.
 - `import jointid` imports no room and not even numpy: they come with the first name that needs them.
@@ -92,55 +76,40 @@ _NOTES = """
   the quickest of the 20 that follow.
 - pandas reads the numbers; `jid.load` also finds out which column is what in which unit, and checks the signals.
 - `run.csv` is `examples/data/well_excited.csv.gz`: 12,000 rows of five columns, 0.6 MB of text.
-- Limits that are milliseconds are for a machine on which a default `identify()` of version 0.1.0 takes 7.1 ms: they are
-  a ratio to that call, which is timed in turn with the others. *Five*: the two, both with free gravity, and
-  `stribeck_general`; *wide bounds*: a velocity from 1e-5 to 10 rad/s, an exponent from 0.1 to 8.
+- *Five*: the two, both with free gravity, and `stribeck_general`; *wide bounds*: a velocity from 1e-5 to 10 rad/s, an
+  exponent from 0.1 to 8.
 - Neither SciPy nor matplotlib is imported by any of these but pandas."""
-
-_COUNTED = """
-## Instructions
-
-By `benchmarks/instructions.py`, of a second call, under callgrind with AVX2: what does not depend on what else the
-machine does. Version 0.1.0 took 67.8 million for a default `identify()`, with fewer checks. Limits that are
-milliseconds are those of a machine on which that took 7.1 ms.
-"""
-
-
-_OLDEST = "`identify()` of version 0.1.0"
-_OLDEST_TIME = 7.1
-"""Milliseconds that it takes on the machine for which limits were set."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """One line of the table: a time, what it is compared with, and the largest ratio that is allowed."""
+    """One line of the table: a time, and what it is compared with."""
 
     what: str
     against: str = "`import numpy`"
-    limit: float | None = None
 
 
 _ROWS = (
-    Row(what="`jointid --help`", against="`python -c pass`", limit=4.0),
-    Row(what="`import jointid`", against="`import numpy`", limit=1.3),
+    Row(what="`jointid --help`", against="`python -c pass`"),
+    Row(what="`import jointid`", against="`import numpy`"),
     Row(what="`from jointid import identify, load`"),
-    Row(what="`jointid identify run.csv`", limit=2.2),
+    Row(what="`jointid identify run.csv`"),
     Row(what="`jointid identify run.csv --report page.html`"),
-    Row(what="`jointid demo`", against=_OLDEST, limit=250 / _OLDEST_TIME),
-    Row(what="first `identify()`", against="warm `identify()`", limit=3.0),
-    Row(what="`jid.load` of run.csv", against="`pandas.read_csv` of run.csv", limit=1.0),
+    Row(what="`jointid demo`", against="warm `identify()`"),
+    Row(what="first `identify()`", against="warm `identify()`"),
+    Row(what="`jid.load` of run.csv", against="`pandas.read_csv` of run.csv"),
     Row(what="`jid.load` of run.csv.gz", against="`pandas.read_csv` of run.csv.gz"),
-    Row(what="HTML report", against="warm `identify()`", limit=10.0),
+    Row(what="HTML report", against="warm `identify()`"),
     Row(what="first HTML report", against="warm `identify()`"),
-    Row(what="`to_json`", against=_OLDEST, limit=3 / _OLDEST_TIME),
+    Row(what="`to_json`", against="warm `identify()`"),
     Row(what="`Estimate.from_json`"),
-    Row(what="`identify` with `auto`", against=_OLDEST, limit=25 / _OLDEST_TIME),
-    Row(what="`bootstrap(1000)`", against=_OLDEST, limit=150 / _OLDEST_TIME),
-    Row(what="`compare_models` of two", against=_OLDEST, limit=35 / _OLDEST_TIME),
-    Row(what="`stribeck_general`", against=_OLDEST, limit=20 / _OLDEST_TIME),
-    Row(what="`stribeck_general`, wide bounds", against=_OLDEST, limit=60 / _OLDEST_TIME),
-    Row(what="`stribeck_general`, exponent 2", against="warm `identify()`", limit=1.2),
-    Row(what="`compare_models` of five", against=_OLDEST, limit=250 / _OLDEST_TIME),
+    Row(what="`identify` with `auto`", against="warm `identify()`"),
+    Row(what="`bootstrap(1000)`", against="warm `identify()`"),
+    Row(what="`compare_models` of two", against="warm `identify()`"),
+    Row(what="`stribeck_general`", against="warm `identify()`"),
+    Row(what="`stribeck_general`, wide bounds", against="warm `identify()`"),
+    Row(what="`stribeck_general`, exponent 2", against="warm `identify()`"),
+    Row(what="`compare_models` of five", against="warm `identify()`"),
 )
 
 
@@ -160,8 +129,8 @@ def _output(command: list[str], environment: Mapping[str, str]) -> str:
     return done.stdout
 
 
-def measure(runs: int, oldest: Path | None) -> dict[str, float]:
-    """CPU seconds by name; those of version 0.1.0 by the Python `oldest`, which has it installed."""
+def measure(runs: int) -> dict[str, float]:
+    """Return CPU seconds by name."""
     with tempfile.TemporaryDirectory() as folder:
         environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
         environment |= {"PYTHONPYCACHEPREFIX": folder, "OPENBLAS_NUM_THREADS": "1"}
@@ -194,12 +163,8 @@ def measure(runs: int, oldest: Path | None) -> dict[str, float]:
                 seconds = seconds_of(command, environment)
                 if run:  # the first one compiles the bytecode
                     found[name] = min(found[name], seconds)
-        calls = []
-        for _ in range(max(1, runs // 4) + 1):
-            calls.append(json.loads(_output([python, "-c", _CALLS, str(path)], environment)))
-            if oldest is not None:
-                command = [str(oldest), "-c", _OLDEST_CALL, str(path)]
-                calls[-1][_OLDEST] = float(_output(command, environment))
+        command = [python, "-c", _CALLS, str(path)]
+        calls = [json.loads(_output(command, environment)) for _ in range(runs // 4 + 2)]
         del calls[0]  # it compiled the bytecode
     for others in [each.pop("others") for each in calls]:
         if others:
@@ -207,29 +172,22 @@ def measure(runs: int, oldest: Path | None) -> dict[str, float]:
     return found | {name: min(each[name] for each in calls) for name in calls[0]}
 
 
-def main(runs: int, output: Path | None, oldest: Path | None) -> None:
+def main(runs: int, output: Path | None) -> None:
     """Measure, and print the table."""
-    seconds = measure(runs, oldest)
+    seconds = measure(runs)
     lines = [
         "# What a user waits for\n",
-        f"Written by `python benchmarks/latency.py --runs {runs} --oldest PYTHON --output docs/latency.md`",
+        f"Written by `python benchmarks/latency.py --runs {runs} --output docs/latency.md`",
         "(part of `make bench`); do not edit. CPU time of the quickest run, all programs in turn on one machine; the",
         "ratios are what holds.\n",
-        "| what | CPU [ms] | against | CPU [ms] | ratio | required | holds |",
-        "|---|---|---|---|---|---|---|",
+        "| what | CPU [ms] | against | CPU [ms] | ratio |",
+        "|---|---|---|---|---|",
     ]
     for row in _ROWS:
-        if row.against not in seconds:
-            lines.append(
-                f"| {row.what} | {1e3 * seconds[row.what]:.3g} | {row.against} |  |  |  |  |"
-            )
-            continue
-        ratio = seconds[row.what] / seconds[row.against]
-        limit = "" if row.limit is None else f"≤ {row.limit:.3g}"
-        holds = "" if row.limit is None else "yes" if ratio <= row.limit else "**no**"
-        times = f"{1e3 * seconds[row.what]:.3g} | {row.against} | {1e3 * seconds[row.against]:.3g}"
-        lines.append(f"| {row.what} | {times} | {ratio:.2f} | {limit} | {holds} |")
-    page = "\n".join([*lines, _NOTES, _COUNTED, instructions.table()])
+        own, other = seconds[row.what], seconds[row.against]
+        times = f"{1e3 * own:.3g} | {row.against} | {1e3 * other:.3g}"
+        lines.append(f"| {row.what} | {times} | {own / other:.2f} |")
+    page = "\n".join([*lines, _NOTES])
     print(page)
     if output is not None:
         write_whole(output, page.encode())
@@ -239,10 +197,5 @@ if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--runs", type=int, default=15, help="of each program (default 15)")
     arguments.add_argument("--output", type=Path, help="write the page here, too")
-    arguments.add_argument(
-        "--oldest",
-        type=Path,
-        help="Python with version 0.1.0, for the limits that are milliseconds",
-    )
     options = arguments.parse_args()
-    main(options.runs, options.output, options.oldest)
+    main(options.runs, options.output)
