@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 glibc=2.17
 zig=0.17.1  # pinned: 0.14 lacks a symbol of the undefined-behaviour sanitizer; bits may change with the compiler
-flags=-g0  # otherwise zig writes what a debugger needs, twenty times the code
+flags="-g0 -DJOINTID_ZIG"  # without -g0 zig writes what a debugger needs, twenty times the code
 machine="$(uname -m)"
 root="$PWD/build/wheels"
 excited="$PWD/examples/data/well_excited.csv.gz"  # not in the wheel
@@ -28,7 +28,11 @@ smoke() {
     jointid demo --output demo >demo.txt
     python - "$excited" <<'USE'
 import sys
+from pathlib import Path
 import jointid as jid
+from jointid import _core
+has = " avx2 " in Path("/proc/cpuinfo").read_text()
+assert getattr(_core, "__avx2__", False) == has, "the processor's vectors are not found"
 found = jid.identify(jid.load(sys.argv[1]), jid.thesis_joint())
 true = {"coulomb": 25.0, "viscous": 20.0, "sensor_gain": 2.4, "sensor_offset": 15.0}
 for name, value in true.items():

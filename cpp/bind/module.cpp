@@ -3,7 +3,7 @@
 PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   m.doc() = "The compiled core of jointid; use it through the package jointid.";
   m.attr("__version__") = JOINTID_VERSION;
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(JOINTID_ZIG)
   // What a clone is picked by when the extension is loaded: tools/wheels.sh looks.
   __builtin_cpu_init();
   m.attr("__avx2__") = __builtin_cpu_supports("avx2") != 0;
