@@ -1,7 +1,7 @@
 """What tests cost, where `-m "not slow"` chooses the quick ones: an unmarked test that is slow is an error there."""
 
 import os
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from itertools import chain
 from typing import Any
 
@@ -11,6 +11,16 @@ QUICK = "not slow"
 SHOWN = 2.0  # s of CPU
 ALLOWED = 6.0
 _PROPERTY = "cpu_seconds"
+
+
+def slow_but(cases: Iterable[Any], *quick: str) -> list[Any]:
+    """Return the cases of a parametrised test, marked slow but those of these names."""
+    return [
+        each
+        if getattr(each, "__name__", each) in quick
+        else pytest.param(each, marks=pytest.mark.slow)
+        for each in cases
+    ]
 
 
 def cpu_seconds() -> float:

@@ -73,11 +73,14 @@ def test_every_reader_reads_its_example(name: str, folder: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore:.*(overflow|invalid value|divide by zero):RuntimeWarning")
+@pytest.mark.parametrize("every", [8 * _EVERY, pytest.param(_EVERY, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_any_value_anywhere_is_one_sentence_or_harmless(name: str, folder: Path) -> None:
+def test_any_value_anywhere_is_one_sentence_or_harmless(
+    name: str, every: int, folder: Path
+) -> None:
     read = example(name)
     wrong = []
-    for line, place, value in read.changes(every=_EVERY):
+    for line, place, value in read.changes(every=every):
         said = fault(read, written(read, folder, read.text(line, place, value)))
         if said:
             wrong.append(f"line {line}, {place} = {value[:40]}: {said}")

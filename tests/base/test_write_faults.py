@@ -13,6 +13,7 @@ from pathlib import Path
 from threading import Timer
 
 import pytest
+from lanes import slow_but
 
 import jointid as jid
 
@@ -158,7 +159,7 @@ def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Driver]:
     running.close()
 
 
-@pytest.mark.parametrize("name", _SCENARIOS)
+@pytest.mark.parametrize("name", slow_but(_SCENARIOS, "recording", "joint", "certificate"))
 def test_every_fault_at_every_call(name: str, driver: Driver) -> None:
     few, most, least = _SCENARIOS[name]
     if few == _NEVER and not _ALL:

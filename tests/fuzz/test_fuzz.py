@@ -16,10 +16,11 @@ _START = int(os.environ.get("JOINTID_FUZZ_SEED") or 0)
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("cases", [20, pytest.param(_CASES, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", tuple(readers()))
-def test_damage_is_one_sentence_or_harmless(name: str) -> None:
-    wrong = faults(name, _START, _CASES)
-    assert not wrong, f"{len(wrong)} of {_CASES}\n" + "\n".join(wrong[:10])
+def test_damage_is_one_sentence_or_harmless(name: str, cases: int) -> None:
+    wrong = faults(name, _START, cases)
+    assert not wrong, f"{len(wrong)} of {cases}\n" + "\n".join(wrong[:10])
 
 
 def test_a_reader_that_hangs_is_told_although_it_makes_an_error_of_each_exception(

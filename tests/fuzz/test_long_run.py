@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from fuzz.__main__ import _Log, _tried
 
 _TESTS = Path(__file__).resolve().parents[1]
@@ -23,6 +25,7 @@ def run(log: Path, cases: int) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_where_its_log_ends(tmp_path: Path) -> None:
     log = tmp_path / "fuzz.jsonl"
     assert "candump: 5 cases, 0 failures" in run(log, 5)

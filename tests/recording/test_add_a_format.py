@@ -54,6 +54,7 @@ def run(package: Path, *command: str) -> str:
     return done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_one_file_and_one_line_add_a_format(tmp_path: Path) -> None:
     package = tmp_path / "jointid"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))

@@ -184,6 +184,7 @@ def test_a_text_array_counts_its_cells(tmp_path: Path, monkeypatch: pytest.Monke
     assert "unpacked it is larger than" in message
 
 
+@pytest.mark.slow
 def test_a_struct_of_many_elements_is_left_out(tmp_path: Path) -> None:
     io = pytest.importorskip("scipy.io")
     path = tmp_path / "a.mat"

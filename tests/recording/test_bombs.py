@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from lanes import slow_but
 from measured_reading import on_linux, refusal
 
 import jointid as jid
@@ -150,7 +151,7 @@ BOMBS = {
 
 
 @on_linux
-@pytest.mark.parametrize("ending", BOMBS)
+@pytest.mark.parametrize("ending", slow_but(BOMBS, ".csv.gz", ".h5"))
 def test_a_bomb_is_refused_in_little_memory(ending: str, tmp_path: Path) -> None:
     path = tmp_path / f"bomb{ending}"
     BOMBS[ending](path)
@@ -171,7 +172,7 @@ TEXTS = {  # just below what may be unpacked, or just below what may become text
 
 
 @on_linux
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("name", slow_but(TEXTS, "short lines"))
 def test_a_packed_text_is_cut_in_little_memory(name: str, tmp_path: Path) -> None:
     line, count, expected = TEXTS[name]
     path = tmp_path / "a.csv.gz"

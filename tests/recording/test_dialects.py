@@ -229,9 +229,9 @@ def test_decimal_commas_keep_every_bit(
     assert isinstance(again, Recording)
 
 
-def test_a_million_rows_load_in_seconds(tmp_path: Path) -> None:
-    """Rows are numbers in bulk, never one by one: 60 s of the processor are far above what it takes, 1 to 4 s."""
-    count = 1_000_000
+@pytest.mark.parametrize("count", [100_000, pytest.param(1_000_000, marks=pytest.mark.slow)])
+def test_a_million_rows_load_in_seconds(count: int, tmp_path: Path) -> None:
+    """Rows are numbers in bulk, never one by one: 60 µs of the processor each are far above what it takes, 1 to 4."""
     row = "{:.3f},0.12345,-1.5,2.25\n"
     text = GOOD[0] + "\n" + "".join(map(row.format, np.arange(count) * 1e-3))
     for name, content in (("a", text), ("b", text.replace(",", ";").replace(".", ","))):
@@ -239,7 +239,7 @@ def test_a_million_rows_load_in_seconds(tmp_path: Path) -> None:
         path.write_text(content)
         begin = time.process_time()
         assert len(load(path)) == count
-        assert time.process_time() - begin < 60.0
+        assert time.process_time() - begin < 60e-6 * count
 
 
 def test_gzip_of_a_foreign_dialect(tmp_path: Path) -> None:

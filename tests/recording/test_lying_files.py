@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from lanes import slow_but
 from measured_reading import on_linux, refusal
 
 import jointid as jid
@@ -138,7 +139,7 @@ LIES: tuple[Callable[[Path], str], ...] = (
 
 
 @on_linux
-@pytest.mark.parametrize("lie", LIES, ids=lambda lie: lie.__name__)
+@pytest.mark.parametrize("lie", slow_but(LIES, "parquet_rows"), ids=lambda lie: lie.__name__)
 def test_a_file_that_lies_is_refused_in_little_memory(
     lie: Callable[[Path], str], tmp_path: Path
 ) -> None:

@@ -281,7 +281,9 @@ def test_dynamic_joint_states_in_json(tmp_path: Path) -> None:
 # --- Long logs ---
 
 
-@pytest.mark.parametrize(("joints", "most"), [(1, 3.0), (7, 2.5)])
+@pytest.mark.parametrize(
+    ("joints", "most"), [pytest.param(1, 3.0, marks=pytest.mark.slow), (7, 2.5)]
+)
 def test_a_long_log_takes_few_times_the_memory_of_its_arrays(
     joints: int, most: float, repo: Path, tmp_path: Path
 ) -> None:
