@@ -24,7 +24,7 @@ INERTIA = 2.472e-4 * 101.0**2  # [kg·m²], reflected
 LINK_INERTIA = 3.0 * 0.5**2 / 3.0  # [kg·m²]
 GRAVITY = 3.0 * 9.817 * 0.25  # [N·m]
 PERIOD = 1e-3  # [s]
-FINER = 10  # integration steps a sample
+FINER = 4  # integration steps a sample
 
 
 @dataclass(frozen=True)

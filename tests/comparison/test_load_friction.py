@@ -39,7 +39,7 @@ def runs() -> list[jid.Recording]:
         Bench(motion=motion, law=weighed, plant=bare, log=Log(sensor=0.0, torque_noise=0.2)),
         *(Bench(motion=motion, law=sensed, plant=p, log=log) for p, log in OTHERS.values()),
     ]
-    return simulate(Bench.stack(benches), duration=9.0, seed=1)
+    return simulate(Bench.stack(benches), duration=9.0, seed=1, finer=4)
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def small() -> list[jid.Recording]:
     motion, log = thesis(np.radians([60.0])), Log(sensor=0.0, torque_noise=0.2)
     plants = (replace(plant, load_friction=0.05), replace(plant, viscous_drift=-0.3))
     benches = [Bench(motion=motion, law=law, plant=each, log=log) for each in plants]
-    return simulate(Bench.stack(benches), duration=9.0, seed=5)
+    return simulate(Bench.stack(benches), duration=9.0, seed=5, finer=4)
 
 
 @pytest.mark.parametrize(

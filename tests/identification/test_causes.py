@@ -35,8 +35,12 @@ _BROKEN: Mapping[str, tuple[dict[str, float], set[str]]] = {
     "weak bump": ({"bump": 2.0, "bump_time": 4.0, "bump_width": 0.3}, set()),
     "torque constant": ({"torque_scale": 1.03}, {"wrong_scale"}),
     "other axis": ({"coupling": 4.0}, {"other_signal"}),
+    "harmonic and bump": (
+        {"harmonic_torque": 1.5, "bump": 6.0, "bump_time": 4.0, "bump_width": 0.3},
+        {"harmonic"},
+    ),
 }
-_OF_THEIR_OWN = ("weak bump", "other axis")
+_OF_THEIR_OWN = ("weak bump", "other axis", "harmonic and bump")
 _LOGS = {"filtered velocity": Log(velocity_cutoff=50.0), "loud sensor": Log(sensor_noise=5.0)}
 
 
@@ -48,7 +52,7 @@ def runs() -> dict[str, jid.Recording]:
     plants += [(Plant(), log) for log in _LOGS.values()]
     motion = thesis(np.radians([60.0]))
     benches = [Bench(motion=motion, law=law, plant=plant, log=log) for plant, log in plants]
-    found = simulate(Bench.stack(benches), duration=9.0, seed=3)
+    found = simulate(Bench.stack(benches), duration=9.0, seed=3, finer=4)
     return dict(zip((*_BROKEN, *_LOGS), found, strict=True))
 
 
@@ -208,15 +212,9 @@ def test_an_event_between_the_stretches_of_a_long_recording_is_found(
 
 @pytest.mark.parametrize("stretch", [64, 128])
 def test_an_event_beside_a_cause_of_a_long_recording_is_found(
-    monkeypatch: pytest.MonkeyPatch, stretch: int
+    estimates: dict[str, jid.Estimate], monkeypatch: pytest.MonkeyPatch, stretch: int
 ) -> None:
-    bench = Bench(
-        motion=thesis(np.radians([60.0])),
-        law=Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0),
-        plant=Plant(harmonic_torque=1.5, bump=6.0, bump_time=4.0, bump_width=0.3),
-    )
-    (run,) = simulate(bench, duration=9.0, seed=3)
-    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    estimate = estimates["harmonic and bump"]
     every = estimate.causes()
     _in_stretches(monkeypatch, stretch)
     some = estimate.causes()
@@ -411,7 +409,7 @@ def test_a_load_of_gravity_and_a_part_of_the_inertia_is_named() -> None:
     law = Law(inertia=3.0, stiffness=40.0, on_reference=1.0, gravity=7.0)
     plant = Plant(inertia=3.0, link_inertia=0.45, gravity=6.0, load_friction=0.15)
     log = Log(sensor=0.0, torque_noise=0.2)
-    (run,) = simulate(Bench(motion=motion, law=law, plant=plant, log=log), duration=12.0, seed=2)
+    (run,) = simulate(Bench(motion=motion, law=law, plant=plant, log=log), duration=12.0, seed=2, finer=4)
     joint = jid.Joint(gear_ratio=101.0, model=jid.Model.parse("stribeck:gravity=free"))
     estimate = jid.identify(run, joint, search="separable")
     assert _named(estimate)[:1] == ["load_friction"]

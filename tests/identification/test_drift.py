@@ -26,7 +26,7 @@ def found() -> list[jid.Estimate]:
         log=Log(),
     )
     joint = jid.Joint(inertia=1.8, sensor=True, model=jid.Model("stribeck"))
-    runs = simulate(bench, duration=9.0, seed=1)
+    runs = simulate(bench, duration=9.0, seed=1, finer=4)
     return [jid.identify(run, joint, search="separable") for run in runs]
 
 
@@ -93,7 +93,7 @@ def test_causes_are_those_of_the_data_that_were_fitted() -> None:
         law=Law(inertia=2.5, stiffness=60.0, on_reference=1.0, coulomb=20.0, feedback=2.0),
         log=Log(),
     )
-    (run,) = simulate(bench, duration=9.0, seed=1)
+    (run,) = simulate(bench, duration=9.0, seed=1, finer=4)
     joint = jid.Joint(inertia=2.5, sensor=True, model=jid.Model("stribeck"))
     estimate = jid.identify(run, joint, search="separable")
     assert estimate.settings["drift_removed"] == "viscous"

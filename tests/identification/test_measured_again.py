@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plants import Bench, Law, Log, Plant, simulate, thesis
+from plants import Bench, Law, Log, simulate, thesis
 
 import jointid as jid
 from jointid.estimate.student import limited_half_width
@@ -61,34 +61,39 @@ def test_what_two_pairs_of_draws_do_not_share_is_chance() -> None:
     assert _effect([[2.0], [2.0]], chance=5.0).systematic == pytest.approx([0.0])
 
 
-def _joint(counts: float) -> jid.Recording:
+@pytest.fixture(scope="module")
+def runs() -> list[jid.Recording]:
+    """A joint with an exact velocity, and with counts of an encoder alone."""
     bench = Bench(
-        motion=thesis(np.radians([60.0])),
+        motion=thesis(np.radians([60.0, 60.0])),
         law=Law(inertia=2.8, stiffness=40.0, coulomb=20.0, gravity=7.0),
-        plant=Plant(),
-        log=Log(counts=counts, velocity=0.0 if counts else 1.0, sensor=0.0, torque_noise=0.2),
+        log=Log(
+            counts=np.array([0.0, 202e3]),
+            velocity=np.array([1.0, 0.0]),
+            sensor=0.0,
+            torque_noise=0.2,
+        ),
     )
-    return simulate(bench, duration=6.0, seed=3)[0]
+    return simulate(bench, duration=6.0, seed=3, finer=4)
 
 
-def test_draws_come_in_opposite_pairs() -> None:
+def test_draws_come_in_opposite_pairs(runs: list[jid.Recording]) -> None:
     first, second = (noise_unit(np.random.default_rng(1), 50, draw) for draw in (2, 3))
     np.testing.assert_array_equal(first, -second)
-    exact = _joint(0.0)
+    exact, coarse = runs
     rng = np.random.default_rng(0)
     noisy = exact.with_velocity(exact.velocity + 0.01 * rng.standard_normal(len(exact)))
     pair = [measured_again(noisy, draw, 0).velocity for draw in range(4)]
     np.testing.assert_allclose(pair[0] + pair[1], 2.0 * noisy.velocity, atol=1e-12)
     assert np.std(pair[0] - pair[2]) > 0.005
-    coarse = _joint(202e3)
     draws = np.array([measured_again(coarse, draw, 0).velocity for draw in range(8)])
     apart = draws - draws.mean(axis=0)
     opposite = [np.corrcoef(apart[i], apart[i + 1])[0, 1] for i in (0, 2, 4, 6)]
     assert max(opposite) < -0.2
 
 
-def test_a_shift_of_one_sign_is_no_chance_and_one_of_many_is() -> None:
-    run = _joint(0.0)
+def test_a_shift_of_one_sign_is_no_chance_and_one_of_many_is(runs: list[jid.Recording]) -> None:
+    run = runs[0]
     joint = jid.Joint(sensor=False, model=jid.Model.parse("coulomb_viscous:gravity=free"))
     prepared = prepare(run, joint)
     problem, penalty = prepared.problem, prepared.penalty

@@ -28,7 +28,7 @@ def estimates() -> dict[str, jid.Estimate]:
     """One joint, and what goes wrong."""
     motion = thesis(np.radians([60.0]))
     benches = [Bench(motion=motion, law=_LAW, plant=p, log=log) for p, log in _CASES.values()]
-    runs = simulate(Bench.stack(benches), duration=9.0, seed=3)
+    runs = simulate(Bench.stack(benches), duration=9.0, seed=3, finer=4)
     joint = jid.thesis_joint()
     return {
         name: jid.identify(run, joint, search="separable")

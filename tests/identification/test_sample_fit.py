@@ -24,7 +24,7 @@ def recordings(**fields: Any) -> list[jid.Recording]:
         law=Law(stiffness=60.0, on_reference=fields.pop("on_reference", 1.0)),
         log=Log(**{"sensor_noise": NOISE} | fields),
     )
-    return simulate(Bench.stack([bench]), duration=12.0, seed=21)
+    return simulate(Bench.stack([bench]), duration=12.0, seed=21, finer=4)
 
 
 def with_sensor(recording: jid.Recording, sensor: np.ndarray) -> jid.Recording:

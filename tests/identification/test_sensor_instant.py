@@ -26,7 +26,7 @@ def runs(noise: float) -> list[jid.Recording]:
         ),
         log=Log(sensor_noise=noise),
     )
-    return simulate(bench, duration=5.0, seed=3)
+    return simulate(bench, duration=5.0, seed=3, finer=4)
 
 
 def of_middle(run: jid.Recording, share: float = 0.5) -> jid.Recording:

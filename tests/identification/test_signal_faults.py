@@ -1,5 +1,6 @@
 """Faults of signals that are named for what they are: coarse velocity, no motion, wrong stamps, one wild sample."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -180,6 +181,7 @@ def test_one_wild_sample_is_told_as_one(well: jid.Recording) -> None:
         jid.identify(wrong)
 
 
+@cache
 def compensated(seed: int) -> jid.Recording:
     """A clean sensorless run whose controller compensates friction by the sign of the velocity: it chatters."""
     rng = np.random.default_rng(seed)
