@@ -129,7 +129,7 @@ def simulated(folder: Path) -> dict[str, Case]:
     benches = [
         _bench(DEFECTS[name.partition(": ")[2]], name.startswith("sensor")) for name in chosen
     ]
-    recordings = simulate(Bench.stack(benches), duration=DURATION, seed=11, finer=4)
+    recordings = simulate(Bench.stack(benches), duration=DURATION, seed=11, finer=2)
     return {
         name: _case(name, recording, folder / f"{number}.npz")
         for number, (name, recording) in enumerate(zip(chosen, recordings, strict=True))

@@ -52,7 +52,7 @@ def runs() -> dict[str, jid.Recording]:
     plants += [(Plant(), log) for log in _LOGS.values()]
     motion = thesis(np.radians([60.0]))
     benches = [Bench(motion=motion, law=law, plant=plant, log=log) for plant, log in plants]
-    found = simulate(Bench.stack(benches), duration=9.0, seed=3, finer=4)
+    found = simulate(Bench.stack(benches), duration=9.0, seed=3, finer=2)
     return dict(zip((*_BROKEN, *_LOGS), found, strict=True))
 
 
@@ -409,7 +409,8 @@ def test_a_load_of_gravity_and_a_part_of_the_inertia_is_named() -> None:
     law = Law(inertia=3.0, stiffness=40.0, on_reference=1.0, gravity=7.0)
     plant = Plant(inertia=3.0, link_inertia=0.45, gravity=6.0, load_friction=0.15)
     log = Log(sensor=0.0, torque_noise=0.2)
-    (run,) = simulate(Bench(motion=motion, law=law, plant=plant, log=log), duration=12.0, seed=2, finer=4)
+    bench = Bench(motion=motion, law=law, plant=plant, log=log)
+    (run,) = simulate(bench, duration=12.0, seed=2, finer=2)
     joint = jid.Joint(gear_ratio=101.0, model=jid.Model.parse("stribeck:gravity=free"))
     estimate = jid.identify(run, joint, search="separable")
     assert _named(estimate)[:1] == ["load_friction"]

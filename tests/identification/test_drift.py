@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plants import Bench, Law, Log, Plant, simulate, thesis
+from plants import Bench, Law, Plant, simulate, thesis
 
 import jointid as jid
 from jointid.identification.drift import may_drift
@@ -16,18 +16,25 @@ DRIFTS = np.array([-0.3, -0.2, 0.0])
 
 
 @pytest.fixture(scope="module")
-def found() -> list[jid.Estimate]:
-    """Estimates of a joint whose viscous friction drifts by so much, in twelve seconds."""
+def runs() -> list[jid.Recording]:
+    """Joints whose viscous friction drifts by so much, and one that another axis moves, too."""
     count = len(DRIFTS)
-    bench = Bench(
-        motion=thesis(np.full(count, np.radians(60.0)), np.full(count, 3.0)),
-        plant=Plant(inertia=1.8, link_inertia=0.2, gravity=5.0, viscous_drift=DRIFTS),
-        law=Law(inertia=1.8, stiffness=60.0, on_reference=1.0, coulomb=20.0, feedback=2.0),
-        log=Log(),
+    plant = Plant(inertia=1.8, link_inertia=0.2, gravity=5.0, viscous_drift=DRIFTS)
+    law = Law(inertia=1.8, stiffness=60.0, on_reference=1.0, coulomb=20.0, feedback=2.0)
+    drifting = Bench(motion=thesis(np.full(count, np.radians(60.0))), plant=plant, law=law)
+    coupled = Bench(
+        motion=thesis(np.radians([60.0])),
+        plant=Plant(viscous_drift=-0.3, coupling=1.5, coupling_rate=5.0),
+        law=replace(law, inertia=2.5),
     )
+    return simulate(Bench.stack([drifting, coupled]), duration=9.0, seed=1, finer=3)
+
+
+@pytest.fixture(scope="module")
+def found(runs: list[jid.Recording]) -> list[jid.Estimate]:
+    """Estimates of those that drift."""
     joint = jid.Joint(inertia=1.8, sensor=True, model=jid.Model("stribeck"))
-    runs = simulate(bench, duration=9.0, seed=1, finer=4)
-    return [jid.identify(run, joint, search="separable") for run in runs]
+    return [jid.identify(run, joint, search="separable") for run in runs[: len(DRIFTS)]]
 
 
 def test_a_drift_does_not_move_what_is_steady(found: list[jid.Estimate]) -> None:
@@ -85,15 +92,8 @@ def test_what_is_asked_later_knows_of_the_drift(found: list[jid.Estimate]) -> No
     assert pickle.loads(pickle.dumps(estimate)).findings == estimate.findings
 
 
-def test_causes_are_those_of_the_data_that_were_fitted() -> None:
-    count = 1
-    bench = Bench(
-        motion=thesis(np.full(count, np.radians(60.0)), np.full(count, 3.0)),
-        plant=Plant(viscous_drift=-0.3, coupling=1.5, coupling_rate=5.0),
-        law=Law(inertia=2.5, stiffness=60.0, on_reference=1.0, coulomb=20.0, feedback=2.0),
-        log=Log(),
-    )
-    (run,) = simulate(bench, duration=9.0, seed=1, finer=4)
+def test_causes_are_those_of_the_data_that_were_fitted(runs: list[jid.Recording]) -> None:
+    run = runs[-1]
     joint = jid.Joint(inertia=2.5, sensor=True, model=jid.Model("stribeck"))
     estimate = jid.identify(run, joint, search="separable")
     assert estimate.settings["drift_removed"] == "viscous"

@@ -29,7 +29,7 @@ def runs() -> list[jid.Recording]:
         ),
         log=Log(every=4.0, gain=3.0, offset=10.0, sensor_noise=0.2),
     )
-    return simulate(bench, duration=12.0, seed=11, finer=4)
+    return simulate(bench, duration=12.0, seed=11, finer=3)
 
 
 def instants(recordings: Sequence[jid.Recording]) -> list[SensorInstant]:

@@ -16,6 +16,7 @@ from jointid.hardware.session.interruptions import Interruptions
 CHILD = Path(__file__).parents[1] / "interrupted_session.py"
 ZERO, OFF = "5443008000000000", "4d4f000000000000"
 PERIOD = 2e-3
+PHASES = ("check", "move", "settle", "run", "end")
 
 
 def interrupted(phase: str, number: signal.Signals) -> dict[str, Any]:
@@ -37,8 +38,15 @@ def interrupted(phase: str, number: signal.Signals) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("phase", ["check", "move", "settle", "run", "end"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda n: n.name)
+@pytest.mark.parametrize(
+    ("phase", "number"),
+    [(phase, signal.SIGINT) for phase in PHASES]
+    + [
+        pytest.param(phase, signal.SIGTERM, marks=() if phase == "run" else pytest.mark.slow)
+        for phase in PHASES
+    ],
+    ids=lambda each: getattr(each, "name", each),
+)
 def test_signal_stops_the_session(phase: str, number: signal.Signals) -> None:
     found = interrupted(phase, number)
     stop = found["stop"]

@@ -74,7 +74,7 @@ def runs() -> list[jid.Recording]:
             torque_noise=0.2,
         ),
     )
-    return simulate(bench, duration=6.0, seed=3, finer=4)
+    return simulate(bench, duration=6.0, seed=3, finer=3)
 
 
 def test_draws_come_in_opposite_pairs(runs: list[jid.Recording]) -> None:

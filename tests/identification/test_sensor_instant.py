@@ -16,17 +16,28 @@ Array = NDArray[np.float64]
 JOINT = jid.Joint(inertia=1.8, sensor=True, model=jid.Model("stribeck"))
 
 
-def runs(noise: float) -> list[jid.Recording]:
-    """Two joints whose controller reads before it commands."""
-    bench = Bench(
-        motion=thesis(np.radians([60.0, 55.0]), [3.0, 3.4]),
-        plant=Plant(inertia=1.8, link_inertia=0.3, gravity=7.0),
-        law=Law(
-            inertia=1.8, stiffness=60.0, on_reference=1.0, coulomb=18.0, static=8.0, feedback=2.0
-        ),
-        log=Log(sensor_noise=noise),
-    )
-    return simulate(bench, duration=5.0, seed=3, finer=4)
+@pytest.fixture(scope="module")
+def runs() -> dict[float, list[jid.Recording]]:
+    """Two joints for each noise; their controller reads before it commands."""
+    noises = (0.0, 0.01, 0.02, 3.0)
+    benches = [
+        Bench(
+            motion=thesis(np.radians([60.0, 55.0]), [3.0, 3.4]),
+            plant=Plant(inertia=1.8, link_inertia=0.3, gravity=7.0),
+            law=Law(
+                inertia=1.8,
+                stiffness=60.0,
+                on_reference=1.0,
+                coulomb=18.0,
+                static=8.0,
+                feedback=2.0,
+            ),
+            log=Log(sensor_noise=noise),
+        )
+        for noise in noises
+    ]
+    found = simulate(Bench.stack(benches), duration=5.0, seed=3, finer=10)
+    return {noise: found[2 * k : 2 * k + 2] for k, noise in enumerate(noises)}
 
 
 def of_middle(run: jid.Recording, share: float = 0.5) -> jid.Recording:
@@ -46,8 +57,10 @@ def found(run: jid.Recording) -> jid.Estimate:
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.02])
-def test_a_reading_before_the_command_is_moved_to_the_middle_of_its_step(noise: float) -> None:
-    for run in runs(noise):
+def test_a_reading_before_the_command_is_moved_to_the_middle_of_its_step(
+    runs: dict[float, list[jid.Recording]], noise: float
+) -> None:
+    for run in runs[noise]:
         estimate = found(run)
         assert estimate.settings["sensor_before_step"] == 1.0
         gain = estimate.parameters["sensor_gain"]
@@ -57,8 +70,10 @@ def test_a_reading_before_the_command_is_moved_to_the_middle_of_its_step(noise: 
         assert not estimate.warnings
 
 
-def test_a_reading_in_the_middle_or_after_the_step_is_known_as_such() -> None:
-    for run in runs(0.01):
+def test_a_reading_in_the_middle_or_after_the_step_is_known_as_such(
+    runs: dict[float, list[jid.Recording]],
+) -> None:
+    for run in runs[0.01]:
         middle, after = found(of_middle(run)), found(of_middle(run, 1.0))
         assert abs(middle.settings.get("sensor_before_step", 0.0)) < 0.3
         assert after.settings["sensor_before_step"] == -1.0
@@ -67,7 +82,7 @@ def test_a_reading_in_the_middle_or_after_the_step_is_known_as_such() -> None:
 
 
 def test_folds_measure_the_instant_only_where_all_data_lack_a_part_of_the_step(
-    monkeypatch: pytest.MonkeyPatch,
+    runs: dict[float, list[jid.Recording]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     measured: list[int] = []
 
@@ -76,15 +91,15 @@ def test_folds_measure_the_instant_only_where_all_data_lack_a_part_of_the_step(
         return without_early_reading(problem, *rest)
 
     monkeypatch.setattr("jointid.identification.prepared.without_early_reading", counted)
-    early = runs(0.01)[0]
+    early = runs[0.01][0]
     for run, times in ((early, 4), (of_middle(early), 1)):  # all data, and three folds
         measured.clear()
         jid.compare_models(run, JOINT, models=("stribeck",), folds=3)
         assert len(measured) == times
 
 
-def test_a_reading_that_is_noise_is_left_as_it_is() -> None:
-    run = runs(3.0)[0]
+def test_a_reading_that_is_noise_is_left_as_it_is(runs: dict[float, list[jid.Recording]]) -> None:
+    run = runs[3.0][0]
     assert "sensor_before_step" not in found(run).settings
 
 

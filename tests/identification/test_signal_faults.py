@@ -37,7 +37,7 @@ def codes(estimate: jid.Estimate) -> set[str]:
 
 
 def test_a_coarse_encoder_costs_little_and_what_it_costs_is_named() -> None:
-    runs = simulate(4, duration=12.0, seed=5)
+    runs = simulate(2, duration=12.0, seed=5)
     for run in runs:
         estimate = jid.identify(seen(run, 100_000), jid.thesis_joint(), search="separable")
         assert estimate.parameters["static"].value == pytest.approx(TRUTH["static"], rel=0.05)

@@ -29,7 +29,7 @@ def coarse() -> tuple[jid.Recording, jid.Recording]:
         )
         for changes in ({}, {"bristle_stiffness": 2e4, "bristle_damping": 200.0})
     ]
-    sound, bristles = simulate(Bench.stack(benches), duration=9.0, seed=5, finer=4)
+    sound, bristles = simulate(Bench.stack(benches), duration=9.0, seed=5, finer=3)
     return sound, bristles
 
 

@@ -157,14 +157,13 @@ def test_a_gain_without_load_is_named_and_its_interval_holds_the_truth(shared_da
     assert found.evidence["load_range.share"].value < 0.03
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_poor_excitation_is_named_with_its_figure(seed: int) -> None:
+def test_poor_excitation_is_named_with_its_figure() -> None:
     # Amplitudes of 3° about the vertical vary the sensed torque as little as ±20° about the horizontal.
-    (run,) = simulate(1, duration=6.0, seed=seed, degrees=(3.0, 3.0), noise=4.0)
-    found = warned(separable(run), "undetermined")
-    assert "sensor_gain" in found.parameters
-    assert "gravity torque" in found.message
-    assert found.evidence["load_range"].value > 0.0
+    for run in simulate(3, duration=6.0, seed=0, degrees=(3.0, 3.0), noise=4.0):
+        found = warned(separable(run), "undetermined")
+        assert "sensor_gain" in found.parameters
+        assert "gravity torque" in found.message
+        assert found.evidence["load_range"].value > 0.0
 
 
 def test_what_the_log_has_is_not_advised() -> None:

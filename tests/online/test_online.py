@@ -48,16 +48,16 @@ def test_the_penalty_is_the_direct_sum_at_its_minimum(excited: jid.Recording) ->
 
 
 def test_follows_a_joint_that_changes() -> None:
-    before, after = simulate(2, duration=9.0, seed=3)
+    before, after = simulate(2, duration=7.0, seed=3)
     change = 6.0  # [N·m] of Coulomb friction, as from a joint that has warmed up
     assert after.torque is not None
-    later = shifted(after, 9.5, torque=after.torque + change * np.sign(after.velocity))
+    later = shifted(after, 7.5, torque=after.torque + change * np.sign(after.velocity))
     with jid.OnlineIdentifier(jid.thesis_joint(), window=6.0) as identifier:
         first = fed(identifier, before)
         last = fed(identifier, later)
     assert first.parameters["coulomb"].value == pytest.approx(TRUTH["coulomb"], rel=0.01)
     assert last.parameters["coulomb"].value == pytest.approx(TRUTH["coulomb"] + change, rel=0.01)
-    assert last.begin > 9.5
+    assert last.begin > 7.5
 
 
 def test_holds_no_more_than_its_window(excited: jid.Recording) -> None:
