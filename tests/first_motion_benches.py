@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import jointid as jid
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.elmo.drive import ElmoDrive
@@ -22,6 +24,11 @@ WEAK = ({"coulomb": 3.0, "static": 0.0, "viscous": 1.0}, {"coulomb": 3.0, "stati
 STRONG = ({"coulomb": 25.0, "static": 0.0}, {"coulomb": 25.0, "static": 0.0})
 THESIS = ({"coulomb": 25.0, "static": 20.0}, {"coulomb": 10.0, "static": 20.0})
 FRICTIONS = {"weak": WEAK, "strong": STRONG, "thesis": THESIS}
+
+
+def quick_and_slow(quick: Any, *slow: Any) -> list[Any]:
+    """Cases of a parameter and of `quick`: one at half the example's rate, others at the example's, which are slow."""
+    return [(quick, True), *(pytest.param(case, False, marks=pytest.mark.slow) for case in slow)]
 
 
 class Spy:
@@ -44,9 +51,10 @@ class Spy:
 def bench_with(
     friction: tuple[dict[str, float], dict[str, float]] = THESIS,
     position: float = 0.0,
+    quick: bool = True,
     **wrong: Any,
 ) -> Bench:
-    """The example's bench, wrong in some way."""
+    """The example's bench, wrong in some way; quick: at half its rate."""
     bench = Bench.load(EXAMPLE)
     truth, stated = friction
     assert bench.emulation is not None
@@ -56,7 +64,8 @@ def bench_with(
         drive=ElmoEmulation(**wrong),
         position=position,
     )
-    return replace(bench, joint=bench.joint.with_parameters(stated), emulation=emulation)
+    bench = replace(bench, joint=bench.joint.with_parameters(stated), emulation=emulation)
+    return replace(bench, options=replace(bench.options, period=4e-3)) if quick else bench
 
 
 def moved(

@@ -15,6 +15,7 @@ from first_motion_benches import (
     bench_with,
     breakaway,
     moved,
+    quick_and_slow,
     without_sensor,
 )
 
@@ -31,9 +32,9 @@ from jointid.simulation.plant import Bristle
 from jointid.simulation.stepped import stepped_joint
 
 
-@pytest.mark.parametrize("friction", FRICTIONS)
-def test_a_right_bench_passes(friction: str) -> None:
-    bench = bench_with(FRICTIONS[friction])
+@pytest.mark.parametrize(("friction", "quick"), quick_and_slow("thesis", *FRICTIONS))
+def test_a_right_bench_passes(friction: str, quick: bool) -> None:
+    bench = bench_with(FRICTIONS[friction], quick=quick)
     result, spy = moved(bench, seed=1)
     assert result.passed, result.report()
     assert result.reason is None
@@ -63,11 +64,11 @@ WRONG: list[tuple[dict[str, float], tuple[str, ...]]] = [
 ]
 
 
-@pytest.mark.parametrize("friction", ["weak", "strong"])
+@pytest.mark.parametrize(("friction", "quick"), quick_and_slow("weak", "weak", "strong"))
 @pytest.mark.parametrize("number", range(len(WRONG)))
-def test_a_wrong_bench_is_refused(friction: str, number: int) -> None:
+def test_a_wrong_bench_is_refused(friction: str, quick: bool, number: int) -> None:
     wrong, reasons = WRONG[number]
-    bench = bench_with(FRICTIONS[friction], **wrong)
+    bench = bench_with(FRICTIONS[friction], quick=quick, **wrong)
     result, spy = moved(bench, seed=number)
     assert not result.passed
     assert result.reason in reasons, result.report()
@@ -82,18 +83,26 @@ def test_signs_are_judged_before_scales() -> None:
     assert result.reason == "torque_and_encoder_disagree"
 
 
-def test_both_inverted_show_in_the_sensor_and_look_right_without() -> None:
+def test_both_inverted_show_in_the_sensor() -> None:
     result, _ = moved(bench_with(torque_sign=-1, encoder_sign=-1))
     assert result.reason == "sensor_sign"
     assert "torque and encoder are both inverted" in result.message
+
+
+@pytest.mark.slow
+def test_both_inverted_look_right_without_a_sensor() -> None:
     result, _ = moved(without_sensor(bench_with(torque_sign=-1, encoder_sign=-1)))
     assert result.passed
     assert "positive_direction" in result.unchecked
 
 
+@pytest.mark.slow
+def test_friction_that_is_stated_is_held_against_the_bench() -> None:
+    assert moved(bench_with((WEAK[0], THESIS[1])))[0].reason in ("gear_ratio", BOTH)
+
+
 def test_friction_that_is_only_a_guess_is_not_held_against_the_bench() -> None:
     bench = bench_with((WEAK[0], THESIS[1]))
-    assert moved(bench)[0].reason in ("gear_ratio", BOTH)
     guessed = replace(bench, first_motion=replace(bench.first_motion, compare_friction=False))
     result, spy = moved(guessed)
     assert result.passed, result.report()
@@ -169,10 +178,10 @@ def test_a_brake_that_opens_under_gravity_is_noticed() -> None:
     assert spy.way < 1e-3
 
 
-@pytest.mark.parametrize("friction", ["weak", "thesis"])
-@pytest.mark.parametrize("sign", [1, -1])
-def test_a_gear_that_winds_up_has_not_moved_yet(friction: str, sign: int) -> None:
-    bench = bench_with(FRICTIONS[friction], torque_sign=sign)
+@pytest.mark.parametrize(("friction", "quick"), quick_and_slow("weak", "weak", "thesis"))
+@pytest.mark.parametrize("sign", [-1, pytest.param(1, marks=pytest.mark.slow)])
+def test_a_gear_that_winds_up_has_not_moved_yet(friction: str, quick: bool, sign: int) -> None:
+    bench = bench_with(FRICTIONS[friction], quick=quick, torque_sign=sign)
 
     def wound(drive: EmulatedElmo) -> None:
         assert bench.emulation is not None
@@ -190,9 +199,9 @@ def test_a_gear_that_winds_up_has_not_moved_yet(friction: str, sign: int) -> Non
     assert spy.way < FARTHEST
 
 
-@pytest.mark.parametrize("factor", [0.05, 5.0])
-def test_light_and_heavy_joints_pass(factor: float) -> None:
-    bench = bench_with()
+@pytest.mark.parametrize(("factor", "quick"), quick_and_slow(0.05, 0.05, 5.0))
+def test_light_and_heavy_joints_pass(factor: float, quick: bool) -> None:
+    bench = bench_with(quick=quick)
     rotor = bench.joint.rotor_inertia
     assert rotor is not None
     bench = replace(bench, joint=bench.joint.replace(rotor_inertia=factor * rotor))
@@ -301,9 +310,9 @@ def test_options_are_checked() -> None:
             jid.hardware.FirstMotionOptions(**values)
 
 
-@pytest.mark.parametrize("factor", [0.1, 5.0])
-def test_an_inertia_that_is_not_the_stated_one_is_refused(factor: float) -> None:
-    bench = bench_with(STRONG)
+@pytest.mark.parametrize(("factor", "quick"), quick_and_slow(5.0, 0.1, 5.0))
+def test_an_inertia_that_is_not_the_stated_one_is_refused(factor: float, quick: bool) -> None:
+    bench = bench_with(STRONG, quick=quick)
     rotor = bench.joint.rotor_inertia
     assert rotor is not None
     assert bench.emulation is not None
