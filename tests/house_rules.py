@@ -9,6 +9,7 @@ import statistics
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 LONGEST = 400  # lines of a file
@@ -258,8 +259,8 @@ def unused_arrows(package: Path) -> list[tuple[str, str]]:
     used: set[tuple[str, str]] = set()
     for path in package.rglob("*.py"):
         name = path.parent.relative_to(package).as_posix().removeprefix(".")
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for _, target, _ in _imported(tree, _module(path, package), package):
+        text = path.read_text(encoding="utf-8")
+        for _, target, _ in _imported(text, _module(path, package), package):
             other = target.partition(".")[2]
             inner = package.joinpath(*other.split("."))
             used.add((name, _folder(other if inner.is_dir() else other.rpartition(".")[0])))
@@ -275,10 +276,10 @@ def module_graph(package: Path) -> dict[str, set[str]]:
     known = {name.removesuffix(".__init__") for name in names}
     graph: dict[str, set[str]] = {}
     for module, path in names.items():
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
         own = module.removesuffix(".__init__")
         graph[own] = set()
-        for _, target, _ in _imported(tree, module, package, typing=False):
+        for _, target, _ in _imported(text, module, package, typing=False):
             inner = target.partition(".")[2]
             if f"{inner}.__init__" in names:
                 inner = f"{inner}.__init__"
@@ -394,12 +395,10 @@ def _imports(path: Path, repository: Path) -> Iterator[str]:
     if not name and path.stem not in TOP:
         yield f"module '{module}' stands at the top: give it a folder"
     rules = FOLDERS[name]
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for node in tree.body:
-        named = isinstance(node, ast.FunctionDef | ast.ClassDef) and node.name
-        if named == path.stem:
-            yield f"bears the name of what it defines, '{named}': from the package only one is seen"
-    for line, target, inside in _imported(tree, module, package):
+    text = path.read_text(encoding="utf-8")
+    if re.search(rf"^(?:def|class) {path.stem}\b", text, re.MULTILINE):
+        yield f"bears the name of what it defines, '{path.stem}': from the package only one is seen"
+    for line, target, inside in _imported(text, module, package):
         root = target.split(".")[0]
         light = inside or name.split("/")[0] in ASKED_FOR  # loaded when asked for
         if root != "jointid":
@@ -424,32 +423,18 @@ def _imports(path: Path, repository: Path) -> Iterator[str]:
 
 
 def _imported(
-    tree: ast.Module, module: str, package: Path, *, typing: bool = True
+    text: str, module: str, package: Path, *, typing: bool = True
 ) -> Iterator[tuple[int, str, bool]]:
     """Yield line, full module name, and whether loading the module leaves it alone.
 
     With `typing`, also what is imported for the type checker alone.
     """
-    late: set[int] = set()  # inside functions, or only for the type checker
-    skipped: set[int] = set()
-    for node in ast.walk(tree):
-        function = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-        checked = isinstance(node, ast.If) and ast.unparse(node.test) in {
-            "TYPE_CHECKING",
-            "typing.TYPE_CHECKING",
-        }
-        if function:
-            late |= set(map(id, ast.walk(node)))
-        elif checked and isinstance(node, ast.If):
-            inner = {id(each) for statement in node.body for each in ast.walk(statement)}
-            late |= inner
-            skipped |= set() if typing else inner
-    for node in ast.walk(tree):
-        if id(node) in skipped:
+    for node, late, checked in _naming(text):
+        if checked and not typing:
             continue
         if isinstance(node, ast.Import):
             for alias in node.names:
-                yield node.lineno, alias.name, id(node) in late
+                yield node.lineno, alias.name, late
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if (
@@ -463,7 +448,7 @@ def _imported(
                 is_module = full.startswith("jointid.") and (
                     place.is_dir() or place.with_suffix(".py").exists() or alias.name == "_core"
                 )
-                yield node.lineno, full if is_module else base, id(node) in late
+                yield node.lineno, full if is_module else base, late
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
             # A module named in a text is imported by its name, sooner or later.
             named = re.fullmatch(r"(jointid(?:\.\w+)+)(?::\w+)?", node.value)
@@ -471,3 +456,27 @@ def _imported(
                 place = package.joinpath(*named[1].split(".")[1:])
                 if place.is_dir() or place.with_suffix(".py").exists():
                     yield node.lineno, named[1], True
+
+
+_CHECKING = {"TYPE_CHECKING", "typing.TYPE_CHECKING"}
+
+
+@cache
+def _naming(text: str) -> list[tuple[ast.AST, bool, bool]]:
+    """A source's imports and texts: whether loading leaves each alone, and whether the type checker alone reads it."""
+    found: list[tuple[ast.AST, bool, bool]] = []
+
+    def look(node: ast.AST, late: bool, checked: bool) -> None:
+        if isinstance(node, ast.Import | ast.ImportFrom | ast.Constant):
+            found.append((node, late or checked, checked))
+            return
+        late = late or isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        only = isinstance(node, ast.If) and ast.unparse(node.test) in _CHECKING
+        for name in node._fields:
+            value = getattr(node, name)
+            for each in value if isinstance(value, list) else (value,):
+                if isinstance(each, ast.AST) and each._fields:
+                    look(each, late, checked or (only and name == "body"))
+
+    look(ast.parse(text), False, False)
+    return found

@@ -25,7 +25,14 @@ MOTIONS = {
 }
 
 
-@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("too slow", marks=pytest.mark.slow),
+        "too short a range",
+        "no reversal",
+    ],
+)
 def test_the_printed_command_designs_the_motion_that_is_missing(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -20,6 +20,7 @@ joint_5 = 1.0
 """
 
 
+@pytest.mark.slow
 def test_one_command(shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     facts = tmp_path / "robot.toml"
     facts.write_text(FACTS, encoding="utf-8")
@@ -72,8 +73,10 @@ def test_the_facts_hold_a_joints_model(tmp_path: Path, capsys: pytest.CaptureFix
     np.savetxt(log, table, delimiter=",", header=",".join(["time", *names]), comments="")
     facts.write_text('[joints.elbow]\nmodel = "coulomb_viscous:asymmetric"\n', encoding="utf-8")
     line = ["identify", str(log), "--robot", str(path), "--facts", str(facts)]
-    assert main([*line, "--save", str(saved)]) == 0
+    page = tmp_path / "arm.html"
+    assert main([*line, "--save", str(saved), "--report", str(page)]) == 0
     assert "viscous_difference" in capsys.readouterr().out
+    assert page.read_text(encoding="utf-8").count("<svg ") == 4
     models = json.loads(saved.read_text(encoding="utf-8"))["settings"]["model"]
     assert models["elbow"] == "coulomb_viscous:asymmetric"
     assert main([*line, "--model", "coulomb_viscous"]) == 0

@@ -111,13 +111,17 @@ def test_the_c_header_has_them(tmp_path: Path, single: bool) -> None:
     assert "other signals" not in text
 
 
-def test_structured_text_has_them(tmp_path: Path) -> None:
+@pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_structured_text_has_them(tmp_path: Path, whole: bool) -> None:
+    """The block itself, and, which takes long to parse, that which checks it."""
     pytest.importorskip("blark")
     from structured_text_interpreter import Instance, function_blocks
 
     text = jid.export(SWINGING, tmp_path / "joint.st").read_text(encoding="ascii")
-    blocks = function_blocks(text)
-    block, check = blocks
+    end = len(text) if whole else text.index("END_FUNCTION_BLOCK") + 18
+    blocks = function_blocks(text[:end])
+    block, *checks = blocks
+    assert len(checks) == whole
     ours = Instance(block, blocks)
     for position, velocity, acceleration in ((0.7, -1.3, 2.1), (-2.0, 0.4, -5.0)):
         torque, inertia = own_torque(position, velocity, acceleration)
@@ -125,9 +129,10 @@ def test_structured_text_has_them(tmp_path: Path) -> None:
         assert ours["harmonics"] == pytest.approx(torque)
         wanted = 2.0 * acceleration + inertia + torque + ours["friction"]
         assert ours["torque"] == pytest.approx(wanted)
-    checked = Instance(check, blocks)
-    checked()
-    assert checked["wrong"] == 0
+    for check in checks:
+        checked = Instance(check, blocks)
+        checked()
+        assert checked["wrong"] == 0
 
 
 def test_the_matlab_struct_has_them(tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
 """Drive types: found by name, nothing else names a make of drive, and hardware is independent of analysis."""
 
-import ast
 import io
 import subprocess
 import sys
@@ -38,7 +37,7 @@ def test_only_its_own_folder_names_a_make_of_drive() -> None:
 def imports(module: Path) -> Iterator[Path]:
     """Modules of ours that a module imports, inside functions too."""
     name = ".".join(module.relative_to(PACKAGE).with_suffix("").parts)
-    for _, target, _ in _imported(ast.parse(module.read_text(encoding="utf-8")), name, PACKAGE):
+    for _, target, _ in _imported(module.read_text(encoding="utf-8"), name, PACKAGE):
         first, *parts = target.split(".")
         inner = PACKAGE.joinpath(*parts)
         if first == "jointid" and parts:

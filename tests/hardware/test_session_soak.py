@@ -16,10 +16,16 @@ from jointid.hardware.session.recorder import Recorder
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="counts in /proc")
-def test_sessions_leave_nothing_behind_and_lose_nothing() -> None:
-    soaked = soak_sessions(0.6, seconds=3.0, settle=2)
-    assert soaked.sessions == 12
-    assert soaked.samples == 12 * 1500
+@pytest.mark.parametrize(
+    ("sessions", "seconds", "settle"),
+    [(3, 1.0, 1), pytest.param(12, 3.0, 2, marks=pytest.mark.slow)],
+)
+def test_sessions_leave_nothing_behind_and_lose_nothing(
+    sessions: int, seconds: float, settle: int
+) -> None:
+    soaked = soak_sessions(sessions * seconds / 60.0, seconds=seconds, settle=settle)
+    assert soaked.sessions == sessions
+    assert soaked.samples == sessions * seconds * 500
     assert soaked.sound, str(soaked)
 
 

@@ -16,6 +16,7 @@ from jointid.hardware.session.moving_joint import breakaway
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 BELIEVED = 30.0  # breakaway of the joint file [N·m]; 45 is true
 AMPLITUDE = math.radians(5.0)
+CYCLES = [6.0, pytest.param(10.0, marks=pytest.mark.slow)]
 
 
 def slow(torque: float, cycle: float) -> Bench:
@@ -52,8 +53,10 @@ def move(bench: Bench, *, hangs: float = math.inf) -> jid.Recording | None:
         ).run()
 
 
-@pytest.mark.parametrize("cycle", [6.0, 10.0])
-@pytest.mark.parametrize("torque", [50.0, 60.0, 80.0, 90.0])
+@pytest.mark.parametrize("cycle", CYCLES)
+@pytest.mark.parametrize(
+    "torque", [50.0, 90.0, *(pytest.param(each, marks=pytest.mark.slow) for each in (60.0, 80.0))]
+)
 def test_a_healthy_joint_is_not_stopped(torque: float, cycle: float) -> None:
     assert breakaway(slow(torque, cycle).joint) == BELIEVED
     recording = move(slow(torque, cycle))
@@ -63,8 +66,8 @@ def test_a_healthy_joint_is_not_stopped(torque: float, cycle: float) -> None:
     assert recording.torque.min() < -45.0
 
 
-@pytest.mark.parametrize("cycle", [6.0, 10.0])
-@pytest.mark.parametrize("torque", [50.0, 80.0])
+@pytest.mark.parametrize("cycle", CYCLES)
+@pytest.mark.parametrize("torque", [50.0, pytest.param(80.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "share", [0.1, 0.34]
 )  # of the cycle: in motion, and about the first reversal

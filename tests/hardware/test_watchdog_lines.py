@@ -12,6 +12,7 @@ import signal
 import sys
 import textwrap
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import pytest
@@ -216,8 +217,8 @@ ARMING: tuple[tuple[Any, str, tuple[str, ...]], ...] = (
 CONNECTING = ("CYCLES", "arm_watchdogs")
 
 
-def removals(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
-    """Yield the tree without one statement, or without one entry of a call or a tuple; and what that was."""
+def removals(tree: ast.AST) -> Iterator[tuple[str, Callable[[], ast.AST]]]:
+    """Yield each statement, and each entry of a call or a tuple; and what makes the tree without it."""
     for place, node in enumerate(ast.walk(tree)):
         for name in ("body", "orelse", "args", "elts", "keywords"):
             entries = getattr(node, name, None)
@@ -231,11 +232,17 @@ def removals(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
                 worth = worth or (name == "keywords" and entry.arg == "meanwhile")
                 if not worth:
                     continue
-                changed = copy.deepcopy(tree)
-                inner = list(ast.walk(changed))[place]
-                left = [other for k, other in enumerate(getattr(inner, name)) if k != number]
-                setattr(inner, name, left or [ast.Pass()] if name == "body" else left)
-                yield ast.unparse(entry).splitlines()[0], ast.fix_missing_locations(changed)
+                text = ast.unparse(entry).splitlines()[0]
+                yield text, partial(without, tree, place, name, number)
+
+
+def without(tree: ast.AST, place: int, name: str, number: int) -> ast.AST:
+    """The tree without an entry of a node's."""
+    changed = copy.deepcopy(tree)
+    inner = list(ast.walk(changed))[place]
+    left = [other for k, other in enumerate(getattr(inner, name)) if k != number]
+    setattr(inner, name, left or [ast.Pass()] if name == "body" else left)
+    return ast.fix_missing_locations(changed)
 
 
 def is_documentation(entry: ast.stmt) -> bool:
@@ -285,7 +292,7 @@ def test_each_line_of_the_arming_is_needed(
     owner: Any, name: str, module: Any, changed: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     names = dict(vars(module))
-    body = ast.Module(body=[changed], type_ignores=[])
+    body = ast.Module(body=[changed()], type_ignores=[])
     exec(compile(body, f"{name} without a line", "exec"), names)
     monkeypatch.setattr(owner, name, names[name])
     assert broken_promise() is not None

@@ -1,6 +1,7 @@
 """The drive's watchdog tried by a host that falls silent: proven, or the bench is refused."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,11 @@ EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint
 AWAITED = 0.05  # [s], the default
 
 
-def proven(change: Callable[[EmulatedElmo], object] | None = None) -> tuple[FirstMotion, Bench]:
+def proven(
+    change: Callable[[EmulatedElmo], object] | None = None, period: float = 2e-3
+) -> tuple[FirstMotion, Bench]:
     bench = Bench.load(EXAMPLE)
+    bench = replace(bench, options=replace(bench.options, period=period))
     devices = elmo_devices(bench, 0)
     if change is not None:
         change(devices[0])
@@ -44,8 +48,9 @@ def only_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Steps, "run", short)
 
 
-def test_a_right_bench_passes_and_says_when() -> None:
-    result, bench = proven()
+@pytest.mark.parametrize("period", [4e-3, pytest.param(2e-3, marks=pytest.mark.slow)])
+def test_a_right_bench_passes_and_says_when(period: float) -> None:
+    result, bench = proven(period=period)
     assert result.passed, result.report()
     assert result.watchdog is not None
     assert AWAITED < result.watchdog < AWAITED + 2e-3

@@ -26,6 +26,7 @@ from jointid.joint.thesis import thesis_joint
 POSITIVE = st.floats(min_value=1e-9, max_value=1e9)
 FINITE = st.floats(min_value=-1e9, max_value=1e9)
 ANGLES = st.floats(min_value=-10.0, max_value=10.0)
+FEW = settings(max_examples=20)  # a joint takes 10 ms, and each run draws others
 
 
 def optional(strategy: st.SearchStrategy[float]) -> st.SearchStrategy[float | None]:
@@ -137,6 +138,7 @@ def test_a_joint_is_read_only() -> None:
     assert held.parameters["coulomb"].value == 1.0
 
 
+@FEW
 @given(joints())
 def test_copies_are_equal(joint: Joint) -> None:
     for twin in (pickle.loads(pickle.dumps(joint)), copy.deepcopy(joint), joint.replace()):
@@ -229,7 +231,7 @@ def test_output_torque_says_what_is_missing() -> None:
 # --- Files ---
 
 
-@settings(deadline=None)
+@FEW
 @given(joint=joints())
 def test_every_field_comes_back_from_a_file(
     joint: Joint, tmp_path_factory: pytest.TempPathFactory
@@ -247,7 +249,7 @@ def test_every_field_comes_back_from_a_document(joint: Joint) -> None:
     assert joint_from_document(joint_document(joint), "estimate") == joint
 
 
-@settings(deadline=None)
+@FEW
 @given(old=joints(), new=joints())
 def test_a_file_takes_another_joint(
     old: Joint, new: Joint, tmp_path_factory: pytest.TempPathFactory
@@ -410,7 +412,7 @@ def layouts(draw: st.DrawFn) -> str:
     return text.removesuffix("\n") if draw(st.booleans()) else text
 
 
-@settings(deadline=None)
+@FEW
 @given(text=layouts(), joint=joints(), windows=st.booleans())
 def test_any_layout_takes_any_joint_and_keeps_its_comments(
     text: str, joint: Joint, windows: bool, tmp_path_factory: pytest.TempPathFactory
