@@ -3,13 +3,14 @@
 import doctest
 import re
 import shlex
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from jointid.cli import main
+from jointid.cli.parser import command_parser
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -53,6 +54,7 @@ def run_console_blocks(
     codes: Mapping[str, int] | None = None,
     whole: bool = False,
     within: float = 0.0,
+    parsed: Collection[str] = (),
 ) -> list[str]:
     """Run a page's console blocks in the working folder, and compare what they print with what the page shows.
 
@@ -66,6 +68,8 @@ def run_console_blocks(
         Whether a toml block replaces tables, not only keys. Default False.
     within : float
         By which share a printed number may differ from the page's. Default: digit by digit the same.
+    parsed : collection of str, optional
+        A command line that has one of these words is parsed, and not run.
 
     Returns
     -------
@@ -83,6 +87,9 @@ def run_console_blocks(
         prompt, program, *arguments = shlex.split(line)
         assert (prompt, program) == ("$", "jointid")
         commands.append(arguments[0])
+        if set(arguments) & {*parsed}:
+            command_parser().parse_args(arguments)
+            continue
         wanted = [code for word, code in (codes or {}).items() if word in arguments]
         assert main(arguments) == (wanted or [0])[0]
         printed = capsys.readouterr().out

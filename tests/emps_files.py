@@ -5,7 +5,6 @@ import shutil
 from pathlib import Path
 
 import numpy as np
-from scipy.io import loadmat
 
 PLACE = "JOINTID_EMPS"
 """Environment variable that names the folder of `DATA_EMPS.mat`."""
@@ -48,6 +47,8 @@ def with_table(folder: Path, target: Path) -> Path:
     target : Path
         An empty folder.
     """
+    from scipy.io import loadmat
+
     shutil.copy(folder / MATLAB, target)
     found = loadmat(folder / MATLAB)
     time, reference, position, volts = (found[name].ravel() for name in ("t", "qg", "qm", "vir"))

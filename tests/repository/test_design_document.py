@@ -16,12 +16,26 @@ PAGE = read("docs/design.md")
 BENCH = PAGE.partition("\n## Through the bench")[2].partition("\n## ")[0]
 
 
+def _bench(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    joint = folder / "joint.toml"
+    shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", joint)
+    enter(folder, monkeypatch)
+    return joint
+
+
+def test_the_way_through_the_bench_has_commands_that_there_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    joint = _bench(tmp_path, monkeypatch)
+    run_console_blocks(BENCH, joint, capsys, whole=True, parsed=["design", "run", "identify"])
+    assert jid.Joint.load(joint).parameters["ripple_sin_2"].max == 10.0
+
+
+@pytest.mark.slow
 def test_the_way_through_the_bench_runs_and_prints_what_is_shown(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    joint = tmp_path / "joint.toml"
-    shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", joint)
-    enter(tmp_path, monkeypatch)
+    joint = _bench(tmp_path, monkeypatch)
     commands = run_console_blocks(BENCH, joint, capsys, whole=True, within=0.5)
     assert commands == ["edit", "design", "edit", "run", "identify"]
     # The session moved what was designed.

@@ -9,7 +9,6 @@ import doctest
 import importlib
 import inspect
 import io
-import pkgutil
 import re
 import shutil
 from collections.abc import Callable, Iterator
@@ -36,19 +35,38 @@ class _Checker(doctest.OutputChecker):
 
 
 def _examples() -> Iterator[doctest.DocTest]:
+    """Those of the sources that have any; what brings a browser's packages is not loaded for none."""
     finder = doctest.DocTestFinder(exclude_empty=True)
     seen: set[str] = set()
-    for found in pkgutil.walk_packages(jid.__path__, "jointid."):
-        if found.name.endswith("__main__"):
+    package = Path(jid.__file__).parent
+    for path in sorted(package.rglob("*.py")):
+        if ">>>" not in path.read_text(encoding="utf-8"):
             continue
-        module = importlib.import_module(found.name)
-        for test in finder.find(module, found.name):
+        parts = path.relative_to(package.parent).with_suffix("").parts
+        name = ".".join(parts).removesuffix(".__init__")
+        for test in finder.find(importlib.import_module(name), name):
             if test.examples and test.name not in seen:
                 seen.add(test.name)
                 yield test
 
 
-@pytest.mark.parametrize("example", list(_examples()), ids=lambda example: example.name)
+EXAMPLES = [*_examples()]
+# A first motion, a session, and what is read from one.
+SLOW = {
+    "jointid.hardware",
+    "jointid.hardware.bench.frame_replay.replay",
+    "jointid.hardware.proof.procedure.first_motion",
+    "jointid.hardware.session.session.Session.run",
+}
+
+
+@pytest.mark.parametrize(
+    "example",
+    [
+        pytest.param(each, id=each.name, marks=[pytest.mark.slow] if each.name in SLOW else [])
+        for each in EXAMPLES
+    ],
+)
 def test_an_example_runs(
     example: doctest.DocTest, prepared: dict[str, Any], workplace: Path
 ) -> None:
@@ -65,17 +83,16 @@ def test_an_example_runs(
 
 def test_every_public_name_has_an_example() -> None:
     """In its own docstring, in that of a method, or as `jid.NAME` in an example of what uses it."""
-    every = list(_examples())
-    lines = [line.source for each in every for line in each.examples if not _skipped(line)]
+    lines = [line.source for each in EXAMPLES for line in each.examples if not _skipped(line)]
     used = set(re.findall(r"\bjid\.(\w+)", "\n".join(lines)))
-    own = {part for each in every for part in each.name.split(".")[-2:]}
+    own = {part for each in EXAMPLES for part in each.name.split(".")[-2:]}
     names = {name for name in jid.__all__ if not inspect.ismodule(getattr(jid, name))}
     assert names - {"__version__"} - own - used == set()
 
 
 def test_few_examples_are_skipped() -> None:
     """What needs the links of a robot, a log of messages, or prints what another computer may print otherwise."""
-    skipped = [line.source for each in _examples() for line in each.examples if _skipped(line)]
+    skipped = [line.source for each in EXAMPLES for line in each.examples if _skipped(line)]
     assert len(skipped) <= 6, skipped
 
 

@@ -1,12 +1,15 @@
 """The code in docs/ runs, the links lead somewhere, and the citation names this version."""
 
+import ast
+import inspect
 import os
 import re
 import shlex
 import shutil
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 import pytest
 from documents import ROOT, blocks, enter, read, run_python_blocks
@@ -29,8 +32,38 @@ COMMANDS = [
     for line in block.splitlines()
     if line.startswith("jointid ")
 ]
+SLOW = {"design", "run", "first-motion"}  # what design.md and hardware.md show is quick to try
 
 
+@pytest.mark.parametrize("page", PAGES)
+def test_python_on_a_page_names_what_there_is(page: str) -> None:
+    """Also where running it is slow: what is called is public, and takes these keywords."""
+    for block in blocks(read(page), "python"):
+        for node in ast.walk(ast.parse(block)):
+            if isinstance(node, ast.Call) and _is_ours(node.func):
+                takes = _keywords(getattr(jid, node.func.attr))
+                assert {word.arg for word in node.keywords} <= takes | {None}, ast.unparse(node)
+            elif _is_ours(node):
+                assert hasattr(jid, node.attr), node.attr
+
+
+def _keywords(called: Callable[..., Any]) -> set[str]:
+    try:
+        return {*inspect.signature(called).parameters}
+    except ValueError:  # options of the core, which are its fields
+        return {*dir(called)}
+
+
+def _is_ours(node: ast.AST) -> TypeGuard[ast.Attribute]:
+    """Whether it is `jid.NAME`."""
+    return (
+        isinstance(node, ast.Attribute)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "jid"
+    )
+
+
+@pytest.mark.slow
 def test_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = run_python_blocks(read("docs/guide.md"), tmp_path, monkeypatch)
     assert (tmp_path / "grid.csv").is_file()
@@ -105,16 +138,24 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("line", COMMANDS)
+def test_each_command_is_one() -> None:
+    for line in COMMANDS:
+        command, *arguments = shlex.split(line, comments=True)[1:]
+        assert command_parser().parse_args([command, *arguments]).command == command
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(line, marks=[pytest.mark.slow] if line.split()[1] in SLOW else [])
+        for line in COMMANDS
+        if line.split()[1] != "emulate"  # until Ctrl-C, on an interface of the machine
+    ],
+)
 def test_a_command_runs(
     line: str, files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     command, *arguments = shlex.split(line, comments=True)[1:]
-    if command == "emulate":  # until Ctrl-C, on an interface of the machine: only its arguments
-        from jointid.cli.parser import command_parser
-
-        assert command_parser().parse_args([command, *arguments]).command == command
-        return
     for path in files.iterdir():
         shutil.copy(path, tmp_path)
     enter(tmp_path, monkeypatch)

@@ -17,8 +17,19 @@ PATH = read("docs/hardware.md").partition("\n## From an unpacked drive")[2].part
 REFUSED = 3  # exit code
 
 
+@pytest.mark.parametrize(
+    "parsed",
+    [
+        ["first-motion", "--cycles", "first/initial.csv"],
+        pytest.param([], marks=pytest.mark.slow),
+    ],
+    ids=["checks", "all"],
+)
 def test_the_path_runs_and_prints_what_is_shown(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    parsed: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", tmp_path / "joint.toml")
     text = (tmp_path / "joint.toml").read_text(encoding="utf-8")
@@ -26,7 +37,9 @@ def test_the_path_runs_and_prints_what_is_shown(
     (tmp_path / "inverted.toml").write_text(wrong, encoding="utf-8")
     enter(tmp_path, monkeypatch)
     joint = tmp_path / "joint.toml"
-    commands = run_console_blocks(PATH, joint, capsys, codes={"inverted.toml": REFUSED})
+    commands = run_console_blocks(
+        PATH, joint, capsys, codes={"inverted.toml": REFUSED}, parsed=parsed
+    )
     first = ["first-motion", "check", "first-motion", "first-motion"]
     assert commands == [*first, "edit", "run", "run", "identify", "run"]
 

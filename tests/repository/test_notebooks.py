@@ -3,9 +3,11 @@
 from pathlib import Path
 from typing import Any
 
+import matplotlib
 import nbformat
 import pytest
-from nbclient import NotebookClient
+
+matplotlib.use("Agg")
 
 FOLDER = Path(__file__).resolve().parents[2] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
@@ -49,9 +51,30 @@ def test_notebooks_are_numbered_without_a_hole() -> None:
     assert len(NOTEBOOKS) >= 4
 
 
+def test_the_first_notebook_runs_in_this_process(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from matplotlib import pyplot
+
+    monkeypatch.chdir(FOLDER)
+    notebook: Any = nbformat.read(NOTEBOOKS[0], as_version=4)  # type: ignore[no-untyped-call]
+    names: dict[str, Any] = {}
+    try:
+        for cell in notebook.cells:
+            if cell.cell_type == "code":
+                exec(compile(cell.source, NOTEBOOKS[0].name, "exec"), names)
+        assert len(pyplot.get_fignums()) == sum(_pictures(notebook))
+    finally:
+        pyplot.close("all")
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")  # the kernel's client warns of its own affairs
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from nbclient import NotebookClient
+
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
     committed: Any = nbformat.read(path, as_version=4)  # type: ignore[no-untyped-call]
     again: Any = nbformat.read(path, as_version=4)  # type: ignore[no-untyped-call]

@@ -13,6 +13,7 @@ from jointid.cli.parser import command_parser
 
 PAGES = ["docs/quickstart.md"]
 PAGES += [f"docs/how_to/{path.name}" for path in sorted((ROOT / "docs/how_to").glob("*.md"))]
+SLOW = {"docs/how_to/move_my_joint.md", "docs/how_to/is_it_safe.md"}  # they run benches
 # Elsewhere: the page, and the test that runs it.
 RUN_BY = {
     "docs/app.md": "test_site_pages.py",
@@ -55,6 +56,17 @@ def run_page(text: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("page", PAGES)
+def test_a_page_has_commands_that_there_are(page: str) -> None:
+    for line in "".join(blocks(read(page), "sh")).splitlines():
+        program, *arguments = shlex.split(line, comments=True) or [""]
+        if program == "jointid":
+            assert command_parser().parse_args(arguments).command == arguments[0]
+
+
+@pytest.mark.parametrize(
+    "page",
+    [pytest.param(page, marks=[pytest.mark.slow] if page in SLOW else []) for page in PAGES],
+)
 def test_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pyplot = pytest.importorskip("matplotlib.pyplot")
     enter(tmp_path, monkeypatch)

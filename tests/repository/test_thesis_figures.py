@@ -33,13 +33,30 @@ class Table:
         return float(found[0]["value"])
 
 
-@pytest.fixture(scope="module")
-def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("thesis")
+def _draw(folder: Path, *groups: str) -> Path:
     command = [sys.executable, str(FOLDER / "all_figures.py"), "--quick", "--output", str(folder)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    done = subprocess.run(
+        [*command, *groups], capture_output=True, text=True, timeout=300, check=False
+    )
     assert done.returncode == 0, done.stderr
     return folder
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Those that are drawn in half a second each."""
+    groups = ("models_and_adaptation", "sine_example", "random_search", "converter_study")
+    return _draw(tmp_path_factory.mktemp("few"), *groups)
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return _draw(tmp_path_factory.mktemp("thesis"))
+
+
+@pytest.fixture(scope="module")
+def quick_table(few: Path) -> Table:
+    return Table(few / "numbers.csv")
 
 
 @pytest.fixture(scope="module")
@@ -47,33 +64,43 @@ def table(drawn: Path) -> Table:
     return Table(drawn / "numbers.csv")
 
 
-def test_every_group_leaves_its_pictures(drawn: Path) -> None:
+def _check_pictures(folder: Path, *figures: str) -> None:
     from matplotlib import image
 
-    names = " ".join(path.stem for path in sorted(drawn.glob("*.png")))
-    for figure in ("2-1", "3-2", "4-2", "4-8", "window_count", "5-1", "5-4", "5-6", "5-12", "5.5"):
+    names = " ".join(path.stem for path in sorted(folder.glob("*.png")))
+    for figure in figures:
         assert figure in names
-    for figure in ("6-2", "6-5", "6-8", "6-9", "6-10", "6-11", "6-12", "6-15"):
-        assert figure in names
-    for path in drawn.glob("*.png"):
+    for path in folder.glob("*.png"):
         assert image.imread(path).std() > 0.02, path.name  # a blank one has none
 
 
-def test_sine_example(table: Table) -> None:
+def test_a_group_leaves_its_pictures(few: Path) -> None:
+    _check_pictures(few, "2-1", "3-2", "4-8", "5.5", "6-2")
+
+
+@pytest.mark.slow
+def test_every_group_leaves_its_pictures(drawn: Path) -> None:
+    first = ("2-1", "3-2", "4-2", "4-8", "window_count", "5-1", "5-4", "5-6", "5-12", "5.5")
+    _check_pictures(drawn, *first, *("6-2", "6-5", "6-8", "6-9", "6-10", "6-11", "6-12", "6-15"))
+
+
+def test_sine_example(quick_table: Table) -> None:
     # The printed -0.7738 and -0.1548 of (4-17) do not hold; (4-18) is 10, not 10.1.
-    assert table("4-17", "of sin from") == pytest.approx(-1.5403, abs=5e-5)
-    assert table("4-17", "of 2 sin") == pytest.approx(-3.0806, abs=5e-5)
-    assert table("4-18", "first") == pytest.approx(0.1909, abs=1e-4)
-    assert table("4-18", "second") == pytest.approx(0.6909, abs=1e-4)
-    assert table("4-18", "sum") == pytest.approx(10.0, abs=1e-9)
+    assert quick_table("4-17", "of sin from") == pytest.approx(-1.5403, abs=5e-5)
+    assert quick_table("4-17", "of 2 sin") == pytest.approx(-3.0806, abs=5e-5)
+    assert quick_table("4-18", "first") == pytest.approx(0.1909, abs=1e-4)
+    assert quick_table("4-18", "second") == pytest.approx(0.6909, abs=1e-4)
+    assert quick_table("4-18", "sum") == pytest.approx(10.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_printed_penalty_vanishes_and_the_running_one_grows(table: Table) -> None:
     assert table("4-19", "as printed", "n = 1000") == pytest.approx(0.0, abs=1e-9)
     assert table("4-19", "running", "n = 1000") == pytest.approx(1000.0, rel=1e-6)
     assert table("4-19", "squared", "n = 1000") == pytest.approx(2.0 * np.pi**2 / 1000, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_sensitivity_study(table: Table) -> None:
     for figure in ("4-2", "4-6", "4-7"):  # Coulomb, offset, gain: at all speeds alike
         assert table(figure, "at 0.01 ") == pytest.approx(table(figure, "at 0.6 "))
@@ -82,15 +109,17 @@ def test_sensitivity_study(table: Table) -> None:
     assert table("4-5", "at 0.6 ") > 50.0 * table("4-5", "at 0.01 ")
 
 
-def test_adaptation_is_the_law(table: Table) -> None:
-    assert table("3-2", "distance") < 1e-12
+def test_adaptation_is_the_law(quick_table: Table) -> None:
+    assert quick_table("3-2", "distance") < 1e-12
 
 
+@pytest.mark.slow
 def test_trajectory_starts_at_rest_and_reaches_four_degrees(table: Table) -> None:
     assert table("6-5", "largest angle") == pytest.approx(4.0, abs=0.01)
     assert table("6-6", "at the start") == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_identified_tracks_better_than_guessed_and_initial(table: Table) -> None:
     assert table("5-4", "better than") == table("5-5", "better than") == 100.0
     ring = "±60°"
@@ -102,6 +131,7 @@ def test_identified_tracks_better_than_guessed_and_initial(table: Table) -> None
     assert table("Table 6-3", "4° about", "warnings") > 0  # that motion does not determine them
 
 
+@pytest.mark.slow
 def test_larger_errors_track_worse(table: Table) -> None:
     sizes = [
         table(f"5-{6 + number}", f"±{share} %", "median")
@@ -111,23 +141,28 @@ def test_larger_errors_track_worse(table: Table) -> None:
     assert sizes[1] < 1.1 * sizes[0]
 
 
-def test_chance_of_random_search(table: Table) -> None:
+def test_chance_of_random_search(quick_table: Table) -> None:
     # Estimated as 1 in 20 for each of the six; of the offset's domain it is 1 in 40.
-    assert table("5.5", "by chance") == pytest.approx(20.0**4 * 40.0 * 4.9 / 0.24, rel=1e-3)
+    assert quick_table("5.5", "by chance") == pytest.approx(20.0**4 * 40.0 * 4.9 / 0.24, rel=1e-3)
 
 
-def test_over_sampling_averages(table: Table) -> None:
+def test_over_sampling_averages(quick_table: Table) -> None:
     for figure, name in (("6-2", "1 conv"), ("6-3", "16 conv"), ("6-3", "128 conv")):
-        measured, estimated = table(figure, name, "deviation"), table(figure, name, "estimated")
+        measured, estimated = (
+            quick_table(figure, name, "deviation"),
+            quick_table(figure, name, "estimated"),
+        )
         assert measured == pytest.approx(estimated, rel=0.15)
 
 
+@pytest.mark.slow
 def test_feedback_and_good_estimates_help_where_the_thesis_says(table: Table) -> None:
     assert table("6-9", "100 N") > 10.0 > table("6-9", "link alone") > 1.2
     assert table("6-8", "Table 6-2") > 3.0
     assert table("6-8", "chapter 5") < 1.0  # there the poor ones happen to add up
 
 
+@pytest.mark.slow
 def test_ripple_is_in_the_torque_of_a_closed_loop_only(table: Table) -> None:
     assert table("6-12", "torque") > 2.0 > 1e-3 > table("6-15", "torque")
     assert table("6-16", "velocity") > 1.5 * table("6-13", "velocity")
@@ -145,6 +180,7 @@ def _map(table: Table, figure: str, what: str) -> float:
     return table(figure, what, "friction", without="faster")
 
 
+@pytest.mark.slow
 def test_adaptation_holds_for_slow_motion_only(table: Table) -> None:
     holds = [table("Table 6-1", motion) for motion in ("±60° in 3", "±60° in 6", "±20° in 6")]
     assert holds == sorted(holds)

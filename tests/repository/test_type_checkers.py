@@ -19,6 +19,7 @@ COMMANDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("checker", COMMANDS)
 def test_misspelt_names(checker: str, tmp_path: Path) -> None:
     if find_spec(checker) is None:

@@ -47,7 +47,7 @@ def cases(folder: Path) -> dict[str, Case]:
         Where files are written.
     """
     good = jid.load(GOOD)
-    return _damaged(good) | _mismatched() | _unlike(good) | _of_files(good, folder)
+    return damaged(good) | _mismatched() | _unlike(good) | _of_files(good, folder)
 
 
 # The names of the tests' own table of defects, where it has the code.
@@ -86,7 +86,8 @@ def _frozen(recording: jid.Recording) -> jid.Recording:
     return defects.changed(recording, sensor=sensor)
 
 
-def _damaged(good: jid.Recording) -> dict[str, Case]:
+def damaged(good: jid.Recording) -> dict[str, Case]:
+    """Return those that are a good recording with a defect."""
     made = _DAMAGED | {"constant_signal": _frozen, "ripple": _rippled}
     found = {code: Case(recording=make(good)) for code, make in made.items()}
     late = defects.late_velocity(good)
