@@ -53,6 +53,7 @@ def test_the_report_says_how_many_times_smaller_an_error_is(ring: Commissioning)
     assert " times larger" in worse.report()
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bits(ring: Commissioning) -> None:
     again = commission(Bench.load(EXAMPLE), cycles=2, emulate=True, seed=1)
     assert again.to_dict() == ring.to_dict()

@@ -614,6 +614,7 @@ def _lines(path: Path) -> Iterator[str]:
     return iter(path.read_text().splitlines() if path.exists() else [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kill", [signal.SIGKILL, signal.SIGINT])
 def test_a_killed_study_goes_on(
     kill: signal.Signals, long_study: jid.Study, tmp_path: Path
