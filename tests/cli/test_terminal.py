@@ -50,9 +50,9 @@ CALLS: dict[str, list[str]] = {
 CALLS |= {f"{command} --help": [command, "--help"] for command in HELP}
 LONG = {"run", "design", "first-motion", "demo"}
 SLOW = {*LONG, *(name for name in CALLS if name.endswith(" --help") and name != "run --help")}
-# Each quick call at the narrowest and the usual width; the others where much is computed, or argparse alone writes.
+# Quickly at the narrowest; slow are other widths, what computes much, and what argparse alone writes.
 CASES = [
-    pytest.param(name, width, marks=[pytest.mark.slow] if name in SLOW or width == 120 else [])
+    pytest.param(name, width, marks=[pytest.mark.slow] if name in SLOW or width > 60 else [])
     for name in CALLS
     for width in ([80] if name in LONG else [60, 80, 120])
 ]

@@ -147,6 +147,28 @@ def test_several_observers_are_called_and_closed_each() -> None:
     assert wording == ["a run", "plain run", "b run", "a closed", "b closed"]
 
 
+def test_what_comes_through_the_pipe_ends_as_a_picture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from matplotlib import pyplot
+
+    from jointid.hardware.live.plot import POINT
+    from jointid.hardware.live.window import main
+
+    picture = tmp_path / "live.png"
+    reading, writing = os.pipe()
+    os.write(writing, b"".join(POINT.pack(0.1 * k, 0.5, 0.4, 1.0, 2.0) for k in range(50)))
+    os.close(writing)
+    words = ["window", "--span", "10", "--no-window", "--picture", str(picture)]
+    monkeypatch.setattr("sys.argv", words)
+    with os.fdopen(reading, "rb") as pipe:
+        monkeypatch.setattr("sys.stdin", pipe)
+        assert main() == 0
+    pyplot.close("all")
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.slow
 def test_a_live_plot_of_a_session_ends_as_a_picture(tmp_path: Path) -> None:
     picture = tmp_path / "live.png"
     bus = EmulatedBus(*devices())

@@ -53,7 +53,7 @@ def whole() -> jid.Recording:
     return recording
 
 
-@pytest.mark.parametrize("rows", [20, 150, 500])
+@pytest.mark.parametrize("rows", [20, pytest.param(150, marks=pytest.mark.slow), 500])
 def test_a_killed_session_has_left_its_rows(
     tmp_path: Path, whole: jid.Recording, rows: int
 ) -> None:
