@@ -36,6 +36,7 @@ def test_the_classical_way_gives_the_published_friction(log: tx40_tables.Log) ->
     assert values["coulomb motor 6"] == pytest.approx(tx40.COULOMB[tx40.MOTOR_6], rel=0.02)
 
 
+@pytest.mark.slow
 def test_ours_predicts_held_out_blocks_as_well(log: tx40_tables.Log) -> None:
     theirs = tx40_tables.held_out_of_classical(log, tx40_tables.MOTION, 25)
     mine = tx40_tables.held_out_of_ours(log, tx40_tables.MOTION, inertia="free")

@@ -79,7 +79,7 @@ def warned(estimate: jid.RobotEstimate) -> list[str]:
     return [each.code for each in estimate.warnings if each.code not in quality]
 
 
-@pytest.mark.parametrize(("seed", "joint"), [(0, 1), (1, 2)])
+@pytest.mark.parametrize(("seed", "joint"), [(0, 1), pytest.param(1, 2, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("code", "of_position", "of_torque"),
     [("wrong_motion_sign", -1.0, 1.0), ("wrong_torque_sign", 1.0, -1.0)],
@@ -97,20 +97,22 @@ def test_a_sign_of_an_arm_with_a_slide_is_named_as_that(
     assert f"j{joint + 1}" in found.findings[0].cause
 
 
-@pytest.mark.parametrize("seed", [0])
+@pytest.mark.parametrize("joints", [3, pytest.param(6, marks=pytest.mark.slow)])
 def test_a_coupling_is_named_though_its_motor_has_no_friction_of_its_own(
-    tmp_path: Path, seed: int
+    tmp_path: Path, joints: int
 ) -> None:
     path = tmp_path / "arm.urdf"
-    path.write_text(urdf("rrrrrr", seed))
-    time, q, torque = moved(path, seed)
-    coupling, ratio = np.eye(6), 40.0
-    coupling[5, 4] = 1.0
+    path.write_text(urdf("r" * joints, 0))
+    time, q, torque = moved(path, 0)
+    coupling, ratio = np.eye(joints), 40.0
+    coupling[-1, -2] = 1.0
     pushed: Array = np.asarray(np.linalg.solve(coupling.T, torque.T).T / ratio, dtype=np.float64)
     run = recorded(time, ratio * q @ coupling.T, pushed, side="motor")
-    found = jid.identify_robot(run, jid.Robot.from_urdf(path, gear_ratios=[ratio] * 6))
+    found = jid.identify_robot(run, jid.Robot.from_urdf(path, gear_ratios=[ratio] * joints))
     assert warned(found)[:1] == ["wrong_coupling"]
-    assert found.findings[0].advice[0].arguments == {"couplings": {"j6": {"j5": 1.0}}}
+    assert found.findings[0].advice[0].arguments == {
+        "couplings": {f"j{joints}": {f"j{joints - 1}": 1.0}}
+    }
 
 
 def test_a_mirrored_plane_names_both_joints_that_may_turn_the_other_way(tmp_path: Path) -> None:
@@ -136,7 +138,9 @@ def test_a_mirrored_plane_names_both_joints_that_may_turn_the_other_way(tmp_path
     assert "j2 does" in found.findings[0].cause or "j1 does" in found.findings[0].cause
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))]
+)
 def test_a_tilt_is_not_told_as_a_zero_and_a_smaller_tilt(tmp_path: Path, seed: int) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text(urdf("rrpr", seed))

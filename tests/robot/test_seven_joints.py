@@ -31,19 +31,19 @@ def robot(**options: Any) -> jid.Robot:
     return jid.Robot.from_urdf(URDF, **options)
 
 
-def ran(arm: Arm, duration: float = 12.0) -> Run:
+def ran(arm: Arm, duration: float = 8.0) -> Run:
     return run(arm, random_motion(SEED, duration=duration))
 
 
 @pytest.fixture(scope="module")
 def plain() -> Run:
     """Coulomb and viscous friction alone."""
-    return ran(random_arm(SEED, stribeck=False))
+    return ran(random_arm(SEED, stribeck=False), 12.0)
 
 
 @pytest.fixture(scope="module")
 def with_stribeck() -> Run:
-    return ran(random_arm(SEED), 20.0)
+    return ran(random_arm(SEED))
 
 
 def errors(found: jid.RobotEstimate, arm: Arm) -> dict[str, np.ndarray]:
@@ -156,6 +156,7 @@ def test_a_coupled_wrist(wrist: tuple[Run, jid.RobotRecording]) -> None:
     assert found.warnings == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [0.0, -1.0], ids=["not told", "wrong sign"])
 def test_a_wrong_coupling_is_named(wrist: tuple[Run, jid.RobotRecording], sign: float) -> None:
     coupled, recording = wrist
@@ -169,6 +170,7 @@ def test_a_wrong_coupling_is_named(wrist: tuple[Run, jid.RobotRecording], sign: 
     assert "joint_7" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("signals", [("torque",), ("position", "velocity", "torque")])
 def test_joints_that_are_exchanged_are_named(plain: Run, signals: tuple[str, ...]) -> None:
     recording = recorded(plain, Sensors(), SEED)

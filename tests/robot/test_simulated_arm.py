@@ -13,7 +13,7 @@ pinocchio: Any = pytest.importorskip("pinocchio")
 
 @pytest.fixture(scope="module", params=[False, True], ids=["plain", "coupled"])
 def ran(request: pytest.FixtureRequest) -> Run:
-    return run(random_arm(3, coupled=request.param), random_motion(3, duration=4.0))
+    return run(random_arm(3, coupled=request.param), random_motion(3, duration=3.0))
 
 
 def friction(arm: Arm, velocity: np.ndarray) -> np.ndarray:
@@ -68,7 +68,7 @@ def test_torque_is_momentum_and_friction(ran: Run) -> None:
 
 
 def test_smaller_steps_change_little() -> None:
-    arm, motion = random_arm(5), random_motion(5, duration=3.0)
+    arm, motion = random_arm(5), random_motion(5, duration=1.5)
     coarse, fine = run(arm, motion), run(arm, motion, steps=8)
     assert np.abs(coarse.position - fine.position).max() < 2e-6
     change = np.sqrt(np.mean((coarse.torque - fine.torque) ** 2, axis=0))
@@ -76,7 +76,7 @@ def test_smaller_steps_change_little() -> None:
 
 
 def test_standstill_is_held_within_static_friction() -> None:
-    ran = run(random_arm(3), random_motion(3, duration=4.0))
+    ran = run(random_arm(3), random_motion(3, duration=3.0))
     given, found, held = balance(ran, 50)
     level = (ran.arm.values("coulomb") + ran.arm.values("static")) * 50e-3
     holding = np.abs(given - found)[held]

@@ -12,9 +12,9 @@ from jointid.robot.stamps import on_even_clock
 pytest.importorskip("pinocchio")
 
 
-@pytest.mark.parametrize("lateness", [1e-4, 3e-4])
+@pytest.mark.parametrize("lateness", [1e-4, pytest.param(3e-4, marks=pytest.mark.slow)])
 def test_stamps_of_a_busy_host(lateness: float) -> None:
-    ran = run(random_arm(2, stribeck=False), random_motion(2, duration=12.0))
+    ran = run(random_arm(2, stribeck=False), random_motion(2, duration=5.0))
     recording = recorded(ran, Sensors(stamp_lateness=lateness), 2)
     clock = on_even_clock(recording).time
     assert np.ptp(np.diff(clock)) < 1e-9

@@ -52,7 +52,7 @@ def told(found: jid.RobotEstimate, code: str) -> list[Finding]:
     return [each for each in found.findings if each.code == code]
 
 
-@pytest.mark.parametrize("delay", [3e-3, 10e-3])
+@pytest.mark.parametrize("delay", [3e-3, pytest.param(10e-3, marks=pytest.mark.slow)])
 def test_a_late_torque_is_found_and_taken_away(ran: Run, delay: float) -> None:
     found = identified(late(ran, [delay] * JOINTS))
     (said,) = told(found, "delay_removed")
@@ -115,9 +115,18 @@ def test_another_shift_is_refused(ran: Run, shift: Any, argument: str) -> None:
     assert refused.value.argument == argument
 
 
-@pytest.mark.parametrize(("seed", "noise"), [(102, 3e-4), (101, 1e-5)])
-def test_noise_of_the_positions_is_no_early_torque(seed: int, noise: float) -> None:
-    arm = run(random_arm(seed), random_motion(seed))
+@pytest.mark.parametrize(
+    ("seed", "noise", "duration"),
+    [
+        (102, 3e-4, 4.0),
+        pytest.param(102, 3e-4, 20.0, marks=pytest.mark.slow),
+        pytest.param(101, 1e-5, 20.0, marks=pytest.mark.slow),
+    ],
+)
+def test_noise_of_the_positions_is_no_early_torque(
+    seed: int, noise: float, duration: float
+) -> None:
+    arm = run(random_arm(seed), random_motion(seed, duration=duration))
     noisy = recorded(arm, Sensors(position_noise=noise, velocity_delay=None), seed)
     found = jid.identify_robot(noisy, jid.Robot.from_urdf(URDF))
     assert not told(found, "signal_lag")

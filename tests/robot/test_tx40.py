@@ -72,6 +72,7 @@ def test_the_document_is_whole(estimate: jid.RobotEstimate, tmp_path: Path) -> N
     assert "joint_6" in estimate.report()
 
 
+@pytest.mark.slow
 def test_a_coupling_that_is_not_told_is_named(shared_data: Path) -> None:
     robot = jid.Robot.from_urdf(
         shared_data / "tx40" / "tx40.urdf", gear_ratios=[32, 32, 45, -48, 45, 32]
