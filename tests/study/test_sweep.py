@@ -139,6 +139,7 @@ def test_threads_and_executors_give_the_same_bits(
         )
 
 
+@pytest.mark.slow
 def test_a_dask_cluster_of_processes_gives_the_same_bits(
     scenario: jid.Scenario, recording: jid.Recording, joint: jid.Joint, study: jid.Study
 ) -> None:
@@ -278,18 +279,18 @@ def test_a_dead_worker_is_reported_with_what_was_done(
     recording: jid.Recording, joint: jid.Joint, tmp_path: Path
 ) -> None:
     path = tmp_path / "study.jsonl"
-    again: dict[str, Any] = {"grid": {"windows": list(range(50, 250, 5))}, "trials": 4}
+    again: dict[str, Any] = {"grid": {"windows": list(range(50, 250, 20))}, "trials": 4}
     again |= {"search": jid.Search(ga="thesis"), "output": path}
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
 
-        def kill_one(step: jid.StudyStep) -> None:
+        def kill(step: jid.StudyStep) -> None:
             if step.number > 4:
-                for process in list(pool._processes.values())[:1]:
+                for process in list(pool._processes.values()):
                     process.kill()
 
         with pytest.raises(jid.StudyBrokenError, match="with an output file can be") as broken:
-            jid.sweep(recording, joint, executor=pool, callback=kill_one, **again)
-    assert 4 < len(broken.value.study) < 160
+            jid.sweep(recording, joint, executor=pool, callback=kill, **again)
+    assert 4 < len(broken.value.study) < 40
     assert jid.Study.load(path).rows == broken.value.study.rows
     whole = jid.sweep(recording, joint, resume=True, **again)
     assert whole.complete
@@ -590,7 +591,7 @@ try:
     jid.sweep(
         recording,
         jid.thesis_joint(),
-        grid={"windows": list(range(50, 450, 10))},
+        grid={"windows": list(range(50, 450, int(sys.argv[3])))},
         trials=4,
         search=jid.Search(ga="thesis", threads=2),
         output=sys.argv[1],
@@ -602,33 +603,33 @@ except jid.StudyInterruptedError as interrupted:
 """
 
 
-@pytest.fixture(scope="module")
-def long_study(recording: jid.Recording, joint: jid.Joint) -> jid.Study:
-    windows = list(range(50, 450, 10))
-    return jid.sweep(
-        recording, joint, grid={"windows": windows}, trials=4, search=jid.Search(ga="thesis")
-    )
-
-
 def _lines(path: Path) -> Iterator[str]:
     return iter(path.read_text().splitlines() if path.exists() else [])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kill", [signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize(
+    ("kill", "step"),
+    [
+        (signal.SIGKILL, 60),
+        pytest.param(signal.SIGKILL, 10, marks=pytest.mark.slow),
+        pytest.param(signal.SIGINT, 10, marks=pytest.mark.slow),
+    ],
+)
 def test_a_killed_study_goes_on(
-    kill: signal.Signals, long_study: jid.Study, tmp_path: Path
+    recording: jid.Recording, joint: jid.Joint, tmp_path: Path, kill: signal.Signals, step: int
 ) -> None:
+    """After each 15 rows of at least 28."""
+    grid = {"windows": list(range(50, 450, step))}
     path = tmp_path / "study.jsonl"
     kills = 0
     for _ in range(20):
         begun = len(list(_lines(path)))
         child = subprocess.Popen(
-            [sys.executable, "-c", _LONG, str(path), str(WELL_EXCITED)],
+            [sys.executable, "-c", _LONG, str(path), str(WELL_EXCITED), str(step)],
             stdout=subprocess.PIPE,
             text=True,
         )
-        while child.poll() is None and len(list(_lines(path))) < begun + 20:
+        while child.poll() is None and len(list(_lines(path))) < begun + 15:
             time.sleep(0.002)
         if child.poll() is None:
             os.kill(child.pid, kill)
@@ -641,10 +642,11 @@ def test_a_killed_study_goes_on(
             if child.returncode == 130:
                 assert int(wording) == len(jid.Study.load(path))
     assert kills > 0
-    assert jid.Study.load(path).rows == long_study.rows
+    whole = jid.sweep(recording, joint, grid=grid, trials=4, search=jid.Search(ga="thesis"))
+    assert jid.Study.load(path).rows == whole.rows
     rows = [json.loads(line) for line in _lines(path)]
     places = [(row["cell"], row["trial"]) for row in rows if "cell" in row]
-    assert len(places) == len(set(places)) == 160
+    assert len(places) == len(set(places)) == len(whole.rows)
 
 
 def test_a_plot_shows_each_cell(study: jid.Study) -> None:
