@@ -16,9 +16,24 @@ from jointid.hardware.bench.bench import Bench
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
 
 
+def short(folder: Path, seconds: float = 3.0) -> Path:
+    """The example's bench, with a motion of less than 12 s."""
+    path = folder / "joint.toml"
+    text = EXAMPLE.read_text(encoding="utf-8")
+    assert "duration = 12.0" in text
+    path.write_text(text.replace("duration = 12.0", f"duration = {seconds}"), encoding="utf-8")
+    return path
+
+
 @pytest.fixture(scope="module")
-def ring() -> Commissioning:
-    return commission(Bench.load(EXAMPLE), cycles=2, emulate=True, seed=1)
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    return Bench.load(short(tmp_path_factory.mktemp("bench"), 6.0))
+
+
+@pytest.fixture(scope="module", params=[1, pytest.param(2, marks=pytest.mark.slow)])
+def ring(request: pytest.FixtureRequest, bench: Bench) -> Commissioning:
+    chosen = bench if request.param == 1 else Bench.load(EXAMPLE)
+    return commission(chosen, cycles=request.param, emulate=True, seed=1)
 
 
 def test_the_error_falls_to_that_with_the_true_parameters(ring: Commissioning) -> None:
@@ -28,11 +43,12 @@ def test_the_error_falls_to_that_with_the_true_parameters(ring: Commissioning) -
 
 
 def test_what_is_identified_is_the_emulators_truth(ring: Commissioning) -> None:
-    last = ring.estimates[-1]
+    last, brief = ring.estimates[-1], len(ring.estimates) == 1
+    loose = {"stribeck": 0.05} | ({"static": 0.04} if brief else {})
     for name, value in ring.truth.items():
-        within = 0.05 if name == "stribeck" else 0.02
+        within = loose.get(name, 0.02)
         assert last.parameters[name].value == pytest.approx(value, rel=within), name
-    assert last.warnings == ()
+    assert {each.code for each in last.warnings} <= ({"undetermined"} if brief else set())
 
 
 def test_the_effect_of_ripple_is_reported(ring: Commissioning) -> None:
@@ -53,14 +69,19 @@ def test_the_report_says_how_many_times_smaller_an_error_is(ring: Commissioning)
     assert " times larger" in worse.report()
 
 
-@pytest.mark.slow
-def test_the_same_seed_gives_the_same_bits(ring: Commissioning) -> None:
-    again = commission(Bench.load(EXAMPLE), cycles=2, emulate=True, seed=1)
-    assert again.to_dict() == ring.to_dict()
+def test_the_same_seed_gives_the_same_bits(tmp_path: Path) -> None:
+    bench = Bench.load(short(tmp_path))
+    first, again = (commission(bench, cycles=1, emulate=True, seed=1) for _ in range(2))
+    assert again.to_dict() == first.to_dict()
     for name, recording in again.recordings().items():
-        assert recording.fingerprint == ring.recordings()[name].fingerprint
-    other = commission(Bench.load(EXAMPLE), cycles=1, emulate=True, seed=2)
-    assert other.to_dict()["runs"] != ring.to_dict()["runs"]
+        assert recording.fingerprint == first.recordings()[name].fingerprint
+
+
+def test_another_seed_gives_other_bits(tmp_path: Path) -> None:
+    bench = Bench.load(short(tmp_path))
+    first, other = (commission(bench, cycles=0, emulate=True, seed=seed) for seed in (1, 2))
+    assert other.runs[0].recording.fingerprint != first.runs[0].recording.fingerprint
+    assert other.runs[0].tracking_error != first.runs[0].tracking_error
 
 
 def test_a_session_is_no_simulation_but_close_to_it(ring: Commissioning) -> None:
@@ -92,7 +113,8 @@ def test_the_command_writes_runs_and_saves_the_bench(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     runs, saved = tmp_path / "runs", tmp_path / "found.toml"
-    words = ["run", str(EXAMPLE), "--emulate", "--cycles", "1", "--output", str(runs)]
+    bench = short(tmp_path, 6.0)
+    words = ["run", str(bench), "--emulate", "--cycles", "1", "--output", str(runs)]
     assert main([*words, "--save", str(saved), "--json", "--quiet"]) == 0
     wording = json.loads(capsys.readouterr().out)
     assert wording["improvement"] >= 3.0
@@ -100,7 +122,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
     assert found.joint.parameters["coulomb"].value == pytest.approx(25.0, rel=0.02)
     assert "docs/hardware.md first" in saved.read_text(encoding="utf-8")
     recording = jid.load(runs / "cycle_1.csv")
-    assert recording.duration == pytest.approx(12.0, abs=0.01)
+    assert recording.duration == pytest.approx(6.0, abs=0.01)
     for name in ("initial.log", "cycle_1.json", "report.html", "ring.txt"):
         assert (runs / name).stat().st_size > 0
     assert main([*words, "--quiet"]) == 2
@@ -143,9 +165,9 @@ def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_what_was_recorded_is_kept_by_what_ends_a_commissioning(
-    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    bench, runs = Bench.load(EXAMPLE), list[str]()
+    bench, runs = Bench.load(short(tmp_path)), list[str]()
     monkeypatch.setattr(ring_module, "identify", lambda *_, **__: Identified(bench.joint))
 
     def callback(text: str) -> None:
@@ -176,9 +198,9 @@ class Identified:
 
 
 def test_no_cycles_only_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = EXAMPLE.read_text(encoding="utf-8").replace("duration = 12.0", "duration = 3.0")
+    bench = short(tmp_path)
+    text = bench.read_text(encoding="utf-8")
     head, tail = text.split('law = "adaptive_robust"')
-    bench = tmp_path / "joint.toml"
     gains = 'law = "pd"\nstiffness = 8000.0\ndamping = 400.0\n'
     bench.write_text(head + gains + tail[tail.index("\n[session.") :], encoding="utf-8")
     runs = tmp_path / "runs"
@@ -200,8 +222,8 @@ def test_no_cycles_only_record(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_the_joint_is_not_moved_with_values_that_cannot_be_used(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    bench, runs, saved = tmp_path / "joint.toml", tmp_path / "runs", tmp_path / "found.toml"
-    text = EXAMPLE.read_text(encoding="utf-8")
+    bench, runs, saved = short(tmp_path), tmp_path / "runs", tmp_path / "found.toml"
+    text = bench.read_text(encoding="utf-8")
     wrong = text.replace("[session.emulated] ", "[session.emulated]\nsensor_sign = -1\n# ")
     assert wrong != text
     bench.write_text(wrong, encoding="utf-8")
@@ -227,9 +249,8 @@ def test_a_recording_that_nobody_keeps_is_not_made(capsys: pytest.CaptureFixture
 
 
 def test_json_tells_how_a_run_ended(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = EXAMPLE.read_text(encoding="utf-8").replace("duration = 12.0", "duration = 3.0")
-    bench, runs = tmp_path / "joint.toml", tmp_path / "runs"
-    bench.write_text(text, encoding="utf-8")
+    bench, runs = short(tmp_path), tmp_path / "runs"
+    text = bench.read_text(encoding="utf-8")
     words = ["run", str(bench), "--emulate", "--json", "--quiet", "--cycles", "0"]
     assert main([*words, "--output", str(runs)]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -263,7 +284,7 @@ def test_ctrl_c_between_two_motions_says_where_the_recording_is(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(ring_module, "identify", interrupted)
-    runs = tmp_path / "runs"
-    assert main(["run", str(EXAMPLE), "--emulate", "--output", str(runs), "--quiet"]) == 130
+    runs, bench = tmp_path / "runs", short(tmp_path)
+    assert main(["run", str(bench), "--emulate", "--output", str(runs), "--quiet"]) == 130
     said = capsys.readouterr().err
     assert f"the motor was seen off; recorded: {runs / 'initial.csv'}" in said

@@ -22,6 +22,7 @@ from jointid.design.rehearsal import rehearse
 LIMITS = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
 SENSORS = jid.Sensors(torque_noise=0.5)
 SETTINGS: dict[str, int] = {"evaluations": 1024, "rehearsals": 60, "joints": 3}
+SMALL: dict[str, int] = {"evaluations": 128, "rehearsals": 10, "joints": 2}
 QUICK = jid.DesignSearch(evaluations=256, rehearsals=60, joints=3)
 
 
@@ -63,11 +64,12 @@ def errors_of(trajectory: jid.Trajectory, runs: int, first: int = 90_000) -> dic
     return {name: math.sqrt(square) for name, square in squares.items()}
 
 
+@pytest.mark.parametrize("runs", [24, pytest.param(60, marks=pytest.mark.slow)])
 def test_the_errors_are_those_that_were_expected_and_smaller_than_of_the_usual_motion(
-    found: jid.Design,
+    found: jid.Design, runs: int
 ) -> None:
-    counted = errors_of(found.trajectory, 60)
-    usual = errors_of(jid.Trajectory.thesis(duration=6.0), 60)
+    counted = errors_of(found.trajectory, runs)
+    usual = errors_of(jid.Trajectory.thesis(duration=6.0), runs)
     for name, expected in found.parameters.items():
         assert expected.relative == pytest.approx(counted[name], rel=0.45), name
         assert expected.stderr == pytest.approx(expected.relative * abs(TRUTH[name]))
@@ -105,12 +107,17 @@ def test_the_motion_starts_and_ends_at_rest(found: jid.Design) -> None:
     assert position[0] == position[1]
 
 
-def test_a_seed_gives_the_same_motion_on_any_number_of_threads(found: jid.Design) -> None:
-    again = design(search=jid.DesignSearch(**SETTINGS, threads=1))
-    assert again.trajectory == found.trajectory
-    assert again.to_dict() == found.to_dict()
-    other = design(search=jid.DesignSearch(**SETTINGS, seed=1))
-    assert other.trajectory != found.trajectory
+@pytest.mark.parametrize(
+    "settings", [SMALL, pytest.param(SETTINGS, marks=pytest.mark.slow)], ids=["small", "large"]
+)
+def test_a_seed_gives_the_same_motion_on_any_number_of_threads(settings: dict[str, int]) -> None:
+    first, again, other = (
+        design(search=jid.DesignSearch(**settings, **more))
+        for more in ({}, {"threads": 1}, {"seed": 1})
+    )
+    assert again.trajectory == first.trajectory
+    assert again.to_dict() == first.to_dict()
+    assert other.trajectory != first.trajectory
 
 
 def test_known_information_makes_the_errors_smaller(found: jid.Design) -> None:
@@ -140,11 +147,11 @@ def test_the_determinant_is_another_criterion(found: jid.Design) -> None:
 
 def test_progress_is_reported_and_true_ends_the_search() -> None:
     steps: list[jid.DesignProgress] = []
-    design(callback=steps.append)
+    design(callback=steps.append, search=jid.DesignSearch(**SMALL))
     assert [step.number for step in steps] == sorted(step.number for step in steps)
     assert steps[-1].number == steps[-1].total
     assert all(step.best > 0.0 for step in steps)
-    short = design(callback=lambda _: True)
+    short = design(callback=lambda _: True, search=jid.DesignSearch(**SMALL))
     assert short.evaluations < 0.5 * steps[-1].total
 
 
@@ -319,7 +326,7 @@ def test_more_torque_than_the_drive_has_is_refused() -> None:
 
 
 def test_a_loop_that_rattles_at_its_limits_is_named() -> None:
-    found = design(controller=jid.Pd(stiffness=1e12))
+    found = design(controller=jid.Pd(stiffness=1e12), search=jid.DesignSearch(**SMALL))
     assert found.status == "limits exceeded"
     assert found.reason.startswith("the torque is cut at the limit of 160 N·m, for a joint with ")
     assert found.reason in found.summary()

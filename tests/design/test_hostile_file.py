@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dealt_places import dealt
 from designs import designed
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -91,10 +92,11 @@ def _warned(path: Path) -> None:
         motion.designed_for.warning(motion.trajectory, DESIGN.joint, DESIGN.controller, 1e-3)
 
 
+@pytest.mark.parametrize("shares", [6, pytest.param(1, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("value", VALUES, ids=[value[:12] for value in VALUES])
-def test_one_value_anywhere(value: str, tmp_path: Path) -> None:
+def test_one_value_anywhere(value: str, shares: int, tmp_path: Path) -> None:
     path = tmp_path / "motion.toml"
-    for place in PLACES:
+    for place in dealt(PLACES, VALUES.index(value), shares):
         path.write_text(_text({place: value}), encoding="utf-8")
         _used(path)
 

@@ -188,14 +188,14 @@ def test_the_command_does_what_the_finding_says(
         .replace("LOW,HIGH", "-1,1")
         .replace("SPEED", "1.12")
     )
-    quick = ["--evaluations", "100", "--joints", "2", "--seed", "4", "--quiet"]
-    assert main([*command, *quick]) == 0
+    quick = ["--evaluations", "100", "--joints", "2", "--rehearsals", "16"]
+    assert main([*command, *quick, "--seed", "4", "--quiet"]) == 0
     design = jid.load_design("motion.toml")
     assert design.duration == pytest.approx(6.0)
     assert design.limits.velocity == 1.12
     assert all(row.before is not None for row in design.parameters.values())
     assert design.controller == default_controller(poor.joint, design.limits.torque or 0.0)
-    search = jid.DesignSearch(evaluations=100, joints=2, seed=4)
+    search = jid.DesignSearch(evaluations=100, joints=2, rehearsals=16, seed=4)
     limits = {"position": (-1.0, 1.0), "velocity": 1.12}
     assert poor.next_motion(limits, 6.0, search=search).trajectory == design.trajectory
 

@@ -6,11 +6,11 @@ import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from random import Random
 from typing import Any
 
 import numpy as np
 import pytest
+from dealt_places import dealt
 
 import jointid as jid
 from jointid.base import html
@@ -71,11 +71,6 @@ def paths(value: Any, here: Path_ = ()) -> Iterator[Path_]:
             yield from paths(value[i], (*here, i))
 
 
-def dealt(places: list[Path_], junk: str) -> list[Path_]:
-    """The places that are this junk's where each place has one."""
-    return Random(0).sample(places, len(places))[list(JUNK).index(junk) :: len(JUNK)]
-
-
 def damaged(path: Path_, junk: str, schema: int = 3) -> str:
     """The saved estimate with one place set to this JSON text."""
     changed: Any = {"all": document(schema)}
@@ -126,7 +121,7 @@ def test_every_place_of_a_saved_estimate(
 ) -> None:
     accepted = 0
     places = list(paths(document(schema)))
-    for path in places if every else dealt(places, junk):
+    for path in places if every else dealt(places, [*JUNK].index(junk), len(JUNK)):
         estimate = read(damaged(path, JUNK[junk], schema))
         if estimate is not None:
             accepted += 1

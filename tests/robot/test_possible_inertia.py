@@ -110,9 +110,7 @@ def test_motors_too_heavy_leave_links_that_cannot_be(path: Path, tmp_path: Path)
     with pytest.raises(jid.InputError, match="no bodies"):
         jid.export(found, tmp_path / "out.urdf", into=path, inertia=True)
     # What explains the torque is kept.
-    assert found.predict(run).relative_residual == pytest.approx(
-        found.relative_residual, rel=1e-6
-    )
+    assert found.predict(run).relative_residual == pytest.approx(found.relative_residual, rel=1e-6)
 
 
 def test_the_distance_is_in_standard_errors() -> None:

@@ -4,12 +4,12 @@ import json
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from random import Random
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 import pytest
+from dealt_places import dealt
 from small_arm import recording, urdf
 
 import jointid as jid
@@ -68,11 +68,6 @@ def damaged(path: Path_, junk: str) -> str:
     return json.dumps(changed["all"]).replace('"JUNK"', junk)
 
 
-def dealt(places: list[Path_], junk: str) -> list[Path_]:
-    """The places that are this junk's where each place has one."""
-    return Random(0).sample(places, len(places))[list(JUNK).index(junk) :: len(JUNK)]
-
-
 @pytest.mark.parametrize("inertia", ["urdf", "scaled", "free"])
 def test_everything_works_after_reading_back(inertia: Inertia, tmp_path: Path) -> None:
     found, _, run = made(inertia)
@@ -99,7 +94,7 @@ def test_everything_works_after_reading_back(inertia: Inertia, tmp_path: Path) -
 def test_every_place_of_a_saved_robot(junk: str, every: bool) -> None:
     accepted = 0
     places = list(paths(json.loads(made()[1])))
-    for path in places if every else dealt(places, junk):
+    for path in places if every else dealt(places, [*JUNK].index(junk), len(JUNK)):
         try:
             found = jid.RobotEstimate.from_json(damaged(path, JUNK[junk]))
         except jid.InputError as error:
