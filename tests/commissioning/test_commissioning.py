@@ -113,7 +113,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     runs, saved = tmp_path / "runs", tmp_path / "found.toml"
-    bench = short(tmp_path, 6.0)
+    bench = short(tmp_path)
     words = ["run", str(bench), "--emulate", "--cycles", "1", "--output", str(runs)]
     assert main([*words, "--save", str(saved), "--json", "--quiet"]) == 0
     wording = json.loads(capsys.readouterr().out)
@@ -122,7 +122,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
     assert found.joint.parameters["coulomb"].value == pytest.approx(25.0, rel=0.02)
     assert "docs/hardware.md first" in saved.read_text(encoding="utf-8")
     recording = jid.load(runs / "cycle_1.csv")
-    assert recording.duration == pytest.approx(6.0, abs=0.01)
+    assert recording.duration == pytest.approx(3.0, abs=0.01)
     for name in ("initial.log", "cycle_1.json", "report.html", "ring.txt"):
         assert (runs / name).stat().st_size > 0
     assert main([*words, "--quiet"]) == 2

@@ -21,9 +21,9 @@ from jointid.design.rehearsal import rehearse
 
 LIMITS = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
 SENSORS = jid.Sensors(torque_noise=0.5)
-SETTINGS: dict[str, int] = {"evaluations": 1024, "rehearsals": 60, "joints": 3}
+SETTINGS: dict[str, int] = {"evaluations": 512, "rehearsals": 40, "joints": 3}
 SMALL: dict[str, int] = {"evaluations": 128, "rehearsals": 10, "joints": 2}
-QUICK = jid.DesignSearch(evaluations=256, rehearsals=60, joints=3)
+QUICK = jid.DesignSearch(**SMALL)
 
 
 def around(factor: float = 0.2) -> dict[str, tuple[float, float]]:
@@ -147,11 +147,11 @@ def test_the_determinant_is_another_criterion(found: jid.Design) -> None:
 
 def test_progress_is_reported_and_true_ends_the_search() -> None:
     steps: list[jid.DesignProgress] = []
-    design(callback=steps.append, search=jid.DesignSearch(**SMALL))
+    design(callback=steps.append)
     assert [step.number for step in steps] == sorted(step.number for step in steps)
     assert steps[-1].number == steps[-1].total
     assert all(step.best > 0.0 for step in steps)
-    short = design(callback=lambda _: True, search=jid.DesignSearch(**SMALL))
+    short = design(callback=lambda _: True)
     assert short.evaluations < 0.5 * steps[-1].total
 
 
@@ -326,7 +326,7 @@ def test_more_torque_than_the_drive_has_is_refused() -> None:
 
 
 def test_a_loop_that_rattles_at_its_limits_is_named() -> None:
-    found = design(controller=jid.Pd(stiffness=1e12), search=jid.DesignSearch(**SMALL))
+    found = design(controller=jid.Pd(stiffness=1e12))
     assert found.status == "limits exceeded"
     assert found.reason.startswith("the torque is cut at the limit of 160 N·m, for a joint with ")
     assert found.reason in found.summary()
