@@ -10,7 +10,9 @@ INSTALL := $(BIN)/python -m pip install --quiet --no-input --disable-pip-version
 # Python compiles what is imported; most of what the tools bring never is.
 TOOLS := $(INSTALL) --no-compile --group
 # One thread of BLAS in each process: several wait for each other, and take from the other processes what they wait.
-PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses auto --dist loadfile
+# Hundreds of processes import the same modules: each is compiled once, also where the environment keeps no bytecode.
+BYTECODE := PYTHONDONTWRITEBYTECODE= PYTHONPYCACHEPREFIX=$(CURDIR)/build/bytecode
+PYTEST := $(BYTECODE) OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 # What the installed package is made of, and a wheel in dist that is newer than all of it (or WHEEL=path): it is installed
 # instead of compiled. An editable install (`make develop`) is renewed each time, which takes seconds.
