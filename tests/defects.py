@@ -97,6 +97,19 @@ def repeated_samples(r: jid.Recording) -> jid.Recording:
     return changed(r, **rows(r, index))
 
 
+def repeated_sensor(r: jid.Recording) -> jid.Recording:
+    """Every fifth reading is a copy of the one before."""
+    assert r.sensor is not None
+    index = np.arange(len(r), dtype=np.intp)
+    index[4::5] -= 1
+    return changed(r, sensor=r.sensor[index])
+
+
+def wrapped_angle(r: jid.Recording) -> jid.Recording:
+    """An angle between 0 and a turn, whose zero lies within the motion."""
+    return changed(r, position=np.mod(r.position, 2.0 * np.pi))
+
+
 def gap(r: jid.Recording) -> jid.Recording:
     index = np.concatenate([np.arange(5000), np.arange(5400, len(r))]).astype(np.intp)
     return changed(r, time=r.time[index], **rows(r, index))
@@ -130,7 +143,9 @@ DEFECTS: Mapping[str, tuple[Callable[[jid.Recording], jid.Recording], str]] = {
     "samples jittered, stamps even": (jittered_samples, "time_jitter"),
     "stamps jittered, samples even": (jittered_stamps, "time_jitter"),
     "sensor clipped": (clipped_sensor, "sensor_clipped"),
-    "samples repeated": (repeated_samples, "repeated_samples"),
+    "samples repeated": (repeated_samples, "held_rows"),
+    "sensor repeated": (repeated_sensor, "repeated_samples"),
+    "angle wrapped": (wrapped_angle, "unwrapped"),
     "gap": (gap, "gaps"),
     "spike": (spike, "spikes"),
     "wrong gear ratio": (wrong_gear_ratio, "wrong_scale"),

@@ -63,7 +63,9 @@ _DAMAGED: dict[str, Callable[[jid.Recording], jid.Recording]] = {
     "jumps": lambda r: defects.changed(
         r, position=np.where(r.time < 5.0, r.position, r.position - 1.0)
     ),
-    "repeated_samples": defects.repeated_samples,
+    "repeated_samples": defects.repeated_sensor,
+    "held_rows": defects.repeated_samples,
+    "unwrapped": defects.wrapped_angle,
     "time_jitter": defects.jittered_stamps,
     "standing": defects.stuck,
     "gaps": defects.gap,
@@ -225,6 +227,7 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
             joint=None,
             identify={"model": jid.Model("coulomb_viscous", terms={"tau": "scaled"})},
         ),
+        "cross_check": Case(recording=defects.wrong_gear_ratio(good)),
         "hardly_moves": Case(recording=hardly, joint=None, identify={"search": None}),
         "other_signal": Case(recording=warm, joint=None, identify={"model": "coulomb_viscous"}),
         "poor_fit": Case(recording=foreign, joint=None),

@@ -31,6 +31,10 @@ SYMPTOMS: Mapping[str, Symptom] = {
     "stopped": Symptom(
         "The search ended before the penalty had settled; another seed gives other values.", windows
     ),
+    "cross_check": Symptom(
+        "A plain least squares on the recorded signals gives other values than the report's table.",
+        friction,
+    ),
     "reversed_sign": Symptom(
         "Friction seems to push the joint: it falls where the speed grows. Values end on their bounds.",
         friction,
@@ -88,7 +92,7 @@ SYMPTOMS: Mapping[str, Symptom] = {
     ),
     "repeated_samples": Symptom(
         "Stairs: a sample repeats the one before while the joint moves.",
-        samples("position", caption="Every fifth sample is a copy.", start=1.0, stop=1.04),
+        samples("sensor", caption="Every fifth reading is a copy.", start=1.0, stop=1.04),
     ),
     "time_jitter": Symptom(
         "The steps between time stamps scatter, though the samples were taken evenly.",
@@ -218,5 +222,15 @@ SYMPTOMS: Mapping[str, Symptom] = {
     "assumed_units": Symptom("A header has no unit."),
     "left_out": Symptom("A column of the file is not used."),
     "interpolated": Symptom("One channel has fewer samples than the others."),
+    "unwrapped": Symptom(
+        "The angle jumps by a turn, again and again.",
+        over_time(
+            "position", caption="The angle starts again at 0; the identification unwraps it."
+        ),
+    ),
+    "held_rows": Symptom(
+        "Rows repeat the row before, again and again.",
+        samples("velocity", caption="Every fifth row is a copy.", start=3.0, stop=3.05),
+    ),
     "message_log": Symptom("A channel ends before the others, or messages come twice or late."),
 }

@@ -25,6 +25,8 @@ constexpr double kStopped = 0.5;     // of the change of speed a sample: slower 
 constexpr Eigen::Index kBlock = 64;  // samples that are looked at together before one by one
 constexpr double kResolved =
     0.005;  // of the peak speed: a motion slower than this per quantum seems to stick
+constexpr double kHeld = 0.02;  // of the peak speed: a velocity above is no noise of one at rest
+constexpr double kSteps = 2.0;  // of the position, which a motion does not pass unseen
 
 /// Marks samples first..last of each run in which `same(k)` holds for consecutive k, if the run
 /// passes `long_enough`.
@@ -101,9 +103,18 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
   // Of most recordings no sample repeats the one before, and none is at rest.
   const Eigen::Index alike =
       base::least_steps(r.position.data(), n - 1).any > 0.0 ? 0 : r.samples();
+  // A position that is held while the velocity moves on is old: the logger is faster than the bus.
+  const auto moves_on = [&](Eigen::Index first, Eigen::Index last) {
+    double distance = 0.0;
+    for (Eigen::Index k = first; k <= last; ++k)
+      distance += 0.5 * (r.velocity[k] + r.velocity[k - 1]) * (r.time[k] - r.time[k - 1]);
+    const double slow = kHeld * scale.peak * (r.time[last] - r.time[first - 1]);
+    return std::fabs(distance) > std::max(kSteps * scale.quantum, slow);
+  };
   mark_runs(alike, standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
-    const bool stuck =
-        last - first >= 2 && r.time[last] - r.time[first - 1] >= sticking_time(scale);
+    const bool stuck = last - first >= 2 &&
+                       r.time[last] - r.time[first - 1] >= sticking_time(scale) &&
+                       !moves_on(first, last);
     any = any || stuck;
     return stuck;
   });

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
+from jointid.estimate.cross_check import CrossCheck
 from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Finding
 from jointid.estimate.questions import Questions
@@ -90,6 +91,9 @@ class Estimate(Questions):
         How the slowest windows disagree with the faster ones; None where that was not asked.
     selection : Selection or None
         How the model was chosen; None if it was named.
+    cross_check : CrossCheck or None
+        The second look: the values of an independent plain least squares on the signals as recorded, and whether they
+        agree. None in an estimate of an older version.
     follow_up : FollowUp or None
         Answers questions that need the recordings; None in an estimate that was read from a file.
 
@@ -122,6 +126,7 @@ class Estimate(Questions):
     slow_motion: SlowMotion | None = None
     selection: Selection | None = field(default=None, repr=False)
     information: Array | None = field(default=None, repr=False)
+    cross_check: CrossCheck | None = field(default=None, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:

@@ -12,6 +12,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.json_layout import json_text
 from jointid.base.schema import Number, read_json
+from jointid.estimate.cross_check import CrossCheck, SecondValue
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding, Measured
@@ -107,6 +108,7 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         delays={name: Delay(**entry) for name, entry in d.get("delays", {}).items()},
         slow_motion=None if d.get("slow_motion") is None else SlowMotion(**d["slow_motion"]),
         selection=_selection(d.get("selection")),
+        cross_check=_cross_check(d.get("cross_check")),
     )
 
 
@@ -169,6 +171,13 @@ def _selection(entry: Mapping[str, Any] | None) -> Selection | None:
     if entry is None:
         return None
     return Selection(**{**entry, "candidates": tuple(Candidate(**c) for c in entry["candidates"])})
+
+
+def _cross_check(entry: Mapping[str, Any] | None) -> CrossCheck | None:
+    if entry is None:
+        return None
+    values = {name: SecondValue(**each) for name, each in entry["values"].items()}
+    return CrossCheck(**{**entry, "values": values})
 
 
 def finding_of(entry: Mapping[str, Any]) -> Finding:

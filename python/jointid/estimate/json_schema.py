@@ -100,6 +100,15 @@ _SLOW_MOTION = Record(
         "applied": Flag(),
     }
 )
+_CROSS_CHECK = Record(
+    {
+        "values": TableOf(
+            Record({"value": _VALUE, "stderr": _SIZE, "spread": _SIZE, "agrees": Flag()})
+        ),
+        "delay": _VALUE,
+        "reason": Text(),
+    }
+)
 _FIELDS: dict[str, Kind] = {
     "schema": _COUNT,
     "kind": Text(),
@@ -137,6 +146,7 @@ ESTIMATE: dict[int, Kind] = {
             "bootstrap": Plain(),
             "delays": TableOf(DELAY),
             "slow_motion": OrNull(_SLOW_MOTION),
+            "cross_check": OrNull(_CROSS_CHECK),
         },
     ),
 }

@@ -19,6 +19,7 @@ from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
+from jointid.recording.mending import mended
 from jointid.recording.recording import Recording
 from jointid.recording.shifting import shifted
 
@@ -147,7 +148,7 @@ def _posed(fitted: FittedModel, recording: Recording) -> Problem:
     if recording.velocity_derived:
         shift = {name: delay for name, delay in shift.items() if name != "velocity"}
     return Problem(
-        recordings=tuple(shifted(run, shift) for run in listed(recording)),
+        recordings=tuple(shifted(mended(run)[0], shift) for run in listed(recording)),
         joint=fitted.joint,
         choice=choice,
         torque_hold=settings["torque_hold"],

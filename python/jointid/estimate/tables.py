@@ -90,8 +90,20 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
             f"{estimate.condition:.3g}, weakest direction: {', '.join(estimate.weakest)}",
         ),
         ("correlation", strongest_correlation(estimate)),
+        *([] if estimate.cross_check is None else [("second look", second_look(estimate))]),
         ("search", f"{estimate.message}; {estimate.status} in {estimate.seconds:.2f} s"),
     ]
+
+
+def second_look(estimate: Estimate) -> str:
+    """The values of the second look, or why there are none, in a line."""
+    check = estimate.cross_check
+    if check is None or check.reason:
+        return f"none: {check.reason}" if check else "none"
+    values = [f"{name} {rounded(each.value, each.error)}" for name, each in check.values.items()]
+    contradicted = ", ".join(check.contradicted)
+    verdict = f"disagrees at {contradicted}" if contradicted else "agrees"
+    return f"plain least squares {verdict}: {', '.join(values)}"
 
 
 def recorded(estimate: Estimate) -> list[tuple[str, str]]:

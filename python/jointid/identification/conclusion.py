@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -33,6 +33,7 @@ from jointid.identification.inference.systematic import (
 )
 from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.inference.velocity_noise import velocity_systematic
+from jointid.identification.plain_least_squares import second_look
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.engine import Balance
@@ -44,6 +45,7 @@ from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import column_sizes, columns_with, size
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
+from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
@@ -67,6 +69,7 @@ def infer(
     settings: dict[str, Any],
     seconds: float,
     refinements: Refinements,
+    recordings: Sequence[Recording],
     known: tuple[Cause, ...] = (),
     attribute: bool = True,
 ) -> Estimate:
@@ -80,6 +83,8 @@ def infer(
         Change of each parameter when the windows are halved and doubled.
     refinements : Refinements
         What was done to the data before the search.
+    recordings : sequence of Recording
+        As the call gave them.
     beside : mapping of str to ndarray or None
         Change of each parameter by causes that the intervals do not contain.
     known : tuple of Cause
@@ -189,6 +194,7 @@ def infer(
     if known:
         more = causes or Causes(found=())
         causes = replace(more, found=(*known, *more.found))
+    second = second_look(recordings, problem, penalty, parameters)
     findings = diagnose(
         Evidence(
             problem=problem,
@@ -218,6 +224,8 @@ def infer(
             },
             delays=refinements.delays,
             slow_motion=refinements.slow_motion,
+            cross_check=second,
+            mends=refinements.mends,
         )
     )
     return Estimate(
@@ -240,6 +248,7 @@ def infer(
         seconds=seconds,
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
+        cross_check=second,
     )
 
 

@@ -52,6 +52,7 @@ from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
+from jointid.recording.mending import mended
 from jointid.recording.motion import raise_if_hardly_moving
 from jointid.recording.recording import Recording
 
@@ -177,6 +178,7 @@ class Prepared:
             | {f"{each.name}_removed": each.detail for each in known},
             seconds=time.perf_counter() - started,
             refinements=self.refinements,
+            recordings=self.given,
             known=known,
             attribute=attribute,
         )
@@ -277,7 +279,8 @@ def prepare(
     InputError
         Input that cannot be used.
     """
-    runs = listed(recordings)
+    given = listed(recordings)
+    runs, mends = zip(*(mended(run) for run in given), strict=True)
     require_joint(joint)
     if not isinstance(mask_standstill, bool):
         raise InputError(
@@ -336,9 +339,9 @@ def prepare(
         penalty=penalty,
         domain=domain,
         windows=windows,
-        given=runs,
+        given=given,
         refinements=Refinements(
-            delays=delays, slow_motion=slow_motion, sensor_instant=sensor_instant
+            mends=mends, delays=delays, slow_motion=slow_motion, sensor_instant=sensor_instant
         ),
         selection=selection,
     )

@@ -12,6 +12,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.recording.extra import rows_of_extra
 from jointid.recording.order_statistics import median
+from jointid.recording.recording import Recording
 from jointid.recording.signals import SHORTEST, SIGNALS, FloatArray
 
 _FINE = 30.0  # a usual step in smallest steps: an equal position is then no slow motion
@@ -20,7 +21,10 @@ _ROUNDING = 1e-6  # of the median step
 _EVEN = 0.3  # of the scatter about the stamps
 _AWAY = 2.0  # periods: stamps that leave an even clock by more have lost samples
 _PIECE = 20  # rows between standstills that show an even clock
-_MOST = 0.8  # of the rows that get even stamps
+HELD = 0.03  # of the moving rows: fewer copies are left as they are
+_MOVED = 2.0  # quanta
+_AFTER = 0.3  # of the usual step
+_TIMED = 0.1  # periods between stamps and samples, at most
 _MEASURED = ("position", "velocity", "sensor", "link_position")
 _COMMANDED = ("torque", "motor_torque", "current")
 
@@ -64,6 +68,70 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
     kept = np.flatnonzero(~copies)
     if len(kept) < SHORTEST:
         raise InputError(f"{len(kept)} rows are left", argument="drop_copies", value=True)
+    return _fields_of(fields, kept, resting)
+
+
+def without_held_rows(run: Recording) -> tuple[Recording, float] | None:
+    """Return a recording without the rows that hold the sample before, and how many rows a sample has.
+
+    None where equal rows may be a slow motion: of a fine encoder they are none, of a coarse one where the recorded
+    velocity says that the joint moved on for two of its steps.
+    """
+    same = np.diff(run.position) == 0.0
+    if not same.any():
+        return None
+    repeated = same & (np.diff(run.velocity) == 0.0)
+    if not run.velocity_derived and np.count_nonzero(repeated) > 0.5 * np.count_nonzero(same):
+        same = repeated  # one sample has both
+    copies, resting = _copies(same)
+    count, moving = int(np.count_nonzero(copies)), int(np.count_nonzero(~resting))
+    if count <= HELD * moving or not _is_held(run, copies):
+        return None
+    rows = moving / (moving - count)
+    # A standstill keeps the clock of the samples around it.
+    place = np.arange(len(copies)) - np.maximum.accumulate(
+        np.where(resting, 0, np.arange(len(copies)))
+    )
+    kept = np.flatnonzero(~copies & ~(resting & (place % max(1, round(rows)) != 0)))
+    if len(kept) < SHORTEST:
+        return None
+    reduced = Recording(**_fields_of(run._fields(), kept, resting))
+    period = reduced.sample_period
+    # Samples that were lost on a bus with a clock of its own: stamps are worse without the copies than with them.
+    timed = _core.timing_errors(reduced.time, reduced.position, period)[0] < _TIMED * period
+    return (reduced, rows) if timed else None
+
+
+def _is_held(run: Recording, copies: NDArray[np.bool_]) -> bool:
+    """Whether equal positions are copies, not slow motion and not sticking.
+
+    A sample after copies is as far away as any other, and a joint that breaks away is not. A usual step is many
+    quanta, or the recorded velocity says that the joint moved on meanwhile.
+    """
+    steps = np.abs(np.diff(run.position))
+    moved = steps[steps > 0.0]
+    usual = median(moved) if len(moved) else 0.0
+    clear = moved[moved > _ROUNDING * usual]
+    after = steps[1:][copies[1:-1] & ~copies[2:]]
+    if not len(clear) or not len(after) or median(after) < _AFTER * usual:
+        return False
+    quantum = float(clear.min())
+    if usual >= _FINE * quantum:
+        return True
+    if run.velocity_derived:
+        return False
+    distance = np.abs(run.velocity[1:]) * np.diff(run.time)
+    # For each run of copies how far the velocity says that the joint moves while the position stays.
+    number = np.cumsum(~copies)[1:][copies[1:]]
+    distances = np.bincount(number, weights=distance[copies[1:]])
+    return bool(distances.any() and median(distances[distances > 0.0]) > _MOVED * quantum)
+
+
+def _fields_of(
+    fields: Mapping[str, Any], kept: NDArray[np.intp], resting: NDArray[np.bool_]
+) -> dict[str, Any]:
+    """The arguments of a recording of the rows that are kept, with even stamps where the positions show them."""
+    time = fields["time"]
     result = dict(fields)
     for name in SIGNALS:
         values = fields.get(name)
@@ -72,8 +140,7 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
         held = name in _COMMANDED and fields.get("torque_hold") == "zoh"
         result[name] = _means(time, values, kept) if held else values[kept]
     result["extra"] = rows_of_extra(fields.get("extra") or {}, kept)
-    even, _ = _evened(result["time"], result["position"], resting[kept])
-    result["time"] = even
+    result["time"] = _evened(result["time"], result["position"], resting[kept])
     if fields.get("velocity_derived"):
         result["velocity"], result["velocity_derived"] = None, False
     return result
@@ -85,27 +152,12 @@ def fresh_rows(time: FloatArray, position: FloatArray) -> tuple[FloatArray, Floa
     return time[~copies], position[~copies]
 
 
-def taken_evenly(time: FloatArray, position: FloatArray) -> bool:
-    """Whether the samples, without their copies, fit an even clock far better than their stamps.
-
-    Where they do not, their stamps are worse without the copies than with them.
-    """
-    copies, resting = _copies(np.diff(position) == 0.0)
-    kept = ~copies
-    if np.count_nonzero(kept) < SHORTEST:
-        return False
-    _, share = _evened(time[kept], position[kept], resting[kept])
-    return share > _MOST
-
-
-def _evened(
-    time: FloatArray, position: FloatArray, resting: NDArray[np.bool_]
-) -> tuple[FloatArray, float]:
-    """Return stamps that are even between standstills, where the positions say so, and the share of such rows."""
+def _evened(time: FloatArray, position: FloatArray, resting: NDArray[np.bool_]) -> FloatArray:
+    """Return stamps that are even between standstills, where the positions say so."""
     as_stamped, as_even = _core.timing_errors(time, position, median(np.diff(time)))
     if not as_even < _EVEN * as_stamped:
-        return time, 0.0
-    even, changed = time.copy(), 0
+        return time
+    even = time.copy()
     edges = np.flatnonzero(np.diff(np.concatenate([[True], resting, [True]]).astype(np.int8)))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         if last - first < _PIECE:
@@ -116,8 +168,7 @@ def _evened(
         after = time[last] if last < len(time) else np.inf
         if away < _AWAY * (line[1] - line[0]) and before < line[0] and line[-1] < after:
             even[first:last] = line
-            changed += last - first
-    return even, float(changed / max(1, int(np.count_nonzero(~resting))))
+    return even
 
 
 def _line(time: FloatArray) -> FloatArray:

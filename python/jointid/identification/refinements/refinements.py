@@ -16,6 +16,7 @@ from jointid.identification.refinements.sensor_instant import SensorInstant
 from jointid.identification.refinements.slow_motion import contradicting
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
+from jointid.recording.mending import Mend
 from jointid.recording.shifting import checked_shift
 
 
@@ -25,12 +26,15 @@ class Refinements:
 
     Attributes
     ----------
+    mends : tuple of tuple of Mend
+        What was put right in each recording before all else.
     delays : mapping of str to Delay
     slow_motion : SlowMotion or None
     sensor_instant : SensorInstant or None
         When the sensor is sampled; None where there is no sensor, or no held torque.
     """
 
+    mends: tuple[tuple[Mend, ...], ...]
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
     sensor_instant: SensorInstant | None = None

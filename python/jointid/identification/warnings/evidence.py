@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.cross_check import CrossCheck
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
@@ -22,6 +23,7 @@ from jointid.problem.constant_torque import Undivided, undivided
 from jointid.problem.inner_products import size
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
+from jointid.recording.mending import Mend
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -93,6 +95,10 @@ class Evidence:
         Whether the residuals are noise as far as enough windows can tell.
     causes : Causes or None
         Why the model does not fit; None where the residuals are noise.
+    cross_check : CrossCheck
+        The second look.
+    mends : tuple of tuple of Mend
+        What was put right in each recording.
     cause_of : callable
         Returns what a cause does to the values, from its name, which of its kind it is, the share of a misfit
         that it explains, and its size where that is known.
@@ -116,6 +122,8 @@ class Evidence:
     correlations: Mapping[tuple[str, str], float]
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
+    cross_check: CrossCheck
+    mends: tuple[tuple[Mend, ...], ...]
     velocity_effect: VelocityEffect | None = None
     own_noise: OwnNoise | None = None
     white: bool = False

@@ -9,6 +9,7 @@ from jointid.identification.warnings.check import Check, FindingType
 # In the order in which findings of one severity are listed. Each file has a CHECK.
 FILES = (
     "stopped",
+    "cross_check",
     "velocity",
     "delays",
     "long_shift",
@@ -37,6 +38,7 @@ FILES = (
     "assumed_units",
     "motor_side",
     "left_out",
+    "mended",
     "message_log",
 )
 

@@ -9,18 +9,11 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.recording.copies import taken_evenly
 
 REPEATED_SAMPLES = FindingType(
     code="repeated_samples",
     meaning="more than 3 % of the moving samples repeat the one before",
-    advice="drop the copies when loading, or record at the drive's own rate",
-)
-_DROP = Action(
-    "call",
-    {"drop_copies": True},
-    text="the copies are left out, and the samples get the drive's even clock",
-    function="load",
+    advice="record at the drive's own rate",
 )
 REPEATED = 0.03  # share of the moving samples
 
@@ -33,13 +26,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             if share > REPEATED:
                 stale[name] = share
         if stale:
-            # Without their copies, rows whose stamps are the logger's are worse than with them.
-            recording = inspected.recording
-            helps = "position" in stale and taken_evenly(recording.time, recording.position)
             yield REPEATED_SAMPLES.finding(
                 f"{' and '.join(stale)} repeat the sample before in {percent(max(stale.values()))} of the samples "
                 "though the joint moves: the logger was faster than the drive's bus",
-                *((_DROP,) if helps else ()),
                 Action("record", text="at the drive's own rate"),
                 evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
             )

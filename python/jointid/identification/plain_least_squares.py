@@ -1,0 +1,385 @@
+"""A plain filtered least squares on the signals as recorded, to check the estimate by.
+
+It is what an expert does by hand first. It shares no mask, window, velocity, delay or unwrapping with the
+identification; the shape of the Stribeck term alone is the estimate's.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.values import dataclass
+from jointid.estimate.cross_check import CrossCheck, SecondValue
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.problem.problem import Problem
+from jointid.problem.recordings import output_torque
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_CUTOFF = 20.0  # Hz
+_BLOCK = 0.005  # s: rows that come faster are averaged first
+_SHORTEST = 24  # blocks
+_PASSES = 4  # moving averages, an even number of them has no phase
+_BAND = 0.225  # cutoff of these passes times their width
+_SETTINGS = ((1.0, 1.0), (0.5, 1.0), (1.0, 1.5))  # of the cutoff and of the least speed
+_FAST = 2.2  # over the root of the Stribeck shape: there static friction is below 1 %
+_SPEED, _MOST_SPEED = 0.15, 0.5  # of the peak speed
+_PEAK = 99.5  # percentile of the speeds
+_JUMP, _ALONE = 20.0, 5.0  # times the usual step of the position, and times both neighbours
+_DELAY, _STEP = 0.03, 0.0025  # s
+_WORTH = 0.8  # of the residual: a delay has to leave less
+_BLOCKS = 20
+_ROWS = 10  # for each unknown, at least
+_SINGULAR = 1e-8
+_CLEAR = 5.0  # errors
+_SHARE, _ERRORS = (
+    0.05,
+    3.0,
+)  # of the value and of both errors: a larger difference is a disagreement
+_GRAVITY = ("gravity_cos", "gravity_sin")
+_OFFSETS = ("torque_offset", "sensor_offset")
+_TORQUE = "N·m"
+_SEEN = 1e-6  # of a friction term's largest value: in these rows there is none of it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Stretch:
+    """Signals without gap or jump, as means over short blocks.
+
+    Attributes
+    ----------
+    run : int
+        Number of the recording.
+    signals : ndarray, shape (4 or 5, n)
+        Time, position, torque, sensor, and the velocity where one is recorded.
+    period : float
+        [s]
+    """
+
+    run: int
+    signals: Array
+    period: float
+
+    def smoothed(self, cutoff: float) -> tuple[Array, int]:
+        """Low-passed signals without phase, and the width of the moving averages."""
+        width = max(2, round(_BAND / (cutoff * self.period)))
+        values = self.signals
+        for _ in range(_PASSES):
+            total = np.cumsum(values, axis=1)
+            total[:, width:] -= total[:, :-width].copy()
+            values = total[:, width - 1 :] / width
+        return values, width
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Rows:
+    """Filtered signals of all recordings at the rows that are kept, and each stretch before rows are chosen."""
+
+    run: NDArray[np.intp]
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    torque: Array
+    sensor: Array
+    smooth: tuple[tuple[Array, Array, Array, slice], ...]
+
+
+def second_look(
+    given: Sequence[Recording],
+    problem: Problem,
+    penalty: _core.Penalty,
+    parameters: Mapping[str, ParameterEstimate],
+) -> CrossCheck:
+    """Return the second look at an estimate.
+
+    Parameters
+    ----------
+    given : sequence of Recording
+        As the call gave them.
+    problem : Problem
+    penalty : Penalty
+    parameters : mapping of str to ParameterEstimate
+    """
+    terms = penalty.terms
+    names, others = penalty.names[: len(terms)], penalty.names[len(terms) :]
+    lacking = [term.name for term in terms if term.own]
+    lacking += ["load_friction"] if problem.choice.model.resolved.load_friction else []
+    if lacking:
+        return CrossCheck(reason=f"a plain least squares has no {lacking[0]}")
+    shapes = {name: parameters[name].value for name in others}
+    free = [name for name in names if parameters[name].vary]
+    friction = [
+        name
+        for name, term in zip(names, terms, strict=True)
+        if term.friction and term.unit == _TORQUE
+    ]
+    stretches = _stretches(given, problem)
+    looks: list[tuple[dict[str, float], dict[str, float], float]] = []
+    for cutoff, speed in _SETTINGS:
+        rows = _rows_of(stretches, cutoff * _CUTOFF, speed, shapes)
+        if rows is None or len(rows.time) < max(2 * _BLOCKS, _ROWS * len(free)):
+            if not looks:
+                return CrossCheck(reason="too few rows of steady motion in one direction")
+            continue
+        delay = looks[0][2] if looks else None
+        looks.append(_fitted(rows, problem, terms, names, parameters, shapes, delay))
+    values, errors, delay = looks[0]
+    found = {}
+    for name, value in values.items():
+        if name.partition("[")[0] not in _compared(terms):
+            continue
+        every = [each[0][name] for each in looks if name in each[0]]
+        spread = max(every) - min(every)
+        p = parameters[name]
+        allowed = (
+            _SHARE * _scale(p, friction, parameters)
+            + _ERRORS * float(np.hypot(errors[name], p.uncertainty if p.vary else 0.0))
+            + spread
+        )
+        found[name] = SecondValue(
+            value=value,
+            stderr=errors[name],
+            spread=spread,
+            agrees=not abs(value - p.shown_value) > allowed,
+        )
+    if not found:
+        return CrossCheck(reason="its rows determine no parameter")
+    return CrossCheck(values=found, delay=delay)
+
+
+def _compared(terms: Sequence[_core.Term]) -> set[str]:
+    """Parameters that the second look may contradict: no static friction, no ripple."""
+    plain = {"inertia", "sensor_gain", *_GRAVITY, *_OFFSETS}
+    return plain | {term.name for term in terms if term.friction and not term.shapes}
+
+
+def _scale(
+    p: ParameterEstimate,
+    friction: Sequence[str],
+    parameters: Mapping[str, ParameterEstimate],
+) -> float:
+    """What 5 % are taken of: the value; of an offset or gravity also dry friction."""
+    if p.name.partition("[")[0] not in (*_GRAVITY, *_OFFSETS):
+        return abs(p.value)
+    return max(abs(parameters[name].value) for name in (p.name, *friction))
+
+
+def _stretches(given: Sequence[Recording], problem: Problem) -> list[_Stretch]:
+    found = []
+    for number, run in enumerate(given):
+        torque = output_torque(run, problem.joint)
+        if problem.hold(number) == "zoh":  # the command of the row before holds until this one
+            torque = 0.5 * (torque + np.concatenate([torque[:1], torque[:-1]]))
+        sensed = run.sensor if problem.choice.sensor and run.sensor is not None else 0.0 * torque
+        signals = [run.time, run.position, torque, sensed]
+        if not run.velocity_derived:
+            signals.append(run.velocity)
+        block = max(1, int(_BLOCK / run.sample_period))
+        cuts = sorted({0, len(run), *(gap.index + 1 for gap in run.gaps), *_jumps(run.position)})
+        for begin, end in pairwise(cuts):
+            count = (end - begin) // block
+            if count < _SHORTEST:
+                continue
+            rows = np.array([each[begin : begin + count * block] for each in signals])
+            means = rows.reshape(len(signals), count, block).mean(axis=2)
+            found.append(_Stretch(run=number, signals=means, period=block * run.sample_period))
+    return found
+
+
+def _rows_of(
+    stretches: Sequence[_Stretch], cutoff: float, speed: float, shapes: Mapping[str, float]
+) -> _Rows | None:
+    """The rows of fast steady motion; `speed` is a factor of the least one."""
+    found = []
+    for stretch in stretches:
+        (time, position, torque, sensor, *recorded), width = stretch.smoothed(cutoff)
+        if len(time) > 4 * width + 1:
+            velocity = recorded[0] if recorded else np.gradient(position, time)
+            found.append((stretch.run, width, time, position, velocity, torque, sensor))
+    if not found:
+        return None
+    peak = float(np.percentile(np.abs(np.concatenate([each[4] for each in found])), _PEAK))
+    stribeck = [value for name, value in shapes.items() if name.startswith("stribeck")]
+    least = _SPEED * peak
+    if stribeck and min(stribeck) > 0.0:
+        least = min(_FAST / float(np.sqrt(min(stribeck))), _MOST_SPEED * peak)
+    parts, smooth, count = [], [], 0
+    for number, width, time, position, velocity, torque, sensor in found:
+        reach = 2 * width
+        # Rows near a reversal see both directions through the filter.
+        signs = np.convolve(np.sign(velocity), np.ones(2 * reach + 1), "same")
+        kept = np.flatnonzero((np.abs(velocity) > speed * least) & (np.abs(signs) > 2 * reach))
+        kept = kept[kept % width == 0]
+        rate = np.gradient(velocity, time)
+        parts.append(
+            (
+                np.full(len(kept), number),
+                *(each[kept] for each in (time, position, velocity, rate, torque, sensor)),
+            )
+        )
+        smooth.append((time, torque, sensor, slice(count, count + len(kept))))
+        count += len(kept)
+    run, time, position, velocity, acceleration, torque, sensor = (
+        np.concatenate(each) for each in zip(*parts, strict=True)
+    )
+    return _Rows(
+        run=run,
+        time=time,
+        position=position,
+        velocity=velocity,
+        acceleration=acceleration,
+        torque=torque,
+        sensor=sensor,
+        smooth=tuple(smooth),
+    )
+
+
+def _jumps(position: Array) -> list[int]:
+    """Rows before which the position jumps far beyond its usual steps, and its neighbours' steps."""
+    steps = np.abs(np.diff(position))
+    moved = np.flatnonzero(steps)
+    if len(moved) < 3:
+        return []
+    size = steps[moved]
+    around = np.maximum(np.append(size[1:], 0.0), np.concatenate([[0.0], size[:-1]]))
+    jump = (size > _JUMP * np.median(size)) & (size > _ALONE * around)
+    return [int(each) + 1 for each in moved[jump]]
+
+
+def _fitted(
+    rows: _Rows,
+    problem: Problem,
+    terms: Sequence[_core.Term],
+    names: Sequence[str],
+    parameters: Mapping[str, ParameterEstimate],
+    shapes: Mapping[str, float],
+    delay: float | None,
+) -> tuple[dict[str, float], dict[str, float], float]:
+    """Values, errors and delay of one setting."""
+    columns: dict[str, Array] = {}
+    known = np.zeros(len(rows.time))
+    for term, name in zip(terms, names, strict=True):
+        column = _column(term, name, rows, shapes, problem.choice.gear_ratio)
+        if not parameters[name].vary:
+            known = known + parameters[name].value * column
+        elif np.abs(column).max() > _SEEN * bool(term.shapes):
+            columns[name] = column
+    sensed = "sensor_gain" in columns
+    gain = columns.pop("sensor_gain", None)
+    order = list(columns)
+    regressors = np.column_stack([*columns.values(), *([] if gain is None else [rows.torque])])
+    if gain is None:
+        signal, less = 1, known
+    else:
+        signal, less = 2, np.zeros(len(rows.time))
+        regressors[:, -1] -= known
+    delay = _best_delay(rows, regressors, signal, less) if delay is None else delay
+    target = _shifted(rows, signal, delay) - less
+    solved, stderr, determined = _solved(regressors, target)
+    if sensed:
+        return *_of_reading(order, solved, determined), delay
+    fits = dict(zip(order, solved[0], strict=True))
+    errors = dict(zip(order, stderr, strict=True))
+    return (
+        {name: float(fits[name]) for name, sure in zip(order, determined, strict=True) if sure},
+        {name: float(each) for name, each in errors.items()},
+        delay,
+    )
+
+
+def _of_reading(
+    order: Sequence[str], solved: Array, determined: NDArray[np.bool_]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """The parameters from a regression of the reading, whose factor of the torque is 1 over the gain."""
+    factor = solved[:, -1]
+    if not determined[-1] or not abs(factor[0]) > _CLEAR * _jackknife(factor[:, None])[0]:
+        return {}, {}  # the reading does not follow the torque
+    every = np.column_stack([-solved[:, :-1] / factor[:, None], 1.0 / factor])
+    errors = _jackknife(every)
+    names = [*order, "sensor_gain"]
+    sure = [*determined[:-1], True]
+    return (
+        {name: float(v) for name, v, ok in zip(names, every[0], sure, strict=True) if ok},
+        {name: float(error) for name, error in zip(names, errors, strict=True)},
+    )
+
+
+def _column(
+    term: _core.Term, name: str, rows: _Rows, shapes: Mapping[str, float], gear_ratio: float
+) -> Array:
+    """What a coefficient is multiplied by, at each row."""
+    base = term.name
+    if base == "inertia":
+        column = rows.acceleration
+    elif base == "sensor_gain":
+        column = rows.sensor
+    elif term.friction:
+        shape = np.array([shapes[each] for each in term.shapes])
+        column = np.asarray(_core.friction_basis(term.key, rows.velocity, shape))
+    elif base in _OFFSETS:
+        column = np.ones(len(rows.time))
+    elif base in _GRAVITY:
+        column = (np.cos if base == "gravity_cos" else np.sin)(rows.position)
+    else:  # ripple_cos_2, position_sin_1: orders of the motor's angle and of the joint's
+        kind, wave, order = re.fullmatch(r"(\w+?)_(cos|sin)_([\d.e+-]+)", term.key).groups()  # type: ignore[union-attr]
+        angle = float(order) * rows.position * (gear_ratio if kind == "ripple" else 1.0)
+        column = (np.cos if wave == "cos" else np.sin)(angle)
+    own = re.search(r"\[(\d+)\]$", name)
+    return column if own is None else np.where(rows.run == int(own[1]), column, 0.0)
+
+
+def _shifted(rows: _Rows, signal: int, delay: float) -> Array:
+    """The torque (1) or the reading (2) at the rows, taken later by a delay."""
+    if delay == 0.0:
+        return rows.torque if signal == 1 else rows.sensor
+    target = np.empty(len(rows.time))
+    for time, torque, sensor, here in rows.smooth:
+        values = torque if signal == 1 else sensor
+        target[here] = np.interp(rows.time[here] + delay, time, values)
+    return target
+
+
+def _best_delay(rows: _Rows, regressors: Array, signal: int, less: Array) -> float:
+    """The delay of the target that leaves clearly less, or 0."""
+    basis = np.linalg.qr(regressors)[0]
+
+    def left(delay: float) -> float:
+        target = _shifted(rows, signal, delay) - less
+        return float(np.linalg.norm(target - basis @ (basis.T @ target)))
+
+    grid = np.arange(-_DELAY, 0.5 * _STEP + _DELAY, _STEP)
+    sizes = [left(float(each)) for each in grid]
+    best = int(np.argmin(sizes))
+    return float(grid[best]) if sizes[best] < _WORTH * left(0.0) else 0.0
+
+
+def _solved(regressors: Array, target: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Least squares of all rows, then without each block; errors; whether each value is determined."""
+    size = np.linalg.norm(regressors, axis=0)
+    scale = np.where(size > 0.0, size, 1.0)
+    both = np.column_stack([regressors / scale, target])
+    edges = np.linspace(0, len(target), _BLOCKS + 1).astype(int)
+    parts = np.array([both[a:b].T @ both[a:b] for a, b in pairwise(edges)])
+    total = parts.sum(axis=0)
+    sums = np.concatenate([total[None], total - parts])
+    power, directions = np.linalg.eigh(total[:-1, :-1])
+    vague = directions[:, power < _SINGULAR * power[-1]]
+    determined = np.square(vague).sum(axis=1) < 1e-6
+    inverse = np.linalg.pinv(sums[:, :-1, :-1], rcond=_SINGULAR, hermitian=True)
+    values = np.einsum("bij,bj->bi", inverse, sums[:, :-1, -1]) / scale
+    return values, _jackknife(values), determined
+
+
+def _jackknife(values: Array) -> Array:
+    """Standard errors from the values without each block, which follow those of all rows."""
+    without = values[1:]
+    away = without - without.mean(axis=0)
+    return np.asarray(np.sqrt((len(without) - 1) / len(without) * np.square(away).sum(axis=0)))

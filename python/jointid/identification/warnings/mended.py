@@ -1,0 +1,42 @@
+"""What was put right in the recordings before they were used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+
+UNWRAPPED = FindingType(
+    code="unwrapped",
+    severity="info",
+    meaning="the angle starts again after a turn; the identification unwraps it",
+    advice="log the angle without wraps",
+)
+HELD_ROWS = FindingType(
+    code="held_rows",
+    severity="info",
+    meaning="rows hold the sample before, since the logger is faster than the bus; the identification leaves them out",
+    advice="log at the bus's own rate",
+)
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    for mends in evidence.mends:
+        for mend in mends:
+            if mend.code == UNWRAPPED.code:
+                yield UNWRAPPED.finding(
+                    f"the angle is unwrapped: it jumps {mend.count} times by {mend.size:.4g} rad against the motion",
+                    evidence={"wraps": Measured(mend.count), "size": Measured(mend.size, "rad")},
+                )
+            else:
+                yield HELD_ROWS.finding(
+                    f"{mend.count} rows are left out that hold the sample before: a sample lasts {mend.size:.3g} rows",
+                    Action("record", text="at the bus's own rate"),
+                    evidence={"rows": Measured(mend.count), "rows_per_sample": Measured(mend.size)},
+                )
+
+
+CHECK = Check(_find, (UNWRAPPED, HELD_ROWS))

@@ -1,0 +1,43 @@
+"""What is put right in a recording by default before it is used: wrapped angles, rows that hold the row before."""
+
+from __future__ import annotations
+
+from jointid.base.values import dataclass
+from jointid.recording.copies import without_held_rows
+from jointid.recording.recording import Recording
+from jointid.recording.unwrapping import unwrapped
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mend:
+    """One thing that was put right.
+
+    Attributes
+    ----------
+    code : {"unwrapped", "held_rows"}
+        Of the finding that says so.
+    count : int
+        Wraps, or rows that were left out.
+    size : float
+        Of a wrap [rad]; of held rows the usual number of rows with one sample.
+    """
+
+    code: str
+    count: int
+    size: float
+
+
+def mended(run: Recording) -> tuple[Recording, tuple[Mend, ...]]:
+    """Return a recording as it was meant, and what was put right; the same recording where nothing was."""
+    mends = []
+    found = unwrapped(run)
+    if found is not None:
+        position, count, size = found
+        velocity = {"velocity": None} if run.velocity_derived else {}
+        run = run.with_signals(position=position, **velocity)
+        mends.append(Mend(code="unwrapped", count=count, size=size))
+    held = without_held_rows(run)
+    if held is not None:
+        mends.append(Mend(code="held_rows", count=len(run) - len(held[0]), size=held[1]))
+        run = held[0]
+    return run, tuple(mends)

@@ -1,0 +1,72 @@
+"""Angles that start again after a turn: the wraps are found by what moves around them, and taken out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.recording.recording import Recording
+from jointid.recording.signals import FloatArray
+
+_TURN = 2.0 * math.pi
+_NEAR = 6  # steps on either side that say how the joint moves there
+_AWAY = 3.0  # times these steps: what may be left of a wrap without its turn
+_SLACK = 0.02  # of a turn
+_ALIKE = 0.03  # of another wrap's size
+_MANY = 3  # wraps that show a size other than a turn
+
+
+def unwrapped(run: Recording) -> tuple[FloatArray, int, float] | None:
+    """Return the position without its wraps, how many there are, and their size; None where there is none.
+
+    A wrap is a jump of a turn that the velocity, or the steps around it, contradict. A jump of another size is
+    one if several are alike and as large as the range of the position.
+    """
+    if run.kind != "revolute":
+        return None
+    steps = np.diff(run.position)
+    large = np.flatnonzero(np.abs(steps) > _least(run.position, steps))
+    if not len(large):
+        return None
+    near = _near(steps, large)
+    around = np.abs(near).max(axis=1)
+    expected, slack = near.mean(axis=1), _AWAY * around
+    if not run.velocity_derived:
+        period = np.diff(run.time)[large]
+        expected = 0.5 * (run.velocity[large] + run.velocity[large + 1]) * period
+        slack = np.minimum(slack, 0.5 * np.abs(expected)) + around
+    size = _size(run.position, steps[large] - expected)
+    turns = np.round((steps[large] - expected) / size)
+    left = np.abs(steps[large] - expected - turns * size)
+    wraps = (turns != 0.0) & (left <= slack + _SLACK * size) & (around < 0.5 * size)
+    if not wraps.any():
+        return None
+    correction = np.zeros(len(run))
+    correction[large[wraps] + 1] = turns[wraps] * size
+    return run.position - np.cumsum(correction), int(np.count_nonzero(wraps)), size
+
+
+def _least(position: FloatArray, steps: FloatArray) -> float:
+    """Smaller steps are no wraps: half of the range, or of a turn."""
+    return 0.5 * min(_TURN, float(np.ptp(position))) if len(steps) else math.inf
+
+
+def _near(steps: FloatArray, large: NDArray[np.intp]) -> FloatArray:
+    """The steps near each large one; those that are large themselves count as none."""
+    small = steps.copy()
+    small[large] = 0.0
+    reach = np.concatenate([np.arange(-_NEAR, 0), np.arange(1, _NEAR + 1)])
+    return np.asarray(small[np.clip(large[:, None] + reach, 0, len(steps) - 1)])
+
+
+def _size(position: FloatArray, jumps: FloatArray) -> float:
+    """The size of the wraps: a turn, unless several alike are as large as the position's range."""
+    usual = float(np.median(np.abs(jumps)))
+    alike = np.abs(np.abs(jumps) / usual - 1.0) < _ALIKE
+    whole = float(np.ptp(position))
+    if len(jumps) >= _MANY and alike.all() and abs(usual / whole - 1.0) < _ALIKE:
+        near_turn = abs(usual / _TURN - 1.0) < _ALIKE
+        return _TURN if near_turn else usual
+    return _TURN
