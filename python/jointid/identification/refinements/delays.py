@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointid.estimate.delays import Delay
-from jointid.identification.refinements.balance_misfit import fits_better
+from jointid.identification.refinements.balance_misfit import SURE, fits_better
 from jointid.identification.refinements.balances import SMALL, SUSPECT, Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
@@ -69,7 +69,9 @@ def refined_delays(
         if certain:
             without = _shifted(mended, {signal: left.value})
             least, smooth = _LEAST_GAIN[signal], signal == "sensor"
-            fits = fits_better(mended, without, least, reversals=not smooth)
+            # The model has no say in what the velocity and the reading show by themselves.
+            sure = SURE if signal == "torque" else 0.0
+            fits = fits_better(mended, without, least, sure=sure, reversals=not smooth)
             # Friction that the model lacks may look like a late torque; the others are measured without it.
             certain = fits or signal != "torque"
             wrong = signal == "torque" and left.value < -problem.recordings[0].sample_period
