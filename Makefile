@@ -19,7 +19,7 @@ PYTEST := $(BYTECODE) OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numproces
 FILES := find cpp python examples/data CMakeLists.txt pyproject.toml README.md LICENSE tools/stub.py \
   -type f -not -name '*.so' -not -name _core.pyi -not -path '*/__pycache__/*'
 EDITABLE := $(wildcard .venv/.editable)
-BUILT := $(if $(EDITABLE),,$(shell ls -t dist/jointid-*.whl 2>/dev/null | head -n 1))
+BUILT := $(if $(EDITABLE),,$(shell ls -t dist/jointid-*.whl dist/wheels/jointid-*.whl 2>/dev/null | head -n 1))
 WHEEL := $(if $(BUILT),$(if $(shell $(FILES) -newer $(BUILT)),,$(BUILT)))
 SOURCES := $(if $(EDITABLE),always,$(shell $(FILES)))
 
@@ -34,8 +34,7 @@ demo: $(if $(findstring command,$(origin WHEEL)),wheel,.venv/.installed)  ## ide
 	@echo "Open demo/report.html in a browser."
 
 wheel: .venv/.created
-	@tools/install.sh $(WHEEL)
-	@touch .venv/.installed
+	@tools/install.sh $(WHEEL) only
 
 test: .venv/.tested .venv/.test-tools  ## one build; plain core checks and all tests that are not marked slow
 	@echo "Core checks:"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs jointid into .venv: install.sh [checks | WHEEL].
+# Installs jointid into .venv: install.sh [checks | WHEEL [only]]. `only`: nothing is compiled where the wheel does not fit.
 # Without a wheel it is compiled in build/package, which stays: later only what has changed. `checks`: the core's checks,
 # too. After `make develop` (.venv/.editable) the Python files are used in place.
 set -euo pipefail
@@ -36,26 +36,27 @@ if [[ ${1:-} == *.whl && ! -e $1 ]]; then
 fi
 tag="$("$python" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')"
 if [[ ${1:-} == *.whl && $1 != *-"$tag"-* ]]; then
-  echo "$1 is for another Python than .venv's, $tag"
+  echo "$1 is for another Python than .venv's, $tag" >&2
+  [ "${2:-}" != only ] || exit 1
   set --
 fi
 case "${1:-}" in
 *.whl)
   echo "Installing $1"
   quiet_pip uninstall --yes jointid 2>/dev/null  # its version does not tell that it is another
-  rm -f .venv/.editable .venv/.tested
+  rm -f .venv/.editable .venv/.tested .venv/.installed
   quiet_pip install --no-compile "$1"
   ;;
-*)
-  make --silent --no-print-directory build/tools/.made
-  if [ -e build/package ]; then
+"" | checks)
+  if compgen -G 'build/package/_core*.so' >/dev/null; then
     echo "Compiling what is new or changed of jointid"
   else
     echo "Compiling jointid${1:+ and the checks of its core}: $compiling"
   fi
+  make --silent --no-print-directory build/tools/.made
   options=(--no-deps --no-build-isolation -Cbuild-dir=build/package)
   [ "${1:-}" != checks ] || options+=(-Ccmake.define.JOINTID_BUILD_CHECKS=ON)
-  [ "${CI:-}" != true ] || options+=(-Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON)
+  options+=("-Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=$([ "${CI:-}" = true ] && echo ON || echo OFF)")
   [ ! -e .venv/.editable ] || options+=(--editable)
   # What builds is found before .venv's own, and only here: pip would take it for installed.
   PATH="$tools/bin:$PATH" PYTHONPATH="$tools" "$python" -m pip install -v --no-input --disable-pip-version-check \
@@ -63,6 +64,10 @@ case "${1:-}" in
     { cat "$log"; echo "jointid could not be built; what the compiler said stands above" >&2; exit 1; }
   echo "Installing what it needs"
   quiet_pip install --no-compile jointid
+  ;;
+*)
+  echo "install.sh: checks or the path of a wheel (.whl) is expected, not $1" >&2
+  exit 1
   ;;
 esac
 # For type checkers, which read the checkout.

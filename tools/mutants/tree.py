@@ -54,7 +54,6 @@ def built_core(folder: Path, mutants: list[Mutant], jobs: int) -> tuple[Path, Pa
     ]
     setup += ["-DCMAKE_BUILD_TYPE=Release", f"-DPython_EXECUTABLE={sys.executable}"]
     setup += [f"-Dpybind11_DIR={_pybind11()}", f"-DSKBUILD_PROJECT_VERSION={_version()}"]
-    setup.append("-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=OFF")
     setup.append("-DJOINTID_BUILD_EXTENSION=ON")  # with the checks: the core is compiled once
     build: list[str | Path] = ["cmake", "--build", objects, "--parallel", str(jobs)]
     build += ["--", "-k", "0"]  # all errors at once

@@ -183,7 +183,7 @@ def method_argument(command: CommandParser) -> None:
     """Add the method of the search."""
     command.add_argument(
         "--method",
-        help="separable (default), ga or random; an option of the genetic algorithm alone means ga, which takes six "
+        help="separable (default), ga or random; an option of the genetic algorithm alone means ga, which takes seven "
         "times as long with stribeck_general",
     )
 

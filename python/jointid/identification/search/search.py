@@ -36,7 +36,7 @@ class Search:
     ----------
     method : {"separable", "ga", "random"}, optional
         "separable": the linear parameters are eliminated exactly and only the shapes are searched. "ga":
-        genetic algorithm, then a local polish; `identify` takes six times as long by it with the model
+        genetic algorithm, then a local polish; `identify` takes seven times as long by it with the model
         "stribeck_general" (12,000 samples). "random": random search with the genetic algorithm's budget and
         no polish, for comparison. Default: "ga" where `ga`, `callback`, `checkpoint` or `resume` is given,
         which "separable" does not use; else "separable".
