@@ -126,4 +126,4 @@ def evidence(*parameters: ParameterEstimate, **given: Any) -> Any:
 def found(check: str, given: Any) -> list[Finding]:
     """What one file of checks says."""
     number = registry.FILES.index(check)
-    return list(registry.CHECKS[number].find(given))
+    return registry.CHECKS[number].findings(given)

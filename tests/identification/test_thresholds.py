@@ -247,8 +247,8 @@ def test_more_windows_are_advised_than_the_fewest() -> None:
 @pytest.mark.parametrize(("columns", "more"), [(6, ""), (7, "and 1 more")])
 def test_six_columns_are_named(columns: int, more: str) -> None:
     left_out = [{"column": f"c{k}", "reason": "text"} for k in range(columns)]
-    run = SimpleNamespace(metadata={"left_out": left_out})
-    (finding,) = found("left_out", evidence(recordings=(run,), inspections=()))
+    run = SimpleNamespace(metadata={"left_out": left_out}, name="")
+    (finding,) = found("left_out", evidence(recordings=(run,)))
     assert "c5 (text)" in finding.message
     assert "c6" not in finding.message
     assert finding.message.split(";")[0].endswith(more) or more in finding.message

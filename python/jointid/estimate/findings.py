@@ -46,6 +46,8 @@ class Finding:
         What was seen and its probable cause, in a sentence without the syntax of any interface.
     advice : tuple of Action
         What to do; the first that can be done helps.
+    recordings : tuple of str
+        Names of those concerned, of several; empty where it concerns all together.
     """
 
     code: str
@@ -54,6 +56,7 @@ class Finding:
     evidence: Mapping[str, Measured] = field(default_factory=dict, hash=False)
     cause: str
     advice: tuple[Action, ...] = field(default=(), hash=False)
+    recordings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.severity not in get_args(Severity):
@@ -91,6 +94,7 @@ class Finding:
             "evidence": dict(self.evidence),
             "cause": self.cause,
             "advice": self.advice,
+            "recordings": self.recordings,
         }
         return _rebuilt, (values,)
 

@@ -11,7 +11,7 @@ from jointid.estimate.derived import DerivedValue
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.estimate.tables import HEAD, quality, recorded, rows, shown_name
+from jointid.estimate.tables import HEAD, quality, recorded, rows, shown_name, subject
 from jointid.estimate.wording import rounded, two_digits
 
 
@@ -107,7 +107,7 @@ def html_summary(estimate: Estimate) -> Html:
     )
     if estimate.selection is not None:
         caption += f"; chosen: {estimate.selection.sentence}"
-    title = element("b", f"jointid estimate — {estimate.joint.name or 'joint'}")
+    title = element("b", f"jointid estimate — {subject(estimate)}")
     return element(
         "div", title, html_table(estimate), element("p", caption), html_findings(estimate)
     )

@@ -189,6 +189,7 @@ def finding_of(entry: Mapping[str, Any]) -> Finding:
         evidence={name: Measured(**measured) for name, measured in entry["evidence"].items()},
         cause=entry["cause"],
         advice=tuple(_action(each) for each in entry["advice"]),
+        recordings=tuple(entry.get("recordings", ())),
     )
 
 

@@ -78,7 +78,8 @@ FINDING = Record(
         "cause": _SENTENCES,
         "advice": ListOf(_ACTION),
         "message": _SENTENCES,
-    }
+    },
+    {"recordings": ListOf(Text())},
 )
 DELAY = Record(
     {

@@ -19,6 +19,17 @@ HEAD = ("parameter", "value", "± std. error", "± systematic", "95 % interval",
 Row = tuple[str, str, str, str, str, str, str]
 
 
+def subject(estimate: Estimate) -> str:
+    """The joint's name for a title, and how many recordings the estimate is made from, of several."""
+    runs = estimate.settings["recordings"]
+    name = estimate.joint.name or "joint"
+    if len(runs) == 1:
+        return name
+    if name == runs[0]["name"]:  # nobody named the joint
+        return f"{name} and {len(runs) - 1} more recording{'s' * (len(runs) > 2)}"
+    return f"{name}, {len(runs)} recordings"
+
+
 def remark(p: ParameterEstimate) -> str:
     """Whether a parameter is fixed or at a bound."""
     if not p.vary:
@@ -172,7 +183,7 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     table = [HEAD, *rows(estimate)]
     widths = [max(len(row[column]) for row in table) for column in range(len(HEAD))]
     lines = [
-        f"jointid estimate — {estimate.joint.name or 'joint'}",
+        f"jointid estimate — {subject(estimate)}",
         "",
         *estimate.verdict.lines(),
         "",

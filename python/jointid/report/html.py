@@ -15,6 +15,7 @@ from jointid.estimate.html_tables import (
     html_table,
     html_windows,
 )
+from jointid.estimate.tables import subject
 from jointid.identification.warnings.registry import finding_types
 from jointid.recording.recording import Recording
 from jointid.report.answering import verdict_lines
@@ -39,7 +40,7 @@ def html_report(
     recordings : sequence of Recording
         That the estimate was made from, for pictures of their signals. Default: without these.
     """
-    title = f"{estimate.joint.name or 'joint'}: friction identified by jointid"
+    title = f"{subject(estimate)}: friction identified by jointid"
     return page(
         title,
         STYLE,

@@ -6,6 +6,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 from jointid.recording.signals import SIGNALS, header_unit
 
 ASSUMED_UNITS = FindingType(
@@ -15,14 +16,10 @@ ASSUMED_UNITS = FindingType(
 )
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    signals = dict.fromkeys(
-        str(signal)
-        for recording in evidence.recordings
-        for signal in _sequence(recording.metadata.get("assumed_units"))
-    )
-    kind = evidence.recordings[0].kind
-    units = {name: header_unit(name, kind) for name in signals if name in SIGNALS}
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording = inspected.recording
+    signals = [str(signal) for signal in _sequence(recording.metadata.get("assumed_units"))]
+    units = {name: header_unit(name, recording.kind) for name in signals if name in SIGNALS}
     if signals:
         advice = [
             Action(
@@ -36,13 +33,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         yield ASSUMED_UNITS.finding(
             f"no unit is stated for {', '.join(signals)}; SI is assumed", *advice
         )
-    recognised = {
-        str(signal): str(unit)
-        for recording in evidence.recordings
-        for signal, unit in _pairs(recording.metadata.get("recognised_units"))
-    }
+    recognised = _pairs(recording.metadata.get("recognised_units"))
     if recognised:
-        shown = ", ".join(f"{signal} is read in {unit}" for signal, unit in recognised.items())
+        shown = ", ".join(f"{signal} is read in {unit}" for signal, unit in recognised)
         yield ASSUMED_UNITS.finding(
             f"no unit is stated, but the numbers show it: {shown}",
             Action("inspect", text="the header, and name the unit there (time_ns)"),
@@ -58,4 +51,4 @@ def _sequence(value: object) -> tuple[object, ...]:
     return tuple(value) if isinstance(value, list | tuple) else ()
 
 
-CHECK = Check(_find, (ASSUMED_UNITS,))
+CHECK = Check(None, (ASSUMED_UNITS,), _in_recording)

@@ -8,6 +8,8 @@ from jointid.base.advice import Action
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
+from jointid.identification.warnings.merging import merged, recording_names
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,7 +64,24 @@ class Check:
         Takes the `Evidence`, yields findings; yields nothing when all is well.
     types : tuple of FindingType
         What it can yield.
+    in_recording : callable
+        Takes the `Evidence` and one of its recordings as `Inspected`, yields findings about that one.
     """
 
-    find: Callable[[Evidence], Iterator[Finding]]
+    find: Callable[[Evidence], Iterator[Finding]] | None
     types: tuple[FindingType, ...]
+    in_recording: Callable[[Evidence, Inspected], Iterator[Finding]] | None = None
+
+    def findings(self, evidence: Evidence) -> list[Finding]:
+        """Return all that it finds; what it says of several recordings alike is one finding."""
+        found: list[Finding] = []
+        if self.in_recording is not None:
+            single = [
+                (number, each)
+                for number, inspected in enumerate(evidence.inspections)
+                for each in self.in_recording(evidence, inspected)
+            ]
+            found += merged(single, recording_names(evidence.recordings))
+        if self.find is not None:
+            found += self.find(evidence)
+        return found

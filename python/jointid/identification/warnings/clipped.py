@@ -10,7 +10,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.inspection import DRIVE
+from jointid.identification.warnings.inspection import DRIVE, Inspected
 from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 TORQUE_SATURATED = FindingType(
@@ -51,39 +51,38 @@ def _sensed(evidence: Evidence, counts: _core.SignalFacts) -> float | None:
     return _INSIDE * min(abs(torque) for torque in torques)
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for inspected in evidence.inspections:
-        recording = inspected.recording
-        for name in inspected.channels:
-            if name not in (*DRIVE, "sensor"):
-                continue
-            signal = inspected.counts(name)
-            share = _on_a_limit(signal, len(recording))
-            if share < _CLIPPED:
-                continue
-            if name == "sensor":
-                yield SENSOR_CLIPPED.finding(
-                    f"the sensor rests on its limit in {percent(share)} of the samples, so its reading is less than "
-                    "the torque",
-                    Action("inspect", text="the sensor's range, and widen it"),
-                    other_motion(
-                        evidence,
-                        "motion in which the link carries less",
-                        sensor_range=_sensed(evidence, signal),
-                    ),
-                    evidence={"clipped": Measured(share)},
-                    parameters=evidence.sensor_parameters,
-                )
-            else:
-                limit = max(abs(signal.lowest), abs(signal.highest))
-                unit = recording.unit(name)
-                yield TORQUE_SATURATED.finding(
-                    f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples; if the "
-                    "record was clipped and the torque was not, every value is wrong",
-                    other_motion(evidence, "gentler motion", gentler=True),
-                    Action("record", text="the torque that the drive applied"),
-                    evidence={"clipped": Measured(share), "limit": Measured(limit, unit)},
-                )
+def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording = inspected.recording
+    for name in inspected.channels:
+        if name not in (*DRIVE, "sensor"):
+            continue
+        signal = inspected.counts(name)
+        share = _on_a_limit(signal, len(recording))
+        if share < _CLIPPED:
+            continue
+        if name == "sensor":
+            yield SENSOR_CLIPPED.finding(
+                f"the sensor rests on its limit in {percent(share)} of the samples, so its reading is less than "
+                "the torque",
+                Action("inspect", text="the sensor's range, and widen it"),
+                other_motion(
+                    evidence,
+                    "motion in which the link carries less",
+                    sensor_range=_sensed(evidence, signal),
+                ),
+                evidence={"clipped": Measured(share)},
+                parameters=evidence.sensor_parameters,
+            )
+        else:
+            limit = max(abs(signal.lowest), abs(signal.highest))
+            unit = recording.unit(name)
+            yield TORQUE_SATURATED.finding(
+                f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples; if the "
+                "record was clipped and the torque was not, every value is wrong",
+                other_motion(evidence, "gentler motion", gentler=True),
+                Action("record", text="the torque that the drive applied"),
+                evidence={"clipped": Measured(share), "limit": Measured(limit, unit)},
+            )
 
 
-CHECK = Check(_find, (TORQUE_SATURATED, SENSOR_CLIPPED))
+CHECK = Check(None, (TORQUE_SATURATED, SENSOR_CLIPPED), _in_recording)

@@ -14,7 +14,7 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     """All findings, the most severe first; those of one severity in the order of the checks."""
     kept = []
     for check in registry.CHECKS:
-        raised = list(check.find(evidence))
+        raised = check.findings(evidence)
         kept += raised
         if any(found.severity == "blocking" for found in raised):
             # A signal that cannot be right explains the misfit; what else does is no cause.
@@ -23,7 +23,8 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     other = _another_cause(evidence)
     spurious = [found for found in kept if found.code == "ripple" and (units or other)]
-    left = [found for found in kept if found not in (*units[1:], *spurious)]
+    again = [each for place, each in enumerate(units) if _again_of(each, units[:place])]
+    left = [found for found in kept if found not in (*again, *spurious)]
     left = [found for place, found in enumerate(left) if not _again(found, left[:place])]
     if any(
         found.code == "hardly_moves" for found in left
@@ -43,6 +44,12 @@ def _another_cause(evidence: Evidence) -> bool:
 def _again(found: Finding, before: list[Finding]) -> bool:
     """Whether a check of its own has already raised what the attribution names, too."""
     return "share" in found.evidence and found.code in {each.code for each in before}
+
+
+def _again_of(found: Finding, before: list[Finding]) -> bool:
+    """Whether other findings are about all of its recordings, or all recordings, already."""
+    named = {name for each in before for name in each.recordings}
+    return bool(before) and set(found.recordings) <= named
 
 
 def _without_other_fits(found: Finding) -> Finding:

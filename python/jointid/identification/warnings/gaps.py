@@ -6,6 +6,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 
 GAPS = FindingType(
     code="gaps",
@@ -15,20 +16,20 @@ GAPS = FindingType(
 )
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for recording in evidence.recordings:
-        if recording.gaps:
-            longest = max(recording.gaps, key=lambda gap: gap.duration)
-            yield GAPS.finding(
-                f"{len(recording.gaps)} gap(s) in the recording, the longest of {longest.duration:.3g} s at "
-                f"{longest.start:.3f} s; no window crosses them",
-                Action("inspect", text="why samples are missing"),
-                evidence={
-                    "gaps": Measured(len(recording.gaps)),
-                    "longest": Measured(longest.duration, "s"),
-                    "start_of_longest": Measured(longest.start, "s"),
-                },
-            )
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording = inspected.recording
+    if recording.gaps:
+        longest = max(recording.gaps, key=lambda gap: gap.duration)
+        yield GAPS.finding(
+            f"{len(recording.gaps)} gap(s) in the recording, the longest of {longest.duration:.3g} s at "
+            f"{longest.start:.3f} s; no window crosses them",
+            Action("inspect", text="why samples are missing"),
+            evidence={
+                "gaps": Measured(len(recording.gaps)),
+                "longest": Measured(longest.duration, "s"),
+                "start_of_longest": Measured(longest.start, "s"),
+            },
+        )
 
 
-CHECK = Check(_find, (GAPS,))
+CHECK = Check(None, (GAPS,), _in_recording)

@@ -7,6 +7,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 
 LATE = FindingType(
     code="late_samples",
@@ -16,23 +17,23 @@ LATE = FindingType(
 )
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for recording in evidence.recordings:
-        left_out = len(recording.doubtful)
-        if recording.late is None or not left_out:
-            continue
-        intervals = len(recording) - 1
-        missing = int(recording.late[1:].astype(int).sum())
-        yield LATE.finding(
-            f"{left_out} of {intervals} sample intervals ({percent(left_out / intervals)}) are left out, because in "
-            f"them samples were late or lost ({missing} cycles) or a command was not confirmed",
-            Action("inspect", text="what delays bus or computer"),
-            evidence={
-                "left_out": Measured(left_out),
-                "intervals": Measured(intervals),
-                "missing_cycles": Measured(missing),
-            },
-        )
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording = inspected.recording
+    left_out = len(recording.doubtful)
+    if recording.late is None or not left_out:
+        return
+    intervals = len(recording) - 1
+    missing = int(recording.late[1:].astype(int).sum())
+    yield LATE.finding(
+        f"{left_out} of {intervals} sample intervals ({percent(left_out / intervals)}) are left out, because in "
+        f"them samples were late or lost ({missing} cycles) or a command was not confirmed",
+        Action("inspect", text="what delays bus or computer"),
+        evidence={
+            "left_out": Measured(left_out),
+            "intervals": Measured(intervals),
+            "missing_cycles": Measured(missing),
+        },
+    )
 
 
-CHECK = Check(_find, (LATE,))
+CHECK = Check(None, (LATE,), _in_recording)

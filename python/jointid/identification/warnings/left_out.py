@@ -8,6 +8,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 
 LEFT_OUT = FindingType(
     code="left_out",
@@ -25,13 +26,14 @@ INTERPOLATED = FindingType(
 _SHOWN = 6
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    columns: dict[str, str] = {}
-    for recording in evidence.recordings:
-        left_out = recording.metadata.get("left_out")
-        for each in left_out if isinstance(left_out, list | tuple) else ():
-            if isinstance(each, Mapping):
-                columns[str(each.get("column"))] = str(each.get("reason"))
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    metadata = inspected.recording.metadata
+    left_out = metadata.get("left_out")
+    columns = {
+        str(each.get("column")): str(each.get("reason"))
+        for each in (left_out if isinstance(left_out, list | tuple) else ())
+        if isinstance(each, Mapping)
+    }
     if columns:
         shown = [f"{column} ({reason})" for column, reason in list(columns.items())[:_SHOWN]]
         more = f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else ""
@@ -42,13 +44,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 text="the headers, and name the column or its unit if the signal is needed",
             ),
         )
-    interpolated = {
-        str(column): str(period)
-        for recording in evidence.recordings
-        for column, period in _pairs(recording.metadata.get("interpolated"))
-    }
+    interpolated = _pairs(metadata.get("interpolated"))
     if interpolated:
-        shown = [f"{column} (every {period})" for column, period in interpolated.items()]
+        shown = [f"{column} (every {period})" for column, period in interpolated]
         yield INTERPOLATED.finding(
             f"interpolated at the other signals' samples: {', '.join(shown)}",
             Action("record", text="all signals with one period"),
@@ -59,4 +57,4 @@ def _pairs(value: object) -> tuple[tuple[object, object], ...]:
     return tuple(value.items()) if isinstance(value, Mapping) else ()
 
 
-CHECK = Check(_find, (LEFT_OUT, INTERPOLATED))
+CHECK = Check(None, (LEFT_OUT, INTERPOLATED), _in_recording)

@@ -8,6 +8,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 from jointid.recording.file_remarks import remarks
 
 MESSAGE_LOG = FindingType(
@@ -20,11 +21,9 @@ MESSAGE_LOG = FindingType(
 )
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    found: dict[str, None] = {}
-    for recording in evidence.recordings:
-        metadata = recording.metadata
-        found |= dict.fromkeys(remarks(metadata) if isinstance(metadata, Mapping) else ())
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    metadata = inspected.recording.metadata
+    found = remarks(metadata) if isinstance(metadata, Mapping) else []
     if found:
         yield MESSAGE_LOG.finding(
             "; ".join(found),
@@ -32,7 +31,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             evidence={
                 name: Measured(count)
                 for name in ("repeated_messages", "reordered_messages")
-                if (count := sum(_count(each.metadata.get(name)) for each in evidence.recordings))
+                if (count := _count(metadata.get(name)))
             },
         )
 
@@ -41,4 +40,4 @@ def _count(value: object) -> int:
     return value if isinstance(value, int) else 0
 
 
-CHECK = Check(_find, (MESSAGE_LOG,))
+CHECK = Check(None, (MESSAGE_LOG,), _in_recording)

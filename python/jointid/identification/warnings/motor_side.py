@@ -6,6 +6,8 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
+from jointid.recording.recording import Recording
 
 MOTOR_SIDE = FindingType(
     code="motor_side",
@@ -17,27 +19,24 @@ MOTOR_SIDE = FindingType(
 _RATIO = "the motor's angle per angle of the joint"
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    if any(recording.metadata.get("side") == "motor" for recording in evidence.recordings):
+def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    if inspected.recording.metadata.get("side") == "motor":
         yield MOTOR_SIDE.finding(
             "no gear ratio is known: the values are on the motor's side",
             Action("call", {"gear_ratio": ...}, _RATIO, "load"),
         )
-    elif _without_gear(evidence):
+    elif _without_gear(evidence, inspected.recording):
         yield MOTOR_SIDE.finding(
             "the torque is made from the motor's with a gear ratio of 1, as without a gear",
             Action("call", {"gear_ratio": ...}, _RATIO, "Joint"),
         )
 
 
-def _without_gear(evidence: Evidence) -> bool:
+def _without_gear(evidence: Evidence, run: Recording) -> bool:
     joint = evidence.joint
     if joint is None or joint.gear_ratio != 1.0:
         return False
-    return any(
-        run.torque is None and (run.motor_torque is not None or run.current is not None)
-        for run in evidence.recordings
-    )
+    return run.torque is None and (run.motor_torque is not None or run.current is not None)
 
 
-CHECK = Check(_find, (MOTOR_SIDE,))
+CHECK = Check(None, (MOTOR_SIDE,), _in_recording)

@@ -9,6 +9,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 
 REPEATED_SAMPLES = FindingType(
     code="repeated_samples",
@@ -18,20 +19,19 @@ REPEATED_SAMPLES = FindingType(
 REPEATED = 0.03  # share of the moving samples
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for inspected in evidence.inspections:
-        stale = {}
-        for name in ("position", "velocity", "sensor"):
-            share = inspected.stale_share(name) if name in inspected.channels else 0.0
-            if share > REPEATED:
-                stale[name] = share
-        if stale:
-            yield REPEATED_SAMPLES.finding(
-                f"{' and '.join(stale)} repeat the sample before in {percent(max(stale.values()))} of the samples "
-                "though the joint moves: the logger was faster than the drive's bus",
-                Action("record", text="at the drive's own rate"),
-                evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
-            )
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    stale = {}
+    for name in ("position", "velocity", "sensor"):
+        share = inspected.stale_share(name) if name in inspected.channels else 0.0
+        if share > REPEATED:
+            stale[name] = share
+    if stale:
+        yield REPEATED_SAMPLES.finding(
+            f"{' and '.join(stale)} repeat the sample before in {percent(max(stale.values()))} of the samples "
+            "though the joint moves: the logger was faster than the drive's bus",
+            Action("record", text="at the drive's own rate"),
+            evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
+        )
 
 
-CHECK = Check(_find, (REPEATED_SAMPLES,))
+CHECK = Check(None, (REPEATED_SAMPLES,), _in_recording)

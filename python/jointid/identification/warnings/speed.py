@@ -10,6 +10,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import MISMATCH
 from jointid.recording.order_statistics import quantile_of_sizes
@@ -20,45 +21,44 @@ _MOTOR_SPEED = 2000.0  # [rad/s]: beyond any geared servo motor
 _SWING = 25.0  # [rad] back and forth: four turns
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
+def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
     gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
-    for inspected in evidence.inspections:
-        recording, peak = inspected.recording, inspected.found.peak_speed
-        if (slow := _slow_stamps(recording)) is not None:
-            yield slow
-            continue
-        agreement = inspected.found.agreement
-        if recording.kind == "prismatic" or (
-            agreement is not None and abs(agreement.scale - 1.0) > MISMATCH
-        ):
-            continue  # what contradicts itself has no speed, and that is reported already
-        if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is not a speed
-            peak = quantile_of_sizes(recording.velocity, 0.99)
-        swing = inspected.found.swing
-        travel = abs(float(recording.position[-1] - recording.position[0]))
-        if gear > 1.0 and peak * gear > _MOTOR_SPEED:
-            speed = peak * gear * 60.0 / (2.0 * np.pi)
-            seen, shown = f"the motor would turn at {speed:.0f} rpm", Measured(speed, "rpm")
-            measured = {"motor_speed": shown}
-        elif swing > _SWING and travel < 0.5 * swing and not _of_the_motor(recording):
-            turns = swing / (2.0 * np.pi)
-            seen = f"the joint would swing through {turns:.0f} turns and back"
-            measured = {"swing": Measured(turns, "turns")}
-        else:
-            continue
-        signals = ("position",) if recording.velocity_derived else ("position", "velocity")
-        advice = [degrees_advice(recording, signals)]
-        units = "in degrees"
-        if np.all(recording.position == np.rint(recording.position)):
-            units += ", or in counts of the encoder, as all positions are whole numbers"
-            scale = dict.fromkeys(signals, ...)
-            advice.append(Action("call", {"scale": scale}, "2π over the counts of a turn", "load"))
-        yield IMPLAUSIBLE_UNITS.finding(
-            f"{seen}: position and velocity may be {units}, or the gear ratio is wrong",
-            *advice,
-            Action("inspect", text="the gear ratio"),
-            evidence=measured,
-        )
+    recording, peak = inspected.recording, inspected.found.peak_speed
+    if (slow := _slow_stamps(recording)) is not None:
+        yield slow
+        return
+    agreement = inspected.found.agreement
+    if recording.kind == "prismatic" or (
+        agreement is not None and abs(agreement.scale - 1.0) > MISMATCH
+    ):
+        return  # what contradicts itself has no speed, and that is reported already
+    if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is not a speed
+        peak = quantile_of_sizes(recording.velocity, 0.99)
+    swing = inspected.found.swing
+    travel = abs(float(recording.position[-1] - recording.position[0]))
+    if gear > 1.0 and peak * gear > _MOTOR_SPEED:
+        speed = peak * gear * 60.0 / (2.0 * np.pi)
+        seen, shown = f"the motor would turn at {speed:.0f} rpm", Measured(speed, "rpm")
+        measured = {"motor_speed": shown}
+    elif swing > _SWING and travel < 0.5 * swing and not _of_the_motor(recording):
+        turns = swing / (2.0 * np.pi)
+        seen = f"the joint would swing through {turns:.0f} turns and back"
+        measured = {"swing": Measured(turns, "turns")}
+    else:
+        return
+    signals = ("position",) if recording.velocity_derived else ("position", "velocity")
+    advice = [degrees_advice(recording, signals)]
+    units = "in degrees"
+    if np.all(recording.position == np.rint(recording.position)):
+        units += ", or in counts of the encoder, as all positions are whole numbers"
+        scale = dict.fromkeys(signals, ...)
+        advice.append(Action("call", {"scale": scale}, "2π over the counts of a turn", "load"))
+    yield IMPLAUSIBLE_UNITS.finding(
+        f"{seen}: position and velocity may be {units}, or the gear ratio is wrong",
+        *advice,
+        Action("inspect", text="the gear ratio"),
+        evidence=measured,
+    )
 
 
 def _of_the_motor(recording: Recording) -> bool:
@@ -77,4 +77,4 @@ def _slow_stamps(recording: Recording) -> Finding | None:
     )
 
 
-CHECK = Check(_find, (IMPLAUSIBLE_UNITS,))
+CHECK = Check(None, (IMPLAUSIBLE_UNITS,), _in_recording)

@@ -29,36 +29,35 @@ _JUMP = 10.0  # times the usual change of the velocity between samples
 _BESIDE = 1  # samples
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for inspected in evidence.inspections:
-        recording = inspected.recording
-        for name in inspected.channels:
-            spike = _without_kicks(inspected) if name == "sensor" else inspected.spike(name)
-            if spike.count:
-                unit = "" if name == "sensor" else recording.unit(name)
-                height = f"{spike.height:.3g} {unit}".rstrip()
-                time = float(recording.time[spike.index])
-                yield SPIKES.finding(
-                    f"{spike.count} spike(s) in {name}, the largest of {height} at {time:.4g} s, "
-                    "where the signal leaves its course and returns at once: least squares fits them, too",
-                    Action("inspect", text="the logger, and cut the spikes out"),
-                    evidence={
-                        "spikes": Measured(spike.count),
-                        "height": Measured(spike.height, unit),
-                        "time": Measured(time, "s"),
-                    },
-                )
-                break
-        jump = inspected.found.jump
-        if jump >= 0:
-            step = float(recording.position[jump + 1] - recording.position[jump])
-            unit, time = recording.unit("position"), float(recording.time[jump])
-            yield JUMPS.finding(
-                f"the position jumps by {step:.4g} {unit} at {time:.4g} s: a wrapped angle, a lost index or lost "
-                "samples",
-                Action("inspect", text="the recording there, and unwrap the angle or crop it"),
-                evidence={"height": Measured(step, unit), "time": Measured(time, "s")},
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording = inspected.recording
+    for name in inspected.channels:
+        spike = _without_kicks(inspected) if name == "sensor" else inspected.spike(name)
+        if spike.count:
+            unit = "" if name == "sensor" else recording.unit(name)
+            height = f"{spike.height:.3g} {unit}".rstrip()
+            time = float(recording.time[spike.index])
+            yield SPIKES.finding(
+                f"{spike.count} spike(s) in {name}, the largest of {height} at {time:.4g} s, "
+                "where the signal leaves its course and returns at once: least squares fits them, too",
+                Action("inspect", text="the logger, and cut the spikes out"),
+                evidence={
+                    "spikes": Measured(spike.count),
+                    "height": Measured(spike.height, unit),
+                    "time": Measured(time, "s"),
+                },
             )
+            break
+    jump = inspected.found.jump
+    if jump >= 0:
+        step = float(recording.position[jump + 1] - recording.position[jump])
+        unit, time = recording.unit("position"), float(recording.time[jump])
+        yield JUMPS.finding(
+            f"the position jumps by {step:.4g} {unit} at {time:.4g} s: a wrapped angle, a lost index or lost "
+            "samples",
+            Action("inspect", text="the recording there, and unwrap the angle or crop it"),
+            evidence={"height": Measured(step, unit), "time": Measured(time, "s")},
+        )
 
 
 def _without_kicks(inspected: Inspected) -> _core.Spike:
@@ -83,4 +82,4 @@ def _without_kicks(inspected: Inspected) -> _core.Spike:
     return spike_of(recording, smooth, inspected.threads)
 
 
-CHECK = Check(_find, (SPIKES, JUMPS))
+CHECK = Check(None, (SPIKES, JUMPS), _in_recording)

@@ -6,6 +6,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 from jointid.recording.motion import WIDER, SmallMotion, small_motion
 
@@ -24,17 +25,20 @@ HARDLY_MOVES = FindingType(
 _MUCH = 0.35
 
 
+def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording = inspected.recording
+    small = small_motion(recording)
+    if small is not None:
+        unit = recording.unit("position")
+        yield HARDLY_MOVES.finding(
+            small.text,
+            Action("record", text=WIDER),
+            evidence={"travel": Measured(small.travel, unit)} | _of(small, unit),
+            parameters=tuple(name for name, each in evidence.parameters.items() if each.vary),
+        )
+
+
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    for recording in evidence.recordings:
-        small = small_motion(recording)
-        if small is not None:
-            unit = recording.unit("position")
-            yield HARDLY_MOVES.finding(
-                small.text,
-                Action("record", text=WIDER),
-                evidence={"travel": Measured(small.travel, unit)} | _of(small, unit),
-                parameters=tuple(name for name, each in evidence.parameters.items() if each.vary),
-            )
     share = evidence.residuals.standing
     if share > _MUCH:
         yield STANDING.finding(
@@ -55,4 +59,4 @@ def _of(small: SmallMotion, unit: str) -> dict[str, Measured]:
     }
 
 
-CHECK = Check(_find, (STANDING, HARDLY_MOVES))
+CHECK = Check(_find, (STANDING, HARDLY_MOVES), _in_recording)

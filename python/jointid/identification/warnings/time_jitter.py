@@ -12,6 +12,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.repeated import REPEATED
 from jointid.recording.copies import fresh_rows
 from jointid.recording.order_statistics import median
@@ -25,31 +26,30 @@ TIME_JITTER = FindingType(
 _JITTER = 0.02  # sample periods
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for inspected in evidence.inspections:
-        recording = inspected.recording
-        as_stamped, as_uniform = inspected.found.timing_errors
-        period = recording.sample_period
-        copies = inspected.stale_share("position") > REPEATED
-        if copies:  # they have no time of their own
-            as_stamped, period = _without_copies(recording)
-        if as_stamped < _JITTER * period:
-            continue
-        # Rows that merely repeat make even stamps wrong, however even they look.
-        even = not copies and as_uniform < 0.3 * as_stamped
-        seen = "; the samples themselves look evenly spaced" if even else ""
-        seen = ", copies apart" if copies else seen
-        advice = "even time stamps" if even else "time stamps where the samples are taken"
-        yield TIME_JITTER.finding(
-            f"position and time stamps disagree by {1e6 * as_stamped:.3g} µs a sample ({percent(as_stamped / period)} "
-            f"of the sample period), as stamps of a busy computer do{seen}",
-            Action("record", text=advice),
-            evidence={
-                "scatter": Measured(as_stamped, "s"),
-                "scatter_about_even_times": Measured(as_uniform, "s"),
-                "share_of_period": Measured(as_stamped / period),
-            },
-        )
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording = inspected.recording
+    as_stamped, as_uniform = inspected.found.timing_errors
+    period = recording.sample_period
+    copies = inspected.stale_share("position") > REPEATED
+    if copies:  # they have no time of their own
+        as_stamped, period = _without_copies(recording)
+    if as_stamped < _JITTER * period:
+        return
+    # Rows that merely repeat make even stamps wrong, however even they look.
+    even = not copies and as_uniform < 0.3 * as_stamped
+    seen = "; the samples themselves look evenly spaced" if even else ""
+    seen = ", copies apart" if copies else seen
+    advice = "even time stamps" if even else "time stamps where the samples are taken"
+    yield TIME_JITTER.finding(
+        f"position and time stamps disagree by {1e6 * as_stamped:.3g} µs a sample ({percent(as_stamped / period)} "
+        f"of the sample period), as stamps of a busy computer do{seen}",
+        Action("record", text=advice),
+        evidence={
+            "scatter": Measured(as_stamped, "s"),
+            "scatter_about_even_times": Measured(as_uniform, "s"),
+            "share_of_period": Measured(as_stamped / period),
+        },
+    )
 
 
 def _without_copies(recording: Recording) -> tuple[float, float]:
@@ -61,4 +61,4 @@ def _without_copies(recording: Recording) -> tuple[float, float]:
     return _core.timing_errors(time, position, period)[0], period
 
 
-CHECK = Check(_find, (TIME_JITTER,))
+CHECK = Check(None, (TIME_JITTER,), _in_recording)

@@ -10,6 +10,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice, unit_by_factor
 
 REVERSED_SIGN = FindingType(
@@ -32,42 +33,39 @@ _WITHOUT_VELOCITY = Action(
 )
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for inspected in evidence.inspections:
-        recording, found = inspected.recording, inspected.found.agreement
-        if found is None:
-            continue
-        scale = {"scale": Measured(found.scale)}
-        suspected, advice = unit_by_factor(recording, found.scale)
-        if found.scale < 0.0:
-            yield REVERSED_SIGN.finding(
-                "the velocity has the opposite sign of the position's change: one of the two signs is reversed",
-                Action(
-                    "inspect", text="the signs of position and velocity, and flip the wrong one"
-                ),
-                evidence=scale,
-            )
-        elif not suspected and (_near(found.scale, _DEGREE) or _near(found.scale, 1.0 / _DEGREE)):
-            which = "velocity" if found.scale < 1.0 else "position"
-            factor = max(found.scale, 1.0 / found.scale)
-            yield IMPLAUSIBLE_UNITS.finding(
-                f"position and velocity differ by a factor of {factor:.1f}: the {which} seems to be in degrees",
-                degrees_advice(recording, (which,)),
-                evidence={"factor": Measured(factor)},
-            )
-        elif abs(found.scale - 1.0) > MISMATCH:
-            large = not 1.0 / _OTHER_UNIT < found.scale < _OTHER_UNIT
-            yield VELOCITY_MISMATCH.finding(
-                f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
-                *advice,
-                _WITHOUT_VELOCITY,
-                evidence=scale,
-                severity="blocking" if large else None,
-            )
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    recording, found = inspected.recording, inspected.found.agreement
+    if found is None:
+        return
+    scale = {"scale": Measured(found.scale)}
+    suspected, advice = unit_by_factor(recording, found.scale)
+    if found.scale < 0.0:
+        yield REVERSED_SIGN.finding(
+            "the velocity has the opposite sign of the position's change: one of the two signs is reversed",
+            Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
+            evidence=scale,
+        )
+    elif not suspected and (_near(found.scale, _DEGREE) or _near(found.scale, 1.0 / _DEGREE)):
+        which = "velocity" if found.scale < 1.0 else "position"
+        factor = max(found.scale, 1.0 / found.scale)
+        yield IMPLAUSIBLE_UNITS.finding(
+            f"position and velocity differ by a factor of {factor:.1f}: the {which} seems to be in degrees",
+            degrees_advice(recording, (which,)),
+            evidence={"factor": Measured(factor)},
+        )
+    elif abs(found.scale - 1.0) > MISMATCH:
+        large = not 1.0 / _OTHER_UNIT < found.scale < _OTHER_UNIT
+        yield VELOCITY_MISMATCH.finding(
+            f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
+            *advice,
+            _WITHOUT_VELOCITY,
+            evidence=scale,
+            severity="blocking" if large else None,
+        )
 
 
 def _near(value: float, wanted: float) -> bool:
     return 0.8 < value / wanted < 1.25
 
 
-CHECK = Check(_find, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, VELOCITY_MISMATCH))
+CHECK = Check(None, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, VELOCITY_MISMATCH), _in_recording)

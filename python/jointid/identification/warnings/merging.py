@@ -1,0 +1,89 @@
+"""Findings about single recordings: those that say the same become one, which names its recordings."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from jointid.estimate.findings import Finding, Measured
+from jointid.recording.recording import Recording
+
+_NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
+_NAMED = 5  # recordings in a sentence; the finding has all
+
+
+def recording_names(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Return a name for each recording that no other one has: its own, else its number."""
+    counted = Counter(each.name for each in recordings)
+    return tuple(
+        each.name if each.name and counted[each.name] == 1 else f"recording {number}"
+        for number, each in enumerate(recordings)
+    )
+
+
+def merged(found: Iterable[tuple[int, Finding]], names: Sequence[str]) -> list[Finding]:
+    """Return findings about single recordings, equal ones as one.
+
+    Parameters
+    ----------
+    found : iterable of tuple
+        Number of the recording, and what is found about it.
+    names : sequence of str
+        Of all recordings; of a single one nothing needs to be said.
+    """
+    groups: dict[object, list[tuple[int, Finding]]] = {}
+    for number, each in found:
+        advice = tuple((action.kind, action.function, action.text) for action in each.advice)
+        said = _NUMBER.sub("#", each.cause)
+        key = (each.code, each.severity, each.parameters, said, advice)
+        groups.setdefault(key, []).append((number, each))
+    if len(names) == 1:
+        return [each for group in groups.values() for _, each in group]
+    return [_as_one(group, names) for group in groups.values()]
+
+
+def _as_one(group: Sequence[tuple[int, Finding]], names: Sequence[str]) -> Finding:
+    concerned = tuple(names[number] for number in dict.fromkeys(number for number, _ in group))
+    findings = [each for _, each in group]
+    return replace(
+        findings[0],
+        cause=f"{_where(concerned, len(names))}: {_with_ranges([each.cause for each in findings])}",
+        evidence=_largest(findings),
+        recordings=concerned,
+    )
+
+
+def _where(concerned: Sequence[str], count: int) -> str:
+    if len(concerned) == 1:
+        return concerned[0]
+    where = f"{len(concerned)} of {count} recordings"
+    if len(concerned) == count:
+        return where
+    more = f" and {len(concerned) - _NAMED} more" if len(concerned) > _NAMED else ""
+    return f"{where} ({', '.join(concerned[:_NAMED])}{more})"
+
+
+def _with_ranges(causes: Sequence[str]) -> str:
+    """Sentences that differ in their numbers alone as one, with "4–6 %" in place of a number that differs."""
+    columns = zip(*(_NUMBER.findall(cause) for cause in causes), strict=True)
+    ranges = iter([_range(column) for column in columns])
+    return _NUMBER.sub(lambda _: next(ranges), causes[0])
+
+
+def _range(numbers: Sequence[str]) -> str:
+    low, high = min(numbers, key=float), max(numbers, key=float)
+    if low == high:
+        return low
+    return f"{low} to {high}" if low.startswith("-") else f"{low}–{high}"
+
+
+def _largest(findings: Sequence[Finding]) -> dict[str, Measured]:
+    """Of each number the largest; findings that say the same have the same numbers."""
+    largest: dict[str, Measured] = {}
+    for each in findings:
+        for name, number in each.evidence.items():
+            if name not in largest or abs(number.value) > abs(largest[name].value):
+                largest[name] = number
+    return largest
