@@ -85,8 +85,7 @@ def test_a_range_reads_well_below_zero_and_keeps_words_with_digits() -> None:
 
 def test_recordings_without_a_name_of_their_own_have_a_number() -> None:
     named = [
-        jid.Recording(time=range(8), position=range(8), name=name)
-        for name in ("a", "b", "a", "")
+        jid.Recording(time=range(8), position=range(8), name=name) for name in ("a", "b", "a", "")
     ]
     assert recording_names(named) == ("recording 0", "b", "recording 2", "recording 3")
 

@@ -19,7 +19,12 @@ _N = len(RUN)
 
 
 def _signals(**counts: Any) -> Any:
-    return evidence(inspections=(inspected(counts=counts),))
+    """Counts of a recording whose torque and sensor return to ±1."""
+    wave = np.clip(1.1 * np.sin(12.0 * TIME), -1.0, 1.0)
+    run = jid.Recording(
+        time=TIME, position=RUN.position, velocity=RUN.velocity, torque=wave, sensor=5.0 * wave
+    )
+    return evidence(inspections=(inspected(run, counts),), recordings=(run,))
 
 
 def _inspection(recording: Any = RUN, **facts: Any) -> Any:
@@ -280,7 +285,10 @@ def test_one_outlier_is_no_speed_to_stay_below() -> None:
     velocity = np.ones(len(TIME))
     velocity[:3] = 2.0, 2.0, 100.0
     run = jid.Recording(
-        time=TIME, position=TIME.copy(), velocity=velocity, torque=np.sin(3.0 * TIME)
+        time=TIME,
+        position=TIME.copy(),
+        velocity=velocity,
+        torque=np.clip(1.1 * np.sin(12.0 * TIME), -1.0, 1.0),
     )
     edge = SimpleNamespace(there=200, moving=200, near=200)
     clipped = inspected(run, counts={"torque": signal(upper=edge)})

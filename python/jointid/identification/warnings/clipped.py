@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
@@ -15,30 +17,60 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 TORQUE_SATURATED = FindingType(
     code="torque_saturated",
-    meaning="the torque rests on its limit in more than 1 % of the samples",
+    meaning="the torque rests on its limit in more than 1 % of the samples, and reaches it more than once; "
+    "a commanded step is none",
     advice=f"record gentler motion, or the torque that the drive applied{DESIGNED}",
 )
 SENSOR_CLIPPED = FindingType(
     code="sensor_clipped",
-    meaning="the sensor rests on its limit in more than 1 % of the samples",
+    meaning="the sensor rests on its limit in more than 1 % of the samples, and reaches it more than once",
     advice=f"widen the sensor's range, or load the link less{DESIGNED}",
 )
 _CLIPPED = 0.01  # share of the samples on a limit
 _INSIDE = 0.9  # of the sensor's range
+_FEWEST = 3  # samples: the largest of a short log is one in a hundred
+_PASSAGES = 2  # in all recordings together
+_LASTING = 1.5  # samples a passage: equal peaks of a motion that repeats itself are single samples
+_HEAPED = 0.3  # of the samples near a limit lie on it; a smooth peak has but one there
+_STEP = 0.9  # of the samples: so long rests what is commanded, not what is cut off
+_SAME = 1e-6  # of the value
+_BEYOND = 1e-3  # of the value: another recording goes further, so it is no limit
 
 
-def _on_a_limit(counts: _core.SignalFacts, samples: int) -> float:
+def _on_a_limit(evidence: Evidence, inspected: Inspected, name: str) -> float:
     """Share of the samples that lie on a limit which cuts the signal off."""
+    counts, samples = inspected.counts(name), len(inspected.recording)
     if counts.lowest == counts.highest:
         return 0.0
     share = 0.0
-    for limit in (counts.upper, counts.lower):
+    for limit, value in ((counts.upper, counts.highest), (counts.lower, counts.lowest)):
         # At rest a clean signal stays where it is, and that may be its largest value.
-        if counts.fine or limit.moving > 3 * (limit.near - limit.there):
-            share += limit.moving / samples
-    # A signal of few levels (a square wave) rests on its limits by nature.
+        rests = (
+            limit.there > _HEAPED * limit.near
+            if counts.fine
+            else limit.moving > 3 * (limit.near - limit.there)
+        )
+        if rests and limit.moving >= _FEWEST:
+            share += limit.moving / samples if _is_reached_again(evidence, name, value) else 0.0
+    # A signal of few levels (a square wave) rests on its limits by nature, as a step does.
     changing = counts.changes > 0.3 * (1.0 - share) * (samples - 1)
-    return share if changing else 0.0
+    return share if changing and share < _STEP else 0.0
+
+
+def _is_reached_again(evidence: Evidence, name: str, value: float) -> bool:
+    """Whether a signal comes back to an extreme value in one recording or another, and goes beyond it in none."""
+    passages = samples = 0
+    for inspected in evidence.inspections:
+        if name not in inspected.channels:
+            continue
+        counts, signal = inspected.counts(name), getattr(inspected.recording, name)
+        farthest = counts.highest if value > 0.0 else counts.lowest
+        if farthest * np.sign(value) > (1.0 + _BEYOND) * abs(value):
+            return False
+        there = np.abs(np.abs(signal) - abs(value)) <= _SAME * abs(value)
+        passages += int(there[0]) + int(np.count_nonzero(there[1:] & ~there[:-1]))
+        samples += int(np.count_nonzero(there))
+    return passages >= _PASSAGES and samples >= _LASTING * passages
 
 
 def _sensed(evidence: Evidence, counts: _core.SignalFacts) -> float | None:
@@ -57,7 +89,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         if name not in (*DRIVE, "sensor"):
             continue
         signal = inspected.counts(name)
-        share = _on_a_limit(signal, len(recording))
+        share = _on_a_limit(evidence, inspected, name)
         if share < _CLIPPED:
             continue
         if name == "sensor":
