@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.estimate.wording import percent
+from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_advice import simpler_model
@@ -18,8 +20,8 @@ from jointid.problem.inner_products import inner
 
 MODEL_TOO_RICH = FindingType(
     code="model_too_rich",
-    meaning="the static term ended at zero or is not significant, or its shape ended on a bound: the data do not "
-    "determine the Stribeck model",
+    meaning="the static term ended at zero, is not significant, rests on three windows or is extrapolated from "
+    "faster motion, or its shape ended on a bound: the data do not determine the Stribeck model",
     advice="use the model coulomb_viscous where no static excess shows; or record slow motion through zero speed"
     f"{DESIGNED}",
     picture="friction-map",
@@ -28,7 +30,10 @@ MODEL_TOO_RICH = FindingType(
 STATIC = ("static", "static_positive", "static_negative")
 SHAPES = ("stribeck", "stribeck_velocity", "stribeck_exponent")
 _LACKED = (*STATIC, *SHAPES)
+_SIGNIFICANT = 0.5  # standard error, of the value
 _PLAIN = 4.0  # standard errors of a static excess of a given shape
+_FEW = 3  # windows: a passage through low speed
+_SHOWN = 0.2  # of a static friction: what acts at the slowest that a window shows; a value beyond is extrapolated
 _COULOMB = ("coulomb", "coulomb_positive", "coulomb_negative")
 
 
@@ -44,7 +49,7 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
                 f"{p.name}.min": Measured(p.min, p.unit)
             }
     for p in static:
-        if p.stderr is not None and p.stderr > 0.5 * abs(p.value):
+        if p.stderr is not None and p.stderr > _SIGNIFICANT * abs(p.value):
             share = p.stderr / abs(p.value)
             return (
                 f"{p.name} friction is {p.value:.3g} with a standard error of {percent(share)}",
@@ -53,12 +58,59 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
                     f"{p.name}.stderr": Measured(share),
                 },
             )
+    for p in static:
+        few = _seen_in_few(evidence, p)
+        if few is not None:
+            return few
     for name in SHAPES:
         if name in found and found[name].at_bound is not None and name in evidence.bounds_from_data:
             return f"the shape {name} ended on the bound of what the data can show", {
                 name: Measured(found[name].value, found[name].unit)
             }
     return None
+
+
+def _seen_in_few(
+    evidence: Evidence, p: ParameterEstimate
+) -> tuple[str, dict[str, Measured]] | None:
+    """Why the windows that show a static friction are too few, or show too little of it; None when they are enough."""
+    regressor, penalty = evidence.at_best, evidence.penalty
+    if p.name not in regressor.names or (p.stderr is None and p.at_bound is None):
+        return None
+    columns = penalty.linear_columns(evidence.best)
+    place = regressor.names.index(p.name)
+    shown = float(np.max(np.abs(columns[:, place]) / penalty.usable_duration))
+    if shown < _SHOWN:
+        return (
+            f"{p.name} friction is {p.value:.3g} {p.unit}, and no window has more than {percent(shown)} of it",
+            {p.name: Measured(p.value, p.unit), f"{p.name}.shown": Measured(shown)},
+        )
+    if p.stderr is None:
+        return None
+    free = [
+        k
+        for k, other in enumerate(regressor.names)
+        if k != place and other in evidence.parameters and evidence.parameters[other].vary
+    ]
+    own = columns[:, place]
+    if free:
+        own = own - columns[:, free] @ regressor.triangle.solve(free, place, rcond=1e-10)[0]
+    missed = np.asarray(penalty.target) - columns @ evidence.best[: columns.shape[1]]
+    most = np.argsort(-(own**2))[:_FEW]
+    total = inner(own, own)
+    left = max(total - inner(own[most], own[most]), 1e-9 * total)
+    value = p.value - inner(own[most], missed[most]) / left
+    error = p.stderr * math.sqrt(total / left)
+    if error <= _SIGNIFICANT * value:
+        return None
+    return (
+        f"{p.name} friction rests on {_FEW} of {len(own)} windows, and is {value:.2g} ± {two_digits(error)} {p.unit} "
+        "without them",
+        {
+            f"{p.name}.elsewhere": Measured(value, p.unit),
+            f"{p.name}.elsewhere_stderr": Measured(error, p.unit),
+        },
+    )
 
 
 def _without(evidence: Evidence) -> str:
@@ -110,7 +162,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         text, measured = reason
         named = (*_COULOMB, *STATIC, *SHAPES)
         advice = [other_motion(evidence, "slow motion through zero speed")]
-        if not _plain_excess(evidence):
+        seen = not any(name.endswith((".shown", ".elsewhere")) for name in measured)
+        if not (seen and _plain_excess(evidence)):
             simpler = Action("call", {"model": simpler_model(evidence)}, _without(evidence))
             advice.insert(0, simpler)
         yield MODEL_TOO_RICH.finding(
