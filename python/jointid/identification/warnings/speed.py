@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from jointid.base.advice import Action
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.check import Check
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
@@ -34,6 +34,8 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         return  # what contradicts itself has no speed, and that is reported already
     if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is not a speed
         peak = quantile_of_sizes(recording.velocity, 0.99)
+    severity: Severity = "blocking"
+    whole = bool(np.all(recording.position == np.rint(recording.position)))
     swing = inspected.found.swing
     travel = abs(float(recording.position[-1] - recording.position[0]))
     if gear > 1.0 and peak * gear > _MOTOR_SPEED:
@@ -44,12 +46,21 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         turns = swing / (2.0 * np.pi)
         seen = f"the joint would swing through {turns:.0f} turns and back"
         measured = {"swing": Measured(turns, "turns")}
+        if not whole:
+            severity = _of_many_turns(recording, agrees=agreement is not None)
     else:
+        return
+    if severity == "info":
+        yield IMPLAUSIBLE_UNITS.finding(
+            f"{seen}, as a bench, a wheel or a spindle does; a joint with stops would be in degrees",
+            evidence=measured,
+            severity=severity,
+        )
         return
     signals = ("position",) if recording.velocity_derived else ("position", "velocity")
     advice = [degrees_advice(recording, signals)]
     units = "in degrees"
-    if np.all(recording.position == np.rint(recording.position)):
+    if whole:
         units += ", or in counts of the encoder, as all positions are whole numbers"
         scale = dict.fromkeys(signals, ...)
         advice.append(Action("call", {"scale": scale}, "2π over the counts of a turn", "load"))
@@ -58,7 +69,23 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         *advice,
         Action("inspect", text="the gear ratio"),
         evidence=measured,
+        severity=severity,
     )
+
+
+def _of_many_turns(recording: Recording, *, agrees: bool) -> Severity:
+    """How much a wide motion speaks against units: nothing against stated ones, which no guess overrides.
+
+    Parameters
+    ----------
+    agrees : bool
+        Whether a velocity is recorded, and is the position's rate.
+    """
+    assumed = recording.metadata.get("assumed_units")
+    unstated = set(assumed) if isinstance(assumed, list | tuple) else set()
+    if "position" not in unstated or (agrees and "velocity" not in unstated):
+        return "info"
+    return "warning" if agrees else "blocking"
 
 
 def _of_the_motor(recording: Recording) -> bool:
