@@ -103,7 +103,10 @@ def evidence(*parameters: ParameterEstimate, **given: Any) -> Any:
         "chance": {each.name: 1.0 for each in parameters},
         "residuals": SimpleNamespace(**residuals),
         "penalty": SimpleNamespace(
-            names=[each.name for each in parameters], noise_limited=False, cumulative=False
+            names=[each.name for each in parameters],
+            coefficients=len(parameters),
+            noise_limited=False,
+            cumulative=False,
         ),
         "torque_level": 10.0,
         "joint": None,

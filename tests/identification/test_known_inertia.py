@@ -3,9 +3,11 @@
 import math
 import re
 
+import numpy as np
 import pytest
 from closed_loop import TRUTH, thesis_joint
 from example_recordings import WELL_EXCITED
+from plain_joint import INERTIA, recorded
 
 import jointid as jid
 
@@ -77,3 +79,17 @@ def test_a_torque_in_another_unit_is_not_usable(factor: float, sensor: bool) -> 
     blocking = {found.code for found in estimate.findings if found.severity == "blocking"}
     assert blocking & {"wrong_scale", "poor_fit"}
     assert estimate.verdict.level == "not usable"
+
+
+@pytest.mark.parametrize("factor", [0.7, 1.06, 1.4])
+def test_a_torque_of_another_scale_concerns_every_value_in_units_of_torque(factor: float) -> None:
+    run = recorded()
+    run = jid.Recording(
+        time=run.time,
+        position=run.position,
+        velocity=run.velocity,
+        torque=factor * np.array(run.torque),
+    )
+    estimate = jid.identify(run, jid.Joint(inertia=INERTIA))
+    (wording,) = (each for each in estimate.findings if each.code == "wrong_scale")
+    assert set(wording.parameters) >= {"inertia", "coulomb", "viscous", "torque_offset"}

@@ -53,7 +53,7 @@ from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
 from jointid.recording.mending import mended
-from jointid.recording.motion import raise_if_hardly_moving
+from jointid.recording.motion import raise_if_hardly_moving, raise_if_still
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -280,6 +280,7 @@ def prepare(
         Input that cannot be used.
     """
     given = listed(recordings)
+    raise_if_still(given)
     runs, mends = zip(*(mended(run) for run in given), strict=True)
     require_joint(joint)
     if not isinstance(mask_standstill, bool):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.recording import Recording
@@ -94,6 +95,26 @@ def _noise_alone(recording: Recording, travel: float) -> float:
     variance = float(np.mean(position**2))
     alike = [float(np.mean(position[lag:] * position[:-lag])) / variance for lag in _LAGS]
     return float(np.sqrt(variance)) if max(map(abs, alike)) < _ALIKE else 0.0
+
+
+def raise_if_still(recordings: Sequence[Recording]) -> None:
+    """Raise `InputError` if the position of one of the recordings never changes."""
+    for number, recording in enumerate(recordings):
+        lowest, highest = recording.ranges["position"]
+        if lowest != highest:
+            continue
+        unit, fastest = recording.unit("position"), max(map(abs, recording.ranges["velocity"]))
+        turns = not recording.velocity_derived and fastest > 0.0
+        seen = f", although the velocity reaches {fastest:.3g} {recording.unit('velocity')}"
+        raise InputError(
+            f"the joint never moves: its position is {lowest:.6g} {unit} throughout{seen if turns else ''}",
+            place=f"recording {number}{f' ({recording.name})' if recording.name else ''}",
+            remedy=(
+                *(("leave this recording out",) if len(recordings) > 1 else ()),
+                Action("record", text="motion, for there is no friction to identify at rest"),
+                Action("inspect", text="which column is the position"),
+            ),
+        )
 
 
 def raise_if_hardly_moving(recordings: Iterable[Recording]) -> None:

@@ -9,7 +9,7 @@ from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.ripple import RIPPLE
-from jointid.identification.warnings.torque_balance import GROSS, WRONG_SCALE
+from jointid.identification.warnings.torque_balance import GROSS, WRONG_SCALE, scaled_with_torque
 from jointid.identification.warnings.undetermined import listed, wide, with_partners
 
 _REMEDIES = {
@@ -54,6 +54,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     for number, cause in enumerate(causes):
         # The misfit makes values uncertain beside those that a shift of first order shows.
         names = (*cause.relative, *(uncertain if number == 0 else ()))
+        if cause.name == "wrong_scale":
+            names = (*names, *scaled_with_torque(evidence))
         yield _finding(cause, with_partners(evidence, names), missed=_missed(evidence))
     for cause in evidence.causes.harmless:
         if cause.share > _NOTED and not _is_known_delay(cause, evidence):
@@ -74,7 +76,10 @@ def _missed(evidence: Evidence) -> bool:
 def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Finding:
     measured = _measured(cause, cause.relative)
     beside = [name for name in concerned if name not in cause.relative]
-    text = f"{cause}; it also makes {listed(beside)} uncertain" if beside else str(cause)
+    also = "also makes {} uncertain"
+    if cause.name == "wrong_scale":
+        also = "also scales {}, if the torque is wrong"
+    text = f"{cause}; it {also.format(listed(beside))}" if beside else str(cause)
     severity: Severity = "blocking" if _is_gross(cause, missed) else "warning"
     return TYPES[cause.name].finding(
         text, *cause.advice, evidence=measured, parameters=tuple(concerned), severity=severity

@@ -125,8 +125,14 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
             "that is the inertia, let it vary",
         ),
         evidence=measured,
-        parameters=("inertia",),
+        parameters=("inertia", *scaled_with_torque(evidence)),
     )
+
+
+def scaled_with_torque(evidence: Evidence) -> tuple[str, ...]:
+    """Return the free parameters that a wrong scale of the torque multiplies: all but shapes."""
+    coefficients = evidence.penalty.names[: evidence.penalty.coefficients]
+    return tuple(name for name in coefficients if evidence.parameters[name].vary)
 
 
 def _gear_hint(evidence: Evidence, ratio: float) -> str:

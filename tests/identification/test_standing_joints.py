@@ -1,0 +1,35 @@
+"""A log in which the joint stands still is refused in one sentence: where, what, and what to do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from plain_joint import motion, recorded
+
+import jointid as jid
+
+TIME = motion()[0]
+REST = np.full(len(TIME), 0.3)
+PUSHED = np.sin(TIME)
+
+
+@pytest.mark.parametrize("model", ["coulomb_viscous", "stribeck", "stribeck:gravity=free", None])
+@pytest.mark.parametrize("velocity", [None, 0.0 * REST, np.cos(TIME)])
+def test_a_joint_at_rest_is_refused(model: str | None, velocity: np.ndarray | None) -> None:
+    run = jid.Recording(time=TIME, position=REST, velocity=velocity, torque=PUSHED, name="bench")
+    with pytest.raises(
+        jid.InputError, match=r"the joint never moves: its position is 0\.3 rad"
+    ) as refused:
+        jid.identify(run, model=model) if model else jid.identify(run)
+    said = str(refused.value)
+    assert said.startswith("recording 0 (bench): ")
+    assert "record motion" in said
+    assert ("although the velocity reaches 1 rad/s" in said) == (
+        velocity is not None and velocity.any()
+    )
+
+
+def test_one_of_several_joints_at_rest_is_left_out() -> None:
+    still = jid.Recording(time=TIME, position=REST, torque=PUSHED, name="parked")
+    with pytest.raises(jid.InputError, match=r"recording 1 \(parked\).*leave this recording out"):
+        jid.identify([recorded(name="moving"), still])
