@@ -142,7 +142,7 @@ def judged(
     than 10 % of their squares are left); for compensation and simulation also friction or a sensor's value that
     `undetermined` names and that has no finite error (where friction differs by direction, offset and directional
     Coulomb frictions have none for any motion, and need none); for simulation also an inertia on its bound, or an
-    undetermined one whose 95 % interval reaches zero.
+    undetermined one whose 95 % interval reaches zero; for compensation alone a torque that holds no friction.
     Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is larger than everything else
     together. Usable: else.
 
@@ -180,13 +180,14 @@ def judged(
     objections = [*_objections(estimate, self_test)]
     friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
     merged = [*_inseparable(estimate, asked, friction)]
+    absent = [*_without_friction(estimate)]
     hidden = [*merged, *_hidden_inertia(estimate, asked)]
     uses = {
-        "compensation": use_by([*objections, *merged], asked, friction.__contains__),
+        "compensation": use_by([*objections, *merged, *absent], asked, friction.__contains__),
         "simulation": use_by([*objections, *hidden], asked, lambda _: True),
         "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
-    return concluded(uses, [*objections, *hidden])
+    return concluded(uses, [*objections, *hidden, *absent])
 
 
 def to_changes(
@@ -235,7 +236,7 @@ def use_by(
 
 def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Objection]:
     for found in estimate.findings:
-        if found.severity != "info":
+        if found.severity != "info" and not _is_of_compensation(found):
             yield Objection(
                 code=found.code,
                 reason=found.cause,
@@ -293,6 +294,22 @@ def _inseparable(
             blocking=True,
             parameters=merged,
         )
+
+
+def _is_of_compensation(found: Finding) -> bool:
+    """Whether a finding speaks against compensation alone: a friction of 0 is a good value of a joint without any."""
+    return found.code == "no_friction" and found.severity == "warning"
+
+
+def _without_friction(estimate: Estimate) -> Iterable[Objection]:
+    for found in estimate.findings:
+        if _is_of_compensation(found):
+            yield Objection(
+                code=found.code,
+                reason=found.cause,
+                blocking=True,
+                parameters=_free(estimate, found),
+            )
 
 
 def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:

@@ -79,6 +79,24 @@ _TIMES = frozenset(
 _JOINED = {("q", "dot"): "qdot", ("theta", "dot"): "dtheta", ("i", "q"): "iq", ("d", "q"): "dq"}
 _JOINED |= {("qfrc", "actuator"): "qfrc"}  # of MuJoCo; its other qfrc_... are computed
 _WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+|[^\W\d_]+")
+AT_THE_LINK = "torque_at_the_link"
+"""Entry of the metadata: the header of a torque that may be measured behind the drive's friction."""
+_AT_THE_LINK = re.compile(
+    r"(?<![a-z])(joint_?torques?|tau_?j(oint)?|torque_?sensor|sensor_?torque|link_?(side_?)?torque)(?![a-z])"
+)
+
+
+def is_at_the_link(header: str) -> bool:
+    """Whether a header of a torque names the joint or a sensor, not the drive.
+
+    Examples
+    --------
+    >>> [is_at_the_link(header) for header in ("tau_J_3", "joint_torque_Nm", "effort", "motor_torque")]
+    [True, True, False, False]
+    """
+    return _AT_THE_LINK.search(re.sub(r"[\s.-]+", "_", header.casefold())) is not None
+
+
 PLAIN, WORDS, OF_A_JOINT = range(3)  # how directly a header names its signal, the clearest first
 
 

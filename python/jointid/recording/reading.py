@@ -9,6 +9,7 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.columns import Column
+from jointid.recording.header_words import AT_THE_LINK, is_at_the_link
 from jointid.recording.signals import TORQUES, FloatArray
 from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.table import Table
@@ -54,6 +55,9 @@ def read_values(
         values |= _readable(table, found, numbers, left_out)
     if table.saved is None and found["time"].scale is None and len(values["time"]):
         _recognise_time(table, found, values, notes)
+    if table.saved is None and "torque" in found:
+        header = table.headers[found["torque"].index]
+        notes |= {AT_THE_LINK: header} if is_at_the_link(header) else {}
     return {signal: values[signal] for signal in found}
 
 

@@ -9,6 +9,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_too_rich import SHAPES, STATIC, richness
+from jointid.identification.warnings.no_friction import without_friction
 
 AT_BOUND = FindingType(
     code="at_bound",
@@ -21,6 +22,7 @@ _EXPLAINED = 0.95  # where the model is poor, a wider bound lets it go further a
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     reported = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
+    reported += without_friction(evidence)  # a friction of 0 is then a value
     for p in evidence.parameters.values():
         if p.at_bound is None or p.name in reported:
             continue

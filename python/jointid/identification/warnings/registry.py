@@ -15,6 +15,7 @@ FILES = (
     "long_shift",
     "speed",
     "torque_balance",
+    "no_friction",
     "constant",
     "clipped",
     "spikes",

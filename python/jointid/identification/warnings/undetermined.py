@@ -14,6 +14,7 @@ from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.excitation import Excitation, Lack
 from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
+from jointid.identification.warnings.no_friction import without_friction
 
 UNDETERMINED = FindingType(
     code="undetermined",
@@ -89,9 +90,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, Lack]]:
     """Why parameters are not well determined, of those for which the recording lacks something, and what it lacks."""
     excitation = Excitation(evidence)
-    elsewhere = {
-        name for each in evidence.undivided for name in each.change
-    }  # by a finding of its own
+    # By findings of their own.
+    elsewhere = {name for each in evidence.undivided for name in each.change}
+    elsewhere |= set(without_friction(evidence))
     reasons: dict[str, list[_Reason]] = {}
     lacks: dict[str, Lack] = {}
     for p in evidence.parameters.values():
@@ -107,7 +108,7 @@ def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, La
         if known is None or lack.wanted > known.wanted:
             lacks[lack.quantity] = lack
     for p in _as_uncertain(evidence, reasons):
-        if p.name not in reasons:
+        if p.name not in reasons and p.name not in elsewhere:
             reasons[p.name] = [_uncertain(p, scale_of(p, evidence))]
     return reasons, lacks
 

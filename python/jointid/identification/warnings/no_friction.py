@@ -1,0 +1,105 @@
+"""A torque that holds no friction although the joint moves: measured at the link, or of a joint that has none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.wording import percent
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.recording.header_words import AT_THE_LINK
+
+NO_FRICTION = FindingType(
+    code="no_friction",
+    meaning="the torque is explained and holds no friction, by a bound of 2 % of its root mean square: it was measured "
+    "behind the drive's friction, or the joint has none, as in a simulation. Compensation has nothing to rest on; "
+    "blocking for everything where the torque's header names the joint or a sensor, and the bound is then 5 %",
+    advice="give the motor's torque or current as torque, and this column as sensor; nothing, if the joint is "
+    "simulated without friction",
+)
+_EXPLAINED = 0.95  # of the variance: friction is missing, not lost in a misfit
+_SMALL = 0.02  # of the torque's root mean square
+_SMALL_AT_THE_LINK = 0.05  # bearings of the link have some
+_SURE = 3.0  # standard errors
+_BOUND = 2.0  # standard errors
+_LEVELS = ("coulomb", "static")
+_CAUSE = "a torque measured at the link holds no friction of the drive"
+_REMEDY = "where the torque is measured: give the motor's torque or current as torque, and this column as sensor"
+
+
+def without_friction(evidence: Evidence) -> tuple[str, ...]:
+    """Return the friction of an estimate that has none beside the torque's size; empty where there is some."""
+    friction = [p for p in evidence.parameters.values() if _is_friction(p)]
+    if not any(p.vary for p in friction) or evidence.residuals.r_squared < _EXPLAINED:
+        return ()
+    header = bool(_header(evidence))
+    shown = any(p.stderr is not None and p.value > _SURE * p.stderr for p in friction)
+    beyond = any((p.value if not p.vary else p.at_bound == "max") for p in friction)
+    if (shown and not header) or beyond:
+        return ()
+    limit = (_SMALL_AT_THE_LINK if header else _SMALL) * evidence.torque_level
+    return tuple(p.name for p in friction) if _most(evidence, friction) < limit else ()
+
+
+def _most(evidence: Evidence, friction: list[ParameterEstimate]) -> float:
+    """A bound of the friction in the recorded motion [N·m or N]."""
+    speed = 0.0
+    if any(_kind(p) == "viscous" for p in friction):
+        speed = float(np.sqrt(np.mean(np.square(evidence.table.velocity))))
+    sizes = [p.value + _BOUND * (p.stderr or 0.0) for p in friction]
+    return sum(
+        size * (1.0 if _kind(p) in _LEVELS else speed)
+        for p, size in zip(friction, sizes, strict=True)
+    )
+
+
+def _kind(p: ParameterEstimate) -> str:
+    return p.name.partition("[")[0].partition("_")[0]
+
+
+def _is_friction(p: ParameterEstimate) -> bool:
+    return _kind(p) in (*_LEVELS, "viscous")
+
+
+def _header(evidence: Evidence) -> str:
+    """The torque's header if it names the joint's side of the drive; empty if none does."""
+    headers = (str(run.metadata.get(AT_THE_LINK, "")) for run in evidence.recordings)
+    return next(filter(None, headers), "")
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    names = without_friction(evidence)
+    if not names:
+        return
+    header = _header(evidence)
+    share = _most(evidence, [evidence.parameters[name] for name in names]) / evidence.torque_level
+    seen = f"the torque holds no friction: at most {percent(share)} of it, although the joint moves"
+    severity: Severity = "warning"
+    cause = f"{seen}; {_CAUSE}, and a joint simulated without friction has none"
+    if header:
+        severity, cause = "blocking", f"{seen}; its header is {header!r}, and {_CAUSE}"
+    yield NO_FRICTION.finding(
+        cause,
+        Action("inspect", text=_REMEDY),
+        *((_as_sensor(header),) if header else ()),
+        evidence={"friction": Measured(share), "torque": _level(evidence)},
+        parameters=names,
+        severity=severity,
+    )
+
+
+def _as_sensor(header: str) -> Action:
+    columns = {"torque": ..., "sensor": header}
+    return Action("call", {"columns": columns}, "with the motor's column", "load")
+
+
+def _level(evidence: Evidence) -> Measured:
+    return Measured(evidence.torque_level, evidence.recordings[0].unit("torque"))
+
+
+CHECK = Check(_find, (NO_FRICTION,))
