@@ -13,6 +13,7 @@ from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected, spike_of
 from jointid.recording.order_statistics import median
+from jointid.recording.recording import Recording
 
 SPIKES = FindingType(
     code="spikes",
@@ -21,7 +22,9 @@ SPIKES = FindingType(
 )
 JUMPS = FindingType(
     code="jumps",
-    meaning="the position jumps: a wrapped angle, a lost index or lost samples",
+    severity="blocking",
+    meaning="the position jumps, and neither a recorded velocity nor the samples beside it go on like that: a wrapped "
+    "angle, a lost index or lost samples",
     advice="unwrap the angle, or crop the recording there",
 )
 
@@ -49,7 +52,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             )
             break
     jump = inspected.found.jump
-    if jump >= 0:
+    if jump >= 0 and not _is_motion(recording, jump):
         step = float(recording.position[jump + 1] - recording.position[jump])
         unit, time = recording.unit("position"), float(recording.time[jump])
         yield JUMPS.finding(
@@ -58,6 +61,21 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             Action("inspect", text="the recording there, and unwrap the angle or crop it"),
             evidence={"height": Measured(step, unit), "time": Measured(time, "s")},
         )
+
+
+def _is_motion(recording: Recording, jump: int) -> bool:
+    """Whether a recorded velocity, or the steps between the new positions beside it, account for half of a step."""
+    changes = np.diff(recording.position)
+    half = 0.5 * abs(float(changes[jump]))
+    if not recording.velocity_derived:
+        ends = recording.velocity[jump : jump + 2]
+        passed = float(ends.mean()) * float(recording.time[jump + 1] - recording.time[jump])
+        if abs(float(changes[jump]) - passed) < half:
+            return True
+    new = np.flatnonzero(changes)  # rows that repeat the one before have no step
+    place = int(np.searchsorted(new, jump))
+    beside = changes[[*new[max(0, place - 1) : place], *new[place + 1 : place + 2]]]
+    return bool(np.abs(beside).max(initial=0.0) > half)
 
 
 def _without_kicks(inspected: Inspected) -> _core.Spike:
