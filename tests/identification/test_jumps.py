@@ -78,3 +78,16 @@ def test_clean_motion_of_any_rate_has_none(seed: int) -> None:
         time, position, rate, _ = motion(20.0, period, seed=seed)
         assert not jumps(run_of(time, position))
         assert not jumps(run_of(time, position, rate))
+
+
+def test_a_report_says_what_may_follow_from_a_blocking_finding() -> None:
+    time, position, rate, _ = motion()
+    moved = position + np.where(time > 5.0, 1.0, 0.0)
+    run = jid.Recording(time=time, position=moved, velocity=rate, torque=recorded().torque)
+    estimate = jid.identify(run, model="stribeck")
+    lines = estimate.report().splitlines()
+    first = next(number for number, line in enumerate(lines) if line.startswith("blocking"))
+    others = sum(found.severity == "warning" for found in estimate.findings)
+    assert others
+    assert f"{others} more may follow from it:" in lines[first:]
+    assert "may follow" not in jid.identify(recorded()).report()

@@ -10,7 +10,7 @@ from plain_joint import INERTIA, VISCOUS, motion, recorded, torque
 import jointid as jid
 from jointid.estimate.findings import Finding
 
-UNSTATED = {"assumed_units": ["position", "velocity"]}
+UNSTATED: dict[str, Any] = {"assumed_units": ["position", "velocity"]}
 
 
 def turning(

@@ -28,7 +28,7 @@ def test_a_residual_is_called_autocorrelated_only_where_it_is(
         causes=causes,
         velocity_effect=None,
     )
-    (finding,) = structured_residual.CHECK.find(seen)
+    (finding,) = structured_residual.CHECK.findings(seen)
     assert ("the residuals are autocorrelated" in finding.cause) == said
     assert f"r = {correlation:.2f}" in finding.cause
     assert "inertia" in finding.cause

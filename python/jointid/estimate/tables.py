@@ -203,7 +203,18 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     lines.append("")
     if not estimate.warnings:
         lines.append("no warnings")
-    lines += [
+    lines += _findings(estimate, action)
+    return printable("\n".join(lines))
+
+
+def _findings(estimate: Estimate, action: Callable[[Action], str]) -> list[str]:
+    """One line a finding; between blocking ones and warnings, how many of these may be effects."""
+    lines = [
         f"{found.severity} ({found.code}): {found.worded(action)}" for found in estimate.findings
     ]
-    return printable("\n".join(lines))
+    blocking = sum(found.severity == "blocking" for found in estimate.findings)
+    others = len(estimate.warnings) - blocking
+    if blocking and others:
+        it = "it" if blocking == 1 else "them"
+        lines.insert(blocking, f"{others} more may follow from {it}:")
+    return lines

@@ -21,8 +21,8 @@ _EXPLAINED = 0.95  # where the model is poor, a wider bound lets it go further a
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    reported = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
-    reported += without_friction(evidence)  # a friction of 0 is then a value
+    rich = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
+    reported = (*rich, *without_friction(evidence))  # a friction of 0 is then a value
     for p in evidence.parameters.values():
         if p.at_bound is None or p.name in reported:
             continue

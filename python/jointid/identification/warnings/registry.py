@@ -6,7 +6,8 @@ from importlib import import_module
 
 from jointid.identification.warnings.check import Check, FindingType
 
-# In the order in which findings of one severity are listed. Each file has a CHECK.
+# In the order in which findings of one severity are listed: what is wrong with a signal has effects on what stands
+# below. Each file has a CHECK.
 FILES = (
     "stopped",
     "cross_check",
@@ -14,13 +15,13 @@ FILES = (
     "delays",
     "long_shift",
     "speed",
-    "torque_balance",
-    "no_friction",
     "constant",
     "clipped",
     "spikes",
     "repeated",
     "time_jitter",
+    "torque_balance",
+    "no_friction",
     "noisy_velocity",
     "noisy_signal",
     "load_scale",

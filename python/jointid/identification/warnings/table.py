@@ -13,6 +13,8 @@ An estimate carries `estimate.findings`, values with a code, a severity, the par
 numbers with units), the cause, and advice that a program can read. `estimate.warnings` are those of severity "warning"
 or "blocking". No warning means that nothing suspicious was found, not that the joint is as modelled.
 
+Of several recordings a finding names those that it is about; what is found in several alike is said once.
+
 - **info**: worth knowing; values are not affected.
 - **warning**: values may be biased, or less certain than usual.
 - **blocking**: the values cannot be used before the cause is removed.
