@@ -122,6 +122,7 @@ def evidence(*parameters: ParameterEstimate, **given: Any) -> Any:
         "own_noise": None,
         "model": "stribeck",
         "sensor_parameters": (),
+        "cross_check": jid.estimate.cross_check.CrossCheck(reason="none"),
     }
     return SimpleNamespace(**(usual | given))
 

@@ -67,7 +67,9 @@ def test_what_it_cannot_check_it_says() -> None:
     assert short is not None
     assert short.disagrees is None
     assert "too few rows" in short.reason
-    loaded = jid.identify(run, model=jid.Model("coulomb_viscous", load_friction="drive")).cross_check
+    loaded = jid.identify(
+        run, model=jid.Model("coulomb_viscous", load_friction="drive")
+    ).cross_check
     assert loaded is not None
     assert "load_friction" in loaded.reason
 

@@ -51,7 +51,9 @@ def test_copies_are_left_out_and_the_samples_get_the_clock_of_the_bus(
 def test_loading_without_copies_leaves_as_many(logged: jid.Recording, tmp_path: Path) -> None:
     logged.save(tmp_path / "logged.csv")
     dropped = jid.load(tmp_path / "logged.csv", drop_copies=True)
-    assert len(dropped) == pytest.approx(len(mended(logged)[0]), rel=0.01)  # a standstill is thinned
+    assert len(dropped) == pytest.approx(
+        len(mended(logged)[0]), rel=0.01
+    )  # a standstill is thinned
 
 
 def test_a_standstill_and_the_impulse_of_a_held_torque_stay() -> None:

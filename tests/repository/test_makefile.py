@@ -104,7 +104,7 @@ def test_a_wheel_that_is_newer_than_all_sources_needs_no_compiler(tree: Path) ->
     assert installations(tree, "demo") == [f"tools/install.sh {wheel}"]
     change(tree, "cpp/base/pool.cpp", NEW + 1)
     assert installations(tree, "demo") == ["tools/install.sh"]
-    assert installations(tree, "demo", "WHEEL=a.whl") == ["tools/install.sh a.whl"]
+    assert installations(tree, "demo", "WHEEL=a.whl") == ["tools/install.sh a.whl only"]
 
 
 def test_the_core_is_checked_as_it_was_built(tree: Path) -> None:

@@ -227,6 +227,7 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
             joint=None,
             identify={"model": jid.Model("coulomb_viscous", terms={"tau": "scaled"})},
         ),
+        "no_friction": Case(recording=_behind_the_friction(good), joint=None),
         "cross_check": Case(recording=defects.wrong_gear_ratio(good)),
         "hardly_moves": Case(recording=hardly, joint=None, identify={"search": None}),
         "other_signal": Case(recording=warm, joint=None, identify={"model": "coulomb_viscous"}),
@@ -237,6 +238,14 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
         ),
         "long_shift": Case(recording=good, identify={"shift": {"torque": 0.5}}),
     }
+
+
+def _behind_the_friction(good: jid.Recording) -> jid.Recording:
+    """The torque of the link alone."""
+    link = 0.3 * np.gradient(good.velocity, good.time) + 5.0 * np.sin(good.position)
+    return jid.Recording(
+        time=good.time, position=good.position, velocity=good.velocity, torque=link
+    )
 
 
 def _of_files(good: jid.Recording, folder: Path) -> dict[str, Case]:

@@ -35,6 +35,9 @@ SYMPTOMS: Mapping[str, Symptom] = {
         "A plain least squares on the recorded signals gives other values than the report's table.",
         friction,
     ),
+    "no_friction": Symptom(
+        "The joint moves without friction: the torque is measured behind it.", friction
+    ),
     "reversed_sign": Symptom(
         "Friction seems to push the joint: it falls where the speed grows. Values end on their bounds.",
         friction,

@@ -210,7 +210,10 @@ def infer(
             message=message,
             bounds_from_data=domain.from_data,
             guessed_sign=domain.guessed_sign,
-            inspections=tuple(inspect(run, threads) for run in problem.recordings),
+            inspections=tuple(
+                inspect(run, threads, mends)
+                for run, mends in zip(problem.recordings, refinements.mends, strict=True)
+            ),
             at_best=at_best,
             causes=causes,
             cause_of=partial(_cause_of, problem, penalty, parameters, torque_level),
@@ -225,7 +228,6 @@ def infer(
             delays=refinements.delays,
             slow_motion=refinements.slow_motion,
             cross_check=second,
-            mends=refinements.mends,
         )
     )
     return Estimate(

@@ -188,7 +188,8 @@ class Prepared:
         started = time.perf_counter()
         problem = replace(self.problem, recordings=recordings)
         penalty = penalty_as_fitted(problem, self.windows, self.domain)
-        other = replace(self, problem=problem, penalty=penalty)
+        refinements = replace(self.refinements, mends=((),) * len(recordings))
+        other = replace(self, problem=problem, penalty=penalty, refinements=refinements)
         quick = Search("separable", seed=search.seed, threads=search.threads)
         return other.estimate(quick, run_search(quick, other.penalty, other.domain), started)
 

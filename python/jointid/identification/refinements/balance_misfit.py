@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.selection.block_sums import BlockSums
+from jointid.problem.block_sums import BlockSums
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 
@@ -28,7 +28,7 @@ def fits_better(
 ) -> bool:
     """Whether one problem's balance predicts held-out blocks clearly better than another's.
 
-    Their sum of squares falls by more than a share, and its logarithm by some standard errors over the blocks.
+    The sum of squares falls by more than a share, and the logarithm of that of held-out blocks by some standard errors.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def fits_better(
     least : float
         The share.
     sure : float
-        Standard errors. Default 3.
+        Standard errors; 0: held-out blocks are not asked. Default 3.
     reversals : bool
         Whether windows with a reversal count. Friction jumps there between two samples: no signal that is smooth
         has anything to say to it.
@@ -45,17 +45,19 @@ def fits_better(
     rows = tuple(
         _rows_of(run, other) for run, other in zip(before.recordings, after.recordings, strict=True)
     )
-    missed = _missed(replace(before, recordings=rows), reversals)
-    without = _missed(after, reversals)
-    if not float(np.sum(without)) < (1.0 - least) * float(np.sum(missed)):
+    whole, missed = _missed(replace(before, recordings=rows), reversals)
+    whole_without, without = _missed(after, reversals)
+    if not whole_without < (1.0 - least) * whole:
         return False
+    if sure == 0.0:
+        return True
     # Of ratios: blocks of lively motion have a hundred times the misfit of others.
     gain = np.log(np.maximum(missed, _TINY) / np.maximum(without, _TINY))
     return float(np.mean(gain)) > sure * float(np.std(gain, ddof=1) / np.sqrt(len(gain)))
 
 
-def _missed(problem: Problem, reversals: bool) -> Array:
-    """Share of the torque's integrals in each block that the terms, fitted to all others, do not explain."""
+def _missed(problem: Problem, reversals: bool) -> tuple[float, Array]:
+    """Share of the torque's integrals that the terms do not explain: in the fit, and in each block fitted by others."""
     terms = [_core.term(key) for key in problem.choice.terms]
     keys = tuple(term.key for term in terms if not term.shapes)
     decays = any(term.shapes for term in terms)
@@ -80,8 +82,9 @@ def _missed(problem: Problem, reversals: bool) -> Array:
     rows = np.column_stack([columns, np.asarray(penalty.target)]) * weight[:, None]
     blocks = np.array_split(np.arange(len(rows)), min(_BLOCKS, len(rows)))
     sums = BlockSums.of(rows, blocks, problem.threads)
-    missed = sums.fitted(np.eye(rows.shape[1])[None]).missed[0]
-    return np.asarray(missed / max(float(np.sum(sums.products[:, -1, -1])), 1e-300))
+    fitted = sums.fitted(np.eye(rows.shape[1])[None])
+    size = max(float(np.sum(sums.products[:, -1, -1])), 1e-300)
+    return float(fitted.penalty[0]) / size, fitted.missed[0] / size
 
 
 def _in_one_direction(problem: Problem, penalty: _core.Penalty) -> NDArray[np.bool_]:

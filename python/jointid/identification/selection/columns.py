@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.search.computed_bounds import shape_range
-from jointid.identification.selection.block_sums import BlockSums
 from jointid.joint.parameters import Parameter
+from jointid.problem.block_sums import BlockSums
 from jointid.problem.terms import TermChoice
 
 Array = NDArray[np.float64]

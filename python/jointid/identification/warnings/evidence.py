@@ -23,7 +23,6 @@ from jointid.problem.constant_torque import Undivided, undivided
 from jointid.problem.inner_products import size
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
-from jointid.recording.mending import Mend
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -97,8 +96,6 @@ class Evidence:
         Why the model does not fit; None where the residuals are noise.
     cross_check : CrossCheck
         The second look.
-    mends : tuple of tuple of Mend
-        What was put right in each recording.
     cause_of : callable
         Returns what a cause does to the values, from its name, which of its kind it is, the share of a misfit
         that it explains, and its size where that is known.
@@ -123,7 +120,6 @@ class Evidence:
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
     cross_check: CrossCheck
-    mends: tuple[tuple[Mend, ...], ...]
     velocity_effect: VelocityEffect | None = None
     own_noise: OwnNoise | None = None
     white: bool = False

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
+from jointid.recording.mending import Mend
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -28,12 +29,15 @@ class Inspected:
         The signals looked at, in the order of `found.facts` and `found.spikes`.
     threads : int
         For a further look; 0: all.
+    mends : tuple of Mend
+        What was put right in it.
     """
 
     recording: Recording
     found: _core.Inspection
     channels: tuple[str, ...]
     threads: int = 0
+    mends: tuple[Mend, ...] = ()
 
     def counts(self, name: str) -> _core.SignalFacts:
         """Counts of one signal."""
@@ -49,7 +53,7 @@ class Inspected:
         return counts.stale / counts.moving if counts.fine and counts.moving else 0.0
 
 
-def inspect(recording: Recording, threads: int = 0) -> Inspected:
+def inspect(recording: Recording, threads: int = 0, mends: tuple[Mend, ...] = ()) -> Inspected:
     """Inspect all signals of a recording."""
     signals = {
         name: signal
@@ -70,7 +74,9 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         ],
         threads=threads,
     )
-    return Inspected(recording=recording, found=found, channels=tuple(signals), threads=threads)
+    return Inspected(
+        recording=recording, found=found, channels=tuple(signals), threads=threads, mends=mends
+    )
 
 
 def spike_of(recording: Recording, sensor: Array, threads: int) -> _core.Spike:

@@ -8,6 +8,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 
 UNWRAPPED = FindingType(
     code="unwrapped",
@@ -23,20 +24,19 @@ HELD_ROWS = FindingType(
 )
 
 
-def _find(evidence: Evidence) -> Iterator[Finding]:
-    for mends in evidence.mends:
-        for mend in mends:
-            if mend.code == UNWRAPPED.code:
-                yield UNWRAPPED.finding(
-                    f"the angle is unwrapped: it jumps {mend.count} times by {mend.size:.4g} rad against the motion",
-                    evidence={"wraps": Measured(mend.count), "size": Measured(mend.size, "rad")},
-                )
-            else:
-                yield HELD_ROWS.finding(
-                    f"{mend.count} rows are left out that hold the sample before: a sample lasts {mend.size:.3g} rows",
-                    Action("record", text="at the bus's own rate"),
-                    evidence={"rows": Measured(mend.count), "rows_per_sample": Measured(mend.size)},
-                )
+def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    for mend in inspected.mends:
+        if mend.code == UNWRAPPED.code:
+            yield UNWRAPPED.finding(
+                f"the angle is unwrapped: it jumps {mend.count} times by {mend.size:.4g} rad against the motion",
+                evidence={"wraps": Measured(mend.count), "size": Measured(mend.size, "rad")},
+            )
+        else:
+            yield HELD_ROWS.finding(
+                f"{mend.count} rows are left out that hold the sample before: a sample lasts {mend.size:.3g} rows",
+                Action("record", text="at the bus's own rate"),
+                evidence={"rows": Measured(mend.count), "rows_per_sample": Measured(mend.size)},
+            )
 
 
-CHECK = Check(_find, (UNWRAPPED, HELD_ROWS))
+CHECK = Check(None, (UNWRAPPED, HELD_ROWS), _in_recording)

@@ -10,7 +10,6 @@ from jointid.identification.warnings.check import Check, FindingType
 # below. Each file has a CHECK.
 FILES = (
     "stopped",
-    "cross_check",
     "velocity",
     "delays",
     "long_shift",
@@ -20,6 +19,7 @@ FILES = (
     "spikes",
     "repeated",
     "time_jitter",
+    "cross_check",
     "torque_balance",
     "no_friction",
     "noisy_velocity",
