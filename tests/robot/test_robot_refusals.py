@@ -175,9 +175,9 @@ def test_degrees_are_noticed(path: Path) -> None:
         time=run.time, position=np.degrees(run.position), torque=run.torque, names=run.names
     )
     found = jid.identify_robot(degrees, jid.Robot.from_urdf(path))
-    told = [each for each in found.warnings if each.code == "implausible_unit"]
-    assert [each.cause.split("'")[0] for each in told] == ["shoulder", "elbow"]
-    assert "by the URDF at most by 6" in told[0].cause
+    (told,) = found.warnings
+    assert (told.code, told.severity) == ("implausible_unit", "blocking")
+    assert told.advice[0].arguments == {"units": {"position": "deg"}}
 
 
 @pytest.mark.parametrize("factor", [180.0 / np.pi, np.pi / 180.0])

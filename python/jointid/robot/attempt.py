@@ -131,7 +131,12 @@ def attempted(
     basis = np.hstack([basis_of(robot, mode) for mode in (asked.inertia, *asked.beside)])
     balance = balance_of(robot, every, duration, basis)
     if not balance.rows.torque.size:
-        raise InputError("no joint moves", argument="recordings", value=runs[0].name)
+        raise InputError(
+            "no joint moves by more than the noise of its velocity",
+            argument="recordings",
+            value=runs[0].name,
+            remedy="where one does, look for time stamps that are late or of lost rows",
+        )
     estimate, fit = _solved(robot, balance, asked.inertia, duration, asked.models, numbers)
     return Attempt(
         robot=robot,

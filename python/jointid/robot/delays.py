@@ -137,6 +137,8 @@ def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, F
     centre = joints[order[min(middle, joints.size - 1)]]
     apart = max(_APART, _APART_OF_LONG * abs(float(centre)))
     alike = np.abs(joints - centre) <= np.maximum(apart, _SURE_OF_ONE * errors)
+    if not weights.any():  # no joint says anything
+        return 0.0, np.inf, alike
     mine, share = joints[alike], weights[alike] / weights[alike].sum()
     value = float(share @ mine)
     scatter = float(share @ (mine - value) ** 2) / max(mine.size - 1, 1)

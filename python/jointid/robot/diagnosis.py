@@ -34,6 +34,24 @@ _POOR = 0.15  # of a joint's torque: what is left says that more is wrong
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Diagnosis:
+    """Findings of an attempt, and the attempt without the wrong facts.
+
+    Attributes
+    ----------
+    findings : tuple of Finding
+    recordings : sequence of RobotRecording
+        With their columns as they should be.
+    corrected : Attempt
+        The same attempt where no fact is wrong.
+    """
+
+    findings: tuple[Finding, ...]
+    recordings: Sequence[RobotRecording]
+    corrected: Attempt
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Corrected:
     """A wrong fact, and the identification without it."""
 
@@ -45,7 +63,7 @@ class _Corrected:
 
 def diagnosed(
     recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, attempt: Attempt
-) -> tuple[Finding, ...]:
+) -> Diagnosis:
     """Return an attempt's findings: the given facts that are wrong first, and without what only follows from them.
 
     Parameters
@@ -67,12 +85,14 @@ def diagnosed(
         causes.append(found.finding)
         recordings, robot, last = found.recordings, found.robot, found.attempt
     if not causes:
-        return attempt.estimate.findings
+        return Diagnosis(
+            findings=attempt.estimate.findings, recordings=recordings, corrected=attempt
+        )
     left = {_key(each, attempt) for each in last.estimate.findings}
     stay = [each for each in attempt.estimate.findings if _key(each, attempt) in left]
     gone = [each for each in attempt.estimate.warnings if _key(each, attempt) not in left]
     every = [*causes, *_summary(causes, gone, attempt, last), *stay]
-    return tuple(every)
+    return Diagnosis(findings=tuple(every), recordings=recordings, corrected=last)
 
 
 def _corrected(

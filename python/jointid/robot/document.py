@@ -44,6 +44,7 @@ def document_of(estimate: RobotEstimate) -> dict[str, Any]:
         "free": list(estimate.free),
         "covariance": plain(estimate.covariance),
         "robot": robot_document(estimate.robot),
+        "cross_check": plain(estimate.cross_check),
         "findings": plain(estimate.findings),
         "verdict": estimate.verdict.document(),
         "settings": plain(estimate.settings),

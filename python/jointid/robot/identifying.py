@@ -6,6 +6,8 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
@@ -16,16 +18,20 @@ from jointid.robot.aligning import aligned, delays_told
 from jointid.robot.asked import least_speeds, recordings_of
 from jointid.robot.assumed import assumptions_told
 from jointid.robot.asymmetry import asymmetry_told
-from jointid.robot.attempt import Asked
+from jointid.robot.attempt import Asked, attempted
+from jointid.robot.cross_check import CrossCheck, cross_checked, disagreement, slow_motion
 from jointid.robot.diagnosis import diagnosed
 from jointid.robot.inertia import FREE, MODES, Inertia
 from jointid.robot.models import friction_models
 from jointid.robot.naming import turned_zeros
 from jointid.robot.physical_inertia import impossible_links, with_possible_bodies
+from jointid.robot.plain_motion import plain_signals
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
-from jointid.robot.shifts import Shift, told_shift
+from jointid.robot.shifts import Shift, told_shift, torque_shift
 from jointid.robot.stamps import all_on_even_clocks
+from jointid.robot.torque_check import wrong_torques
+from jointid.robot.unexamined_causes import unexamined
 
 
 def identify_robot(
@@ -98,7 +104,7 @@ def identify_robot(
     """
     started = time.perf_counter()
     require_kind("robot", robot, Robot)
-    runs = all_on_even_clocks(recordings_of(recordings))
+    recorded = recordings_of(recordings)
     if inertia not in MODES:
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
@@ -111,11 +117,43 @@ def identify_robot(
         slowest=least_speeds(min_speed, robot),
         mask_standstill=mask_standstill,
     )
-    found = aligned(runs, robot, asked, shift)
-    attempt = found.attempt
-    given, robot, estimate = robot, attempt.robot, attempt.estimate
-    if inertia == FREE:
-        estimate = with_possible_bodies(estimate, attempt.fit)
+    stated = None if shift is None else torque_shift(shift, robot)
+    signals = plain_signals(recorded, robot)
+    runs, given = all_on_even_clocks(recorded), robot
+    wrong = wrong_torques(recorded, signals, robot)
+    if (
+        wrong is not None
+    ):  # neither delays nor facts are tried: all that they show would follow from this
+        attempt = attempted(runs, robot, asked, np.zeros(robot.n) if stated is None else stated)
+        estimate, check = attempt.estimate, CrossCheck(reason="see the blocking finding")
+        assumed = assumptions_told(runs, given, attempt)
+        findings = (wrong, *(each for each in assumed if each.severity == "info"))
+    else:
+        found = aligned(runs, robot, asked, shift)
+        attempt = found.attempt
+        estimate = attempt.estimate
+        if inertia == FREE:
+            estimate = with_possible_bodies(estimate, attempt.fit)
+        diagnosis = diagnosed(runs, given, asked, attempt)
+        check = cross_checked(signals, attempt, asked, stated)
+        if check.agrees is False and diagnosis.corrected is not attempt:
+            other = plain_signals(diagnosis.recordings, diagnosis.corrected.robot)
+            again = cross_checked(other, diagnosis.corrected, asked, stated)
+            check = replace(check, explained=bool(again.agrees))
+        findings = (
+            *disagreement(check, slow_motion(signals)),
+            *assumptions_told(runs, given, attempt),
+            *delays_told(found),
+            *diagnosis.findings,
+            *impossible_links(estimate),
+        )
+        plain = all(each.severity == "info" for each in findings)
+        uneven = [*asymmetry_told(attempt)] if plain else []  # else it may follow from that
+        rest = unexamined(attempt.estimate, diagnosis.corrected.estimate)
+        findings = (*findings, *(uneven or rest))
+        if attempt.zeros is not None and attempt.zeros.found:
+            findings = (turned_zeros(attempt.zeros, attempt.robot), *findings)
+    robot = attempt.robot
     settings = {
         "model": {name: joint.model for name, joint in estimate.joints.items()},
         "inertia": inertia,
@@ -127,20 +165,10 @@ def identify_robot(
         "version": _core.__version__,
         "recordings": [run.name for run in runs],
     }
-    findings = (
-        *assumptions_told(runs, given, attempt),
-        *delays_told(found),
-        *diagnosed(runs, given, asked, attempt),
-        *impossible_links(estimate),
-    )
-    if all(each.severity == "info" for each in findings):  # else it may follow from what is wrong
-        findings = (*findings, *asymmetry_told(attempt))
-    zeros = attempt.zeros
-    if zeros is not None and zeros.found:
-        findings = (turned_zeros(zeros, robot), *findings)
     return replace(
         estimate,
         findings=findings,
+        cross_check=check,
         settings=settings,
         seconds=time.perf_counter() - started,
     )

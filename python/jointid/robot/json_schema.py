@@ -43,6 +43,28 @@ _ROBOT = Record(
     },
     {"torque_scales": OrNull(ListOf(_SIZE)), "directions": OrNull(ListOf(_SIZE))},
 )
+_SAID = OrNull(Number(infinite=True, undefined=True))
+_CROSS_CHECK = Record(
+    {
+        "parameters": TableOf(
+            Record(
+                {
+                    "value": _ANY,
+                    "stderr": _ANY,
+                    "second": _SAID,
+                    "second_stderr": _SAID,
+                    "spread": _SAID,
+                    "agrees": OrNull(Flag()),
+                    "reason": Text(),
+                }
+            )
+        ),
+        "residuals": TableOf(ListOf(_ANY, 2, 2)),
+        "agrees": OrNull(Flag()),
+        "reason": Text(),
+        "explained": Flag(),
+    }
+)
 # Only what is used again is declared. All else is there for people.
 _SETTINGS = Record(
     {
@@ -73,5 +95,5 @@ ROBOT_ESTIMATE: Kind = Record(
         "findings": ListOf(FINDING),
         "settings": _SETTINGS,
     },
-    {"bootstrap": Plain(), "verdict": VERDICT},
+    {"bootstrap": Plain(), "verdict": VERDICT, "cross_check": OrNull(_CROSS_CHECK)},
 )

@@ -93,7 +93,7 @@ class LookedRows:
         raw = np.linalg.norm(columns * self.weight[:, None], axis=0)
         rest = self.rest(columns)
         lengths = np.linalg.norm(rest, axis=0)
-        seen = lengths > _NOTHING * raw
+        seen = (lengths > _NOTHING * raw) & (raw > _NOTHING * raw.max(initial=0.0))
         values, errors = np.zeros(raw.size), np.full(raw.size, np.inf)
         if not seen.any():
             return Share(share=0.0, certainty=0.0, values=values, errors=errors, wald=0.0)

@@ -77,7 +77,7 @@ class Motion:
         mask_standstill : bool
         """
         coupling = robot.couplings
-        position, torque, at_motor = _signals(recording, robot)
+        position, torque, at_motor = signals_of(recording, robot)
         found = [_derived(recording, row, robot.names[k]) for k, row in enumerate(position)]
         noise = np.array([each.derived.noise for each in found])
         velocity = np.array(
@@ -140,7 +140,7 @@ def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:
     return RobotRecording(**fields)
 
 
-def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, bool]:
+def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, bool]:
     """Positions and torques, one row a joint, and whether the positions are of the motors.
 
     Torques are at the joints, positions of motors divided by the gear ratios.

@@ -19,6 +19,7 @@ from jointid.estimate.json import (
 from jointid.estimate.statistics import ResidualStatistics
 from jointid.problem.window_table import WindowTable
 from jointid.robot.columns import DIFFERENCE, MEANINGS
+from jointid.robot.cross_check import Compared, CrossCheck
 from jointid.robot.document import KIND, SCHEMA
 from jointid.robot.json_schema import ROBOT_ESTIMATE
 from jointid.robot.link_tree import LinkTree
@@ -87,6 +88,19 @@ def _estimate(d: Mapping[str, Any]) -> RobotEstimate:
         robot=robot,
         settings=d["settings"],
         seconds=d["seconds"],
+        cross_check=_cross_check(d.get("cross_check")),
+    )
+
+
+def _cross_check(d: Mapping[str, Any] | None) -> CrossCheck | None:
+    if d is None:
+        return None
+    return CrossCheck(
+        parameters={name: Compared(**each) for name, each in d["parameters"].items()},
+        residuals={name: (ours, second) for name, (ours, second) in d["residuals"].items()},
+        agrees=d["agrees"],
+        reason=d["reason"],
+        explained=d["explained"],
     )
 
 

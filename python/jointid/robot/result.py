@@ -21,6 +21,7 @@ from jointid.robot.robot import Robot
 if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.verdict import Verdict
+    from jointid.robot.cross_check import CrossCheck
     from jointid.robot.prediction import RobotPrediction
     from jointid.robot.resampling import RobotDraws
 
@@ -91,6 +92,9 @@ class RobotEstimate:
         Wall time.
     draws : RobotDraws or None
         What `bootstrap` needs; None where the estimate was read from a file.
+    cross_check : CrossCheck or None
+        The second look: a plain filtered least squares of the signals as they were recorded, and whether it agrees.
+        None of an estimate that was saved without it.
     """
 
     joints: Mapping[str, RobotJoint]
@@ -108,6 +112,7 @@ class RobotEstimate:
     seconds: float = field(default=0.0, repr=False)
     draws: RobotDraws | None = field(default=None, repr=False)
     impossible_by: float = 0.0
+    cross_check: CrossCheck | None = None
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:

@@ -80,6 +80,7 @@ def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
             f"relative residual {100.0 * estimate.relative_residual:.2f} % of all joints' torque",
         ),
         ("windows", f"{windows} of {duration:.4g} ms, all joints"),
+        *([] if estimate.cross_check is None else [("second look", str(estimate.cross_check))]),
         ("condition", f"{estimate.condition:.3g}"),
         ("time", f"{estimate.seconds:.2f} s"),
     ]

@@ -1,0 +1,224 @@
+"""What the second look says of an identification: both values, and whether they agree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import number, percent
+from jointid.robot.attempt import Asked, Attempt
+from jointid.robot.columns import DIFFERENCE
+from jointid.robot.plain_motion import PlainSignals
+from jointid.robot.second_look import SETTINGS, Looked, looked_again
+
+Array = NDArray[np.float64]
+
+COMPARED = ("coulomb", "viscous", "rotor_inertia")
+_APART, _ERRORS = 0.05, 3.0  # of the value, and of both errors
+_MATTERS = 0.01  # of the joint's torque: a smaller difference spoils nothing
+_VAGUE = 0.5  # of the value: with more doubt the look says nothing
+_SHOWN = 5
+_PAST = 2.2  # over the root of the decay: static friction is gone
+_POOR, _BETTER = 0.05, 0.5  # residual of the torque, and the second look's squared one beside it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Compared:
+    """One parameter in both looks.
+
+    Attributes
+    ----------
+    value, stderr : float
+        Of the identification.
+    second, second_stderr : float or None
+        Of the second look.
+    spread : float or None
+        How far the second look's other filters and rows are from its value.
+    agrees : bool or None
+        None: the second look says nothing.
+    reason : str
+        Why it says nothing.
+    """
+
+    value: float
+    stderr: float
+    second: float | None = None
+    second_stderr: float | None = None
+    spread: float | None = None
+    agrees: bool | None = None
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrossCheck:
+    """The second look beside a robot's identification.
+
+    Attributes
+    ----------
+    parameters : mapping of str to Compared
+        By the names of `RobotEstimate.parameters`.
+    residuals : mapping of str to (float, float)
+        Joint → residual over torque in the second look's rows: with the identified values, and with its own.
+    agrees : bool or None
+        None: nothing was compared.
+    reason : str
+        Why there is no second look.
+    explained : bool
+        Whether both agree once the wrong facts that are named are corrected.
+    """
+
+    parameters: Mapping[str, Compared] = field(default_factory=dict)
+    residuals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    agrees: bool | None = None
+    reason: str = ""
+    explained: bool = False
+
+    def __str__(self) -> str:
+        if self.agrees is None:
+            return f"none: {self.reason}"
+        compared = sum(each.agrees is not None for each in self.parameters.values())
+        apart = [name for name, each in self.parameters.items() if each.agrees is False]
+        if not self.agrees:
+            what = f"disagrees: {', '.join(apart)}" if apart else "explains far more"
+            also = "; the wrong facts that are named explain it" if self.explained else ""
+            return f"a plain filtered least squares {what}{also}"
+        return (
+            f"a plain filtered least squares agrees ({compared} of {len(self.parameters)} values)"
+        )
+
+
+def cross_checked(
+    signals: Sequence[PlainSignals], attempt: Attempt, asked: Asked, stated: Array | None
+) -> CrossCheck:
+    """Return the second look at signals as they were recorded.
+
+    Parameters
+    ----------
+    signals : sequence of PlainSignals
+    attempt : Attempt
+    asked : Asked
+    stated : ndarray, shape (n,), or None
+        Delay of the torques that the call states [s].
+    """
+    robot, estimate = attempt.robot, attempt.estimate
+    if not signals:
+        return CrossCheck(reason="the recording is too short")
+    joints = list(estimate.joints.values())
+    decays = [joint.parameters.get("stribeck") for joint in joints]
+    past = [_PAST / np.sqrt(p.value) if p is not None and p.value > 0.0 else 0.0 for p in decays]
+    look = looked_again(
+        signals,
+        robot,
+        estimate.inertia,
+        np.maximum(past, asked.slowest),
+        [DIFFERENCE in joint.parameters for joint in joints],
+        np.zeros(robot.n) if stated is None else stated,
+        attempt.delay,
+    )
+    if not look.matrix:
+        return CrossCheck(reason="no joint moves fast enough for long enough")
+    found = {
+        f"{joint.name}.{name}": _compared(attempt, look, k, name)
+        for k, joint in enumerate(joints)
+        for name in COMPARED
+        if name in joint.parameters
+    }
+    residuals = dict(_residuals(attempt, look))
+    said = [each.agrees for each in found.values() if each.agrees is not None]
+    worse = any(_much_worse(*each) for each in residuals.values())
+    return CrossCheck(
+        parameters=found,
+        residuals=residuals,
+        agrees=(all(said) and not worse) if said or worse else None,
+        reason="" if said or worse else "it determines none of the values",
+    )
+
+
+def _compared(attempt: Attempt, look: Looked, joint: int, name: str) -> Compared:
+    p = list(attempt.estimate.joints.values())[joint].parameters[name]
+    value, stderr = p.value, p.stderr or 0.0
+    if joint not in look.matrix:
+        return Compared(value=value, stderr=stderr, reason="too few rows of fast motion")
+    if name == "rotor_inertia" and look.recorded:
+        reason = "the recorded velocity explains more, and may be late, which counts as inertia"
+        return Compared(value=value, stderr=stderr, reason=reason)
+    label = (joint, name)
+    second, error, spread = look.values[label], look.errors[label], look.spread[label]
+    doubt = _ERRORS * float(np.hypot(stderr, error)) + spread
+    scale = max(abs(value), abs(second))
+    labels, matrix = look.matrix[joint]
+    column = matrix[:, labels.index(label)]
+    felt = float(np.sqrt(np.mean(column**2))) or 1.0
+    little = _MATTERS * look.size[joint] / felt
+    if not doubt < max(_VAGUE * scale, little):
+        return Compared(value=value, stderr=stderr, reason="it is not determined well enough")
+    return Compared(
+        value=value,
+        stderr=stderr,
+        second=second,
+        second_stderr=error,
+        spread=spread,
+        agrees=abs(value - second) <= max(_APART * scale + doubt, little),
+    )
+
+
+def _residuals(attempt: Attempt, look: Looked) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Each joint's residual over its torque with both sets of values."""
+    fit = attempt.fit
+    places = {label: place for place, label in enumerate(fit.labels)}
+    for joint, (labels, matrix) in look.matrix.items():
+        known = [float(fit.values[places[label]]) if label in places else 0.0 for label in labels]
+        left = [
+            float(np.sqrt(np.mean((look.torque[joint] - matrix @ np.array(values)) ** 2)))
+            for values in (known, [look.values[label] for label in labels])
+        ]
+        size = look.size[joint] or 1.0
+        yield attempt.robot.names[joint], (left[0] / size, left[1] / size)
+
+
+def _much_worse(identified: float, second: float) -> bool:
+    return identified > _POOR and second**2 < _BETTER * identified**2
+
+
+def slow_motion(signals: Sequence[PlainSignals]) -> float:
+    """The speed below which the second look has no rows, of the joint in the middle [rad/s or m/s]."""
+    peaks = [np.abs(each.velocity).max(axis=1) for each in signals] or [np.zeros(1)]
+    return float(f"{SETTINGS[0][1] * float(np.median(np.max(peaks, axis=0))):.2g}")
+
+
+def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
+    """The blocking finding that the second look does not support the values; `slow`: what it left out [rad/s]."""
+    if found.agrees is not False or found.explained:
+        return
+    apart = {name: each for name, each in found.parameters.items() if each.agrees is False}
+    worse = {name: each for name, each in found.residuals.items() if _much_worse(*each)}
+    texts = []
+    if apart:
+        shown = [
+            f"{name} {number(c.value)}, not {number(c.second or 0.0)}" for name, c in apart.items()
+        ]
+        more = f" and {len(apart) - _SHOWN} more" if len(apart) > _SHOWN else ""
+        texts.append(f"finds other values ({'; '.join(shown[:_SHOWN])}{more})")
+    advice: tuple[Action, ...] = (
+        Action("call", {"min_speed": slow}, text="where it is the friction at low speed"),
+    )
+    if worse:
+        joint, (ours, second) = max(worse.items(), key=lambda each: each[1][0] / each[1][1])
+        texts.append(
+            f"leaves {percent(second)} of the torque of {joint} where these values leave {percent(ours)}"
+        )
+        advice = ()
+    yield Finding(
+        code="cross_check",
+        severity="blocking",
+        parameters=tuple(apart) if not worse else (),
+        evidence={f"{name}.second": Measured(each.second or 0.0) for name, each in apart.items()},
+        cause=f"a plain filtered least squares of the signals as recorded {' and '.join(texts)}: the handling of time "
+        "stamps, gaps, delays or slow motion is not right for this recording",
+        advice=(*advice, Action("inspect", text="the time stamps and the logger")),
+    )

@@ -1,0 +1,124 @@
+"""The second look: a plain filtered least squares of inverse dynamics, and whether it finds the same values.
+
+It is the first thing that an expert does by hand, on the signals as they were given. Only stated facts, the zeros that
+were found and the shape of static friction are those of the identification.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.inertia import inertia_columns
+from jointid.robot.plain_motion import PlainSignals
+from jointid.robot.plain_regression import BETTER, Columns, Label, as_good, own_delays, solved
+from jointid.robot.robot import Robot
+
+Array = NDArray[np.float64]
+
+SETTINGS = ((1.0, 0.15), (0.6, 0.1), (1.5, 0.25))  # of the average's period, and of the peak speed
+_DELAYS: Array = 0.005 * np.arange(-6.0, 7.0)  # [s]
+_FINE: Array = 0.001 * np.arange(-4.0, 5.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Looked:
+    """What a second look found.
+
+    Attributes
+    ----------
+    values, errors, spread : mapping of (joint, name) to float
+        Of the first setting, with errors clustered over stretches; how far the other settings are from it.
+    torque : mapping of int to ndarray
+        Filtered torque of the joints that were looked at, with given inertias taken away.
+    matrix : mapping of int to (labels, ndarray)
+        Its columns.
+    size : mapping of int to float
+        Root mean square of the joint's torque.
+    delay : ndarray, shape (n,)
+        That the look took away by itself [s].
+    recorded : bool
+        Whether the recorded velocity explained clearly more.
+    """
+
+    values: dict[Label, float]
+    errors: dict[Label, float]
+    spread: dict[Label, float]
+    torque: dict[int, Array]
+    matrix: dict[int, tuple[tuple[Label, ...], Array]]
+    size: dict[int, float]
+    delay: Array
+    recorded: bool
+
+
+def looked_again(
+    signals: Sequence[PlainSignals],
+    robot: Robot,
+    mode: str,
+    slowest: Array,
+    differs: Sequence[bool],
+    delay: Array,
+    other: Array,
+) -> Looked:
+    """Look at a robot's torques.
+
+    Parameters
+    ----------
+    signals : sequence of PlainSignals
+    robot : Robot
+    mode : str
+        Of the inertia.
+    slowest : ndarray, shape (n,)
+        Speed of each joint below which static friction matters, or that a call leaves out.
+    differs : sequence of bool
+        Joints whose friction differs between the directions.
+    delay : ndarray, shape (n,)
+        That a call states [s].
+    other : ndarray, shape (n,)
+        That the identification took away: where these rows cannot tell it from their own, values differ by so much.
+    """
+    columns = inertia_columns(robot, mode)
+    every = Columns(robot, columns, slowest, differs)
+    sources = [(False, list(signals))]
+    if all(each.recorded is not None for each in signals):
+        swapped = [replace(each, velocity=np.asarray(each.recorded)) for each in signals]
+        sources.append((True, swapped))
+    tried = []
+    for recorded, each in sources:
+        blocks = every.blocks(each, *SETTINGS[0], delay[:, None] + _DELAYS)
+        own, left = own_delays(blocks, _DELAYS)
+        tried.append((recorded, each, own, left))
+    recorded, chosen, own, left = tried[0]
+    if len(tried) > 1 and left and tried[1][3].keys() >= left.keys():
+        ratio = [np.log(tried[1][3][joint] / left[joint]) for joint in left]
+        if np.mean(ratio) < np.log(BETTER):
+            recorded, chosen, own, left = tried[1]
+    shift = delay + np.array([own.get(joint, 0.0) for joint in range(robot.n)])
+    moved = shift != delay
+    if moved.any():
+        fine = np.where(moved[:, None], _FINE, 0.0 * _FINE)
+        blocks = every.blocks(chosen, *SETTINGS[0], shift[:, None] + fine)
+        near, _ = own_delays(blocks, _FINE, 1.0)
+        shift = shift + np.array([near.get(j, 0.0) if moved[j] else 0.0 for j in range(robot.n)])
+    found = [every.blocks(chosen, *setting, shift[:, None]) for setting in SETTINGS]
+    values, errors = solved(found[0], robot.n)
+    both = every.blocks(chosen, *SETTINGS[0], np.column_stack([shift, other]))
+    found.append({joint: as_good(block) for joint, block in both.items()})
+    others = [solved(each, robot.n)[0] for each in found[1:]]
+    spread = {
+        label: max((abs(each[label] - value) for each in others if label in each), default=0.0)
+        for label, value in values.items()
+    }
+    return Looked(
+        values=values,
+        errors=errors,
+        spread=spread,
+        torque={joint: block.targets[:, 0] for joint, block in found[0].items()},
+        matrix={joint: (block.labels, block.matrix) for joint, block in found[0].items()},
+        size={joint: block.size for joint, block in found[0].items()},
+        delay=shift - delay,
+        recorded=recorded,
+    )

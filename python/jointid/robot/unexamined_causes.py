@@ -1,0 +1,81 @@
+"""Causes that no look at a robot examines: where a joint's residual is no noise, one of them may be at work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.robot.result import RobotEstimate, RobotJoint
+
+Array = NDArray[np.float64]
+
+CAUSES = (
+    *("friction that rises smoothly with speed", "friction under load", "drift with temperature"),
+    *("ripple", "springs and counterweights", "a low-pass filter on the torque", "soft gears"),
+)
+_FEWEST = 40  # windows
+_LAGS = range(2, 9)  # windows; neighbours share their velocity's noise
+_SURE = 4.5  # standard errors of an autocorrelation
+_MATTERS = 0.005  # of the torque: the part of the residual that is no noise
+_EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
+_MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
+
+
+def unexamined(estimate: RobotEstimate, corrected: RobotEstimate) -> Iterator[Finding]:
+    """The finding that a residual is no noise, and what was not examined; it caps the verdict at "with care".
+
+    Where wrong facts that were named explain it, it is for information: another cause may look like them.
+    """
+    shares = {name: _structured(joint) for name, joint in estimate.joints.items()}
+    left = [_structured(joint) for joint in corrected.joints.values()]
+    explained = max(left) < _EXPLAINED * max(shares.values())
+    told = {name: share for name, share in shares.items() if share > 0.0}
+    if not told:
+        return
+    also = ", which the facts that are named explain" if explained else ""
+    shown = ", ".join(f"{name} {percent(share)}" for name, share in told.items())
+    yield Finding(
+        code="unexamined_causes",
+        severity="info" if explained else "warning",
+        parameters=tuple(
+            f"{name}.{key}" for name in told for key in estimate.joints[name].parameters
+        ),
+        evidence={name: Measured(share) for name, share in told.items()},
+        cause=f"what is left of the torque is no noise ({shown} of it){also}; not examined for a robot: "
+        f"{', '.join(CAUSES)}",
+        advice=(
+            Action(
+                "inspect",
+                text="each of these joints by itself, for which these causes are examined",
+            ),
+        ),
+    )
+
+
+def _structured(joint: RobotJoint) -> float:
+    """The part of a joint's residual that depends on its own past, of the torque; 0 where that is chance or little."""
+    table = joint.windows
+    rest = (table.measured - table.fitted) / table.duration
+    count, power = rest.size, float(rest @ rest)
+    if count < _FEWEST or power <= 0.0:
+        return 0.0
+    later = [_alike(rest, power, lag) for lag in _LAGS]
+    chance = _SURE / np.sqrt(count)
+    found = 0.0
+    for alike, least in (
+        (max(abs(each) for each in later), _MATTERS),
+        (_alike(rest, power, 1), _MATTERS_OF_NEXT),
+    ):
+        share = joint.relative_residual * float(np.sqrt(max(alike, 0.0)))
+        if alike > chance and share > least:
+            found = max(found, share)
+    return found
+
+
+def _alike(rest: Array, power: float, lag: int) -> float:
+    return float(rest[lag:] @ rest[:-lag]) / power
