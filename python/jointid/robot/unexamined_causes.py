@@ -20,6 +20,7 @@ CAUSES = (
 )
 _FEWEST = 40  # windows
 _LAGS = range(2, 9)  # windows; neighbours share their velocity's noise
+_FAR = 6.0  # times the median: a window says no more
 _SURE = 4.5  # standard errors of an autocorrelation
 _MATTERS = 0.005  # of the torque: the part of the residual that is no noise
 _EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
@@ -61,21 +62,24 @@ def _structured(joint: RobotJoint) -> float:
     """The part of a joint's residual that depends on its own past, of the torque; 0 where that is chance or little."""
     table = joint.windows
     rest = (table.measured - table.fitted) / table.duration
-    count, power = rest.size, float(rest @ rest)
-    if count < _FEWEST or power <= 0.0:
+    count = rest.size
+    if count < _FEWEST or not rest.any():
         return 0.0
-    later = [_alike(rest, power, lag) for lag in _LAGS]
-    chance = _SURE / np.sqrt(count)
+    # Two windows that are far off are alike by chance, and hide what the others have in common: both must show it.
+    most = _FAR * float(np.median(np.abs(rest)))
+    both = (rest, np.clip(rest, -most, most))
+    later = min(max(abs(_alike(each, lag)) for lag in _LAGS) for each in both)
     found = 0.0
     for alike, least in (
-        (max(abs(each) for each in later), _MATTERS),
-        (_alike(rest, power, 1), _MATTERS_OF_NEXT),
+        (later, _MATTERS),
+        (min(_alike(each, 1) for each in both), _MATTERS_OF_NEXT),
     ):
         share = joint.relative_residual * float(np.sqrt(max(alike, 0.0)))
-        if alike > chance and share > least:
+        if alike > _SURE / np.sqrt(count) and share > least:
             found = max(found, share)
     return found
 
 
-def _alike(rest: Array, power: float, lag: int) -> float:
-    return float(rest[lag:] @ rest[:-lag]) / power
+def _alike(rest: Array, lag: int) -> float:
+    """How much a row of residuals is like itself some windows later, between -1 and 1."""
+    return float(rest[lag:] @ rest[:-lag]) / (float(rest @ rest) or 1.0)
