@@ -346,6 +346,7 @@ OTHERS: dict[str, str] = {
     "recording.messages.ros2_source": "tests/recording/test_message_faults.py",
     "recording.messages.sqlite_file": "tests/recording/test_sqlite_logs.py",
     "recording.readers.csv_text": "tests/recording/test_bad_files.py",
+    "recording.readers.json_reader": "tests/recording/test_json.py",
     "recording.readers.mat_reader": "tests/recording/test_mat.py",
     "recording.readers.npz_reader": "tests/recording/test_bad_files.py",
     "recording.readers.parquet_reader": "tests/recording/test_bad_files.py",

@@ -55,7 +55,7 @@ def build(largest: int) -> None:
 def _upload(desk: Desk, largest: int) -> None:
     ui.label("1  Log").classes("text-lg")
     ui.label(
-        "A text log (.csv, .csv.gz, .txt, .tsv, .log, .dat), .npz, .mat, .parquet, .h5, .mcap or .bag. "
+        "A text log (.csv, .csv.gz, .txt, .tsv, .log, .dat), .npz, .mat, .parquet, .h5, .mcap, .bag or .json. "
         "It stays on this machine."
     )
 

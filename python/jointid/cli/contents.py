@@ -97,9 +97,32 @@ def _contents(recording: Recording, wording: Wording) -> dict[str, Any]:
         contents["interpolated"] = ", ".join(f"{k} (every {v})" for k, v in interpolated.items())
     if recording.metadata.get("topic"):
         contents["topic"] = recording.metadata["topic"]
+    stated = recording.metadata.get("stated")
+    if stated and isinstance(stated, Mapping):
+        contents["stated in the file"] = ", ".join(f"{k} {v}" for k, v in stated.items())
+        contents |= _pendulum(stated)
+    runs = recording.metadata.get("runs")
+    if runs and isinstance(runs, list | tuple):
+        contents["runs, one after the other"] = ", ".join(map(str, runs))
     if said := remarks(recording.metadata):
         contents["read"] = "; ".join(said)
     return contents
+
+
+def _pendulum(stated: Mapping[str, Any]) -> dict[str, str]:
+    """The joint file of a load on an arm, as BAM's logs state it: it hangs where the position is 0."""
+    mass, arm, length = (stated.get(name) for name in ("mass", "arm_mass", "length"))
+    known = [each for each in (mass, arm or 0.0, length) if isinstance(each, int | float)]
+    if len(known) < 3 or min(known) < 0.0 or known[0] + known[1] == 0.0:
+        return {}
+    load, rod, reach = known
+    link = {
+        "mass": load + rod,
+        "centre_of_mass": reach * (load + rod / 2.0) / (load + rod),
+        "inertia": reach**2 * (load + rod / 3.0),
+    }
+    lines = "; ".join(f"{name} = {value:.6g}" for name, value in link.items())
+    return {"as a joint file's [link]": f'{lines}; angle = "-90deg"'}
 
 
 def _facts(recording: Recording, seen: Inspected) -> dict[str, Any]:

@@ -145,6 +145,8 @@ def _files(paths: Sequence[Path]) -> list[Path]:
             found.append(path)
             continue
         inside = sorted(each for each in path.iterdir() if each.name.endswith(endings()))
+        # A .json file beside other recordings is an estimate, or a logger's settings.
+        inside = [each for each in inside if each.suffix != ".json"] or inside
         if not inside:
             raise InputError("there is no recording in this folder", place=str(path))
         found += inside

@@ -42,6 +42,8 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     cut = metadata.get("cut_samples")
     if isinstance(cut, int) and cut:
         found.append(f"{cut} samples at the ends are left out, where a channel has none")
+    if metadata.get("converted"):
+        found.append(str(metadata["converted"]))
     skipped = metadata.get("not_read")
     if isinstance(skipped, list | tuple) and skipped:
         more = f" and {len(skipped) - _SHOWN} more" if len(skipped) > _SHOWN else ""

@@ -29,6 +29,8 @@ _BEGINNINGS = (
     (b"\x89MCAP", ".mcap"),
     (b"#ROSBAG", ".bag"),
     (b"SQLite", ".db3"),
+    (b"{", ".json"),
+    (b"[{", ".json"),
 )
 
 

@@ -17,6 +17,7 @@ MODULES = (
     "mcap_reader",
     "rosbag_reader",
     "hdf5_reader",
+    "json_reader",
 )
 
 
