@@ -22,6 +22,7 @@ from jointid.recording.readers.csv_dialect import (
 from jointid.recording.readers.csv_layout import SEARCHED, is_comment, layout_of
 from jointid.recording.readers.csv_stream import each_line, even_rows, plain_numbers
 from jointid.recording.readers.csv_text import Texts, text_of
+from jointid.recording.readers.paired_columns import Paired, paired_columns
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
 from jointid.recording.saved import CSV_MARK, saved_attributes
@@ -284,8 +285,25 @@ def _no_number(cell: str) -> str:
 def _opened(path: Path) -> Table:
     """Return a text file as a table, whichever program wrote it."""
     text = text_of(path)
-    separator = separator_of_scope(_top(text, 100))
-    return CsvTable(path, text) if separator is None else ScopeTable(str(path), text, separator)
+    top = _top(text, 100)
+    separator = separator_of_scope(top)
+    if separator is not None:
+        return ScopeTable(str(path), text, separator)
+    paired = paired_columns(top)
+    return CsvTable(path, text) if paired is None else _table_of_pairs(path, text, paired)
+
+
+def _table_of_pairs(path: Path, text: str, paired: Paired) -> ScopeTable:
+    """Return a text of pairs, read like an export of TwinCAT Scope."""
+    above = re.match(rf"(?:[^\r\n]*(?:\r\n|\r|\n)){{{paired.lines}}}", text)
+    names = paired.separator.join(name or "Name" for name in paired.names)
+    units = paired.separator.join(("Unit", *paired.units[1:]))
+    rows = text[above.end() if above else 0 :]
+    time = f"time [{paired.time_unit}]" if paired.time_unit else "time"
+    table = ScopeTable(str(path), f"{names}\n{units}\n{rows}", paired.separator, time)
+    if paired.recognised:
+        table.notes["recognised_units"] = {"time": paired.time_unit}
+    return table
 
 
 def _top(text: str, count: int) -> list[str]:

@@ -1,4 +1,4 @@
-"""Text that TwinCAT Scope exports: a block of keys above the rows, and a time column for each group of channels."""
+"""Text with a time column for each group of channels, as TwinCAT Scope exports it below a block of keys."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -65,6 +65,8 @@ class ScopeTable:
     text : str
     separator : str
         As `separator_of_scope` found it.
+    time : str
+        Header of the time, with its unit.
 
     Raises
     ------
@@ -74,7 +76,7 @@ class ScopeTable:
 
     saved: Mapping[str, Any] | None = None
 
-    def __init__(self, source: str, text: str, separator: str) -> None:
+    def __init__(self, source: str, text: str, separator: str, time: str = "time [ms]") -> None:
         self.source = source
         self._texts, self._text = Texts(Path(source)), text
         self._texts.count(text)
@@ -103,7 +105,7 @@ class ScopeTable:
             raise InputError("TwinCAT Scope's header names no channel", place=self.header_place)
         self._of = {channel: group for group in self._groups for channel in group.channels}
         self._channels = tuple(self._of)
-        self.headers = ("time [ms]", *(_header(keys, k) for k in self._channels))
+        self.headers = (time, *(_header(keys, k) for k in self._channels))
         symbols = keys.get("SymbolName", [])
         self.other_names: Mapping[str, int] = MappingProxyType(
             {

@@ -1,0 +1,112 @@
+"""Text in which each group of channels has a time column of its own: X,Y pairs, as recorders export them."""
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+
+from jointid.base.values import dataclass
+from jointid.recording.headers import parsed
+from jointid.recording.order_statistics import median
+from jointid.recording.readers.csv_dialect import number_of
+from jointid.recording.stamps import looks_exact
+from jointid.recording.units import find_unit
+
+_SEPARATORS = ("\t", ";", ",")
+_TIMES = ("x", "t", "time", "zeit", "timestamp", "x_value", "x_axis")
+_HEADERS, _ROWS = 12, 20  # lines that are looked at
+_MILLISECONDS = (0.1, 100.0)  # steps without a unit: a recorder takes 10 rows a second, or more
+
+
+@dataclass(frozen=True, kw_only=True)
+class Paired:
+    """Where the channels of such a text are.
+
+    Attributes
+    ----------
+    separator : str
+    lines : int
+        That stand above the rows.
+    names, units : tuple of str
+        Of each column; a time column has no name.
+    time_unit : str
+        As a header states it; empty where none does.
+    recognised : bool
+        Whether the unit of the times was told by their steps alone.
+    """
+
+    separator: str
+    lines: int
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    time_unit: str
+    recognised: bool
+
+
+def paired_columns(lines: Sequence[str]) -> Paired | None:
+    """Return the layout of a text with several time columns of one name; None for any other text."""
+    for separator in _SEPARATORS:
+        table = [
+            [cell.strip().strip('"') for cell in line.split(separator)]
+            for line in lines[: _HEADERS + _ROWS]
+        ]
+        first = next(
+            (k for k, row in enumerate(table[: _HEADERS + 1]) if _is_row(row, separator)), 0
+        )
+        for k in reversed(range(first)):
+            if times := _times(table[k]):
+                return _layout(table, first, k, times, separator)
+    return None
+
+
+def _is_row(cells: Sequence[str], separator: str) -> bool:
+    start = cells[:2]
+    return len(start) > 1 and all(number_of(cell, separator) is not None for cell in start)
+
+
+def _times(cells: Sequence[str]) -> list[int]:
+    """Return the columns of a line that are times, if there are several and each has a channel behind it."""
+    names = [re.sub(r"_?\d+$", "", parsed(cell)[0]) for cell in cells]
+    found = [k for k, name in enumerate(names) if name in _TIMES and name == names[0]]
+    ends = [*found[1:], len(cells)]
+    if len(found) < 2 or any(end - k < 2 for k, end in zip(found, ends, strict=True)):
+        return []
+    return found
+
+
+def _layout(
+    table: Sequence[Sequence[str]], first: int, line: int, times: Sequence[int], separator: str
+) -> Paired | None:
+    axes = table[line]
+    channels = [k for k, cell in enumerate(axes) if cell and k not in times]
+    own = [axes[k] for k in channels]
+    if len(set(own)) < len(own):  # Y, Y, Y: the names stand above, over either column of a pair
+        above = next((row for row in reversed(table[:line]) if any(row)), [])
+        above = [*above, *[""] * (len(axes) - len(above))]
+        own = [above[k] or (above[k - 1] if k - 1 in times else "") for k in channels]
+    if not all(own) or len(set(own)) < len(own):
+        return None
+    below = [row for row in table[line + 1 : first] if any(row)]
+    units = [*(below[0] if below else []), *[""] * len(axes)][: len(axes)]
+    _, stated, _ = parsed(axes[0])
+    stated = stated or find_unit(units[0].strip("[]()"))
+    unit = "" if stated is None else stated.name
+    if recognised := not unit and _are_milliseconds(table, first, separator):
+        unit = "ms"
+    if looks_exact(table[first][0]):
+        unit = "ms"  # in which ScopeTable has them
+    names = dict(zip(channels, own, strict=True))
+    return Paired(
+        separator=separator,
+        lines=first,
+        names=tuple(names.get(k, "") for k in range(len(axes))),
+        units=tuple(units),
+        time_unit=unit,
+        recognised=recognised,
+    )
+
+
+def _are_milliseconds(table: Sequence[Sequence[str]], first: int, separator: str) -> bool:
+    times = [number_of(row[0], separator) for row in table[first : first + _ROWS]]
+    known = [each for each in times if each is not None]
+    steps = [after - before for before, after in pairwise(known)]
+    return bool(steps) and _MILLISECONDS[0] <= median(steps) < _MILLISECONDS[1]
