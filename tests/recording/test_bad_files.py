@@ -210,8 +210,8 @@ BAD: list[Bad] = [
         r"member 'position': it holds Python objects \(a pickle\), which are never read",
     ),
     (
-        *("a.npz", {"time": np.arange(9), "position": np.ones((9, 2))}, {}),
-        r"member 'position': the shape is \(9, 2\)",
+        *("a.npz", {"time": np.arange(9), "position": np.ones((9, 2, 2))}, {}),
+        r"member 'position': the shape is \(9, 2, 2\)",
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.array(["x"] * 9)}, {}),

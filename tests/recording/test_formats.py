@@ -74,8 +74,8 @@ def bad_parquets() -> list[tuple[dict[str, Any], str]]:
             "column 'q': the column holds struct<a: int64>; numbers are expected",
         ),
         (
-            {"t": TIME, "q": [[1.0]] * N},
-            "column 'q': the column holds list<element: double>; numbers are expected",
+            {"t": TIME, "q": [["x"]] * N},
+            "column 'q': the column holds list<element: string>; numbers are expected",
         ),
         (
             {"t": [decimal.Decimal(1)] * N, "q": ANGLE},

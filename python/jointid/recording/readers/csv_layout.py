@@ -188,8 +188,12 @@ def _are_units(cells: Sequence[str]) -> bool:
 
 
 def _cells(line: str, separator: str, place: str) -> list[str]:
+    """Return the cells of a header; the dash of a list (``- q_1``) is no part of a name."""
     try:
-        return cells_of(line, separator)
+        return [
+            cell[2:].lstrip() if cell.startswith("- ") else cell
+            for cell in cells_of(line, separator)
+        ]
     except csv.Error as error:
         raise InputError(f"quotation marks do not match ({error})", place=place) from None
 

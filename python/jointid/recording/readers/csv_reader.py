@@ -22,6 +22,7 @@ from jointid.recording.readers.csv_dialect import (
 from jointid.recording.readers.csv_layout import SEARCHED, is_comment, layout_of
 from jointid.recording.readers.csv_stream import each_line, even_rows, plain_numbers
 from jointid.recording.readers.csv_text import Texts, text_of
+from jointid.recording.readers.list_columns import list_of
 from jointid.recording.readers.paired_columns import Paired, paired_columns
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
@@ -147,6 +148,27 @@ class CsvTable:
     def text(self, column: int) -> list[str]:
         """Return the cells of a column, without blanks around them."""
         return self._columns([column])[0]
+
+    def list_widths(self) -> dict[int, int]:
+        """Return column → numbers in its first cell, for those whose cells are lists."""
+        first = self._first_row if self._table is None and self._stream is None else ""
+        if not any(bracket in first for bracket in "[("):
+            return {}
+        found = enumerate(map(list_of, self._cells(first, self._below + 1)))
+        return {column: len(numbers) for column, numbers in found if numbers}
+
+    def lists(self, column: int, width: int) -> FloatArray:
+        """Return a column of lists, of shape (n, width), or raise `InputError`."""
+        cells = self.text(column)
+        numbers = [list_of(cell) for cell in cells]
+        self._texts.count(self._content, len(cells) * (1 + width))
+        for row, found in enumerate(numbers):
+            if found is None or len(found) != width:
+                raise InputError(
+                    f"{cells[row][:40]!r} is not a list of {width} numbers, as in the first row",
+                    place=self.place(column, row),
+                )
+        return np.array(numbers, dtype=np.float64)
 
     def first_cell(self, column: int) -> str:
         """Return the first cell of a column."""

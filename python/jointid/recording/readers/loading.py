@@ -16,6 +16,7 @@ from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import Contents, read_contents
 from jointid.recording.copies import without_copies
 from jointid.recording.damaged_rows import NOTE
+from jointid.recording.readers.list_columns import with_list_columns
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.registry import reader_of
@@ -299,6 +300,7 @@ def table_of(
     try:
         with allowing(unpacked):
             table = reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
+            table = with_list_columns(table)
     except FileNotFoundError:
         raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:

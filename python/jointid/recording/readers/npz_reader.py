@@ -97,6 +97,34 @@ class NpzTable:
         """Return the values of a column as the file has them."""
         return self._member(self.headers[column])
 
+    def list_widths(self) -> dict[int, int]:
+        """Return column → its width, for those that are matrices of numbers with a row for each sample."""
+        shapes = {column: self._shape(name) for column, name in enumerate(self.headers)}
+        return {
+            k: shape[1]
+            for k, shape in shapes.items()
+            if len(shape) == 2 and shape[0] > shape[1] > 0
+        }
+
+    def lists(self, column: int, width: int) -> FloatArray:
+        """Return a matrix of shape (n, width), or raise `InputError`."""
+        name = self.headers[column]
+        values = np.ravel(self._member(name))
+        return signal_array("", values, self._place(name)).reshape(-1, width)
+
+    def _shape(self, name: str) -> tuple[int, ...]:
+        """The shape of a member, of which only the beginning is unpacked; () where it cannot be read."""
+        try:
+            with self._archive.zip.open(f"{name}.npy") as member:  # type: ignore[attr-defined]
+                version = np.lib.format.read_magic(member)
+                read = np.lib.format.read_array_header_1_0
+                shape, _, _ = (read if version == (1, 0) else np.lib.format.read_array_header_2_0)(
+                    member
+                )
+        except (*_damages(), SyntaxError, TypeError, tokenize.TokenError):
+            return ()
+        return tuple(shape)
+
     def text(self, column: int) -> list[str]:
         """Return the values of a member as text."""
         cells = np.ravel(self._member(self.headers[column]))

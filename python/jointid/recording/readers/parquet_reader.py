@@ -1,6 +1,6 @@
 """Reading .parquet files with pyarrow, which the extra `parquet` installs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -85,6 +85,50 @@ class ParquetTable:
             return None
         try:
             return np.asarray(values.to_numpy())
+        except _damage() as error:
+            raise self._unreadable(column, error) from None
+
+    def list_widths(self) -> dict[int, int]:
+        """Return column → numbers in its first cell, for those whose cells are lists of numbers."""
+        from pyarrow import types
+
+        found = {}
+        for column, field in enumerate(self._file.schema_arrow):
+            fixed = types.is_fixed_size_list(field.type)
+            if not (fixed or types.is_list(field.type) or types.is_large_list(field.type)):
+                continue
+            if _is_number(field.type.value_type) and self._sizes.rows:
+                first = None if fixed else next(self._list_batches(column, 1))[0].as_py()
+                found[column] = field.type.list_size if fixed else len(first or ())
+        return {column: width for column, width in found.items() if width}
+
+    def lists(self, column: int, width: int) -> FloatArray:
+        """Return a column of lists, of shape (n, width), or raise `InputError`."""
+        import pyarrow
+
+        parts, row = [], 0
+        for rows in self._list_batches(column, _ROWS):
+            whole = not rows.null_count
+            if whole and not pyarrow.types.is_fixed_size_list(rows.type):
+                whole = set(rows.value_lengths().to_pylist()) == {width}
+            if not whole:
+                raise InputError(
+                    f"a list of {width} numbers is expected in every row, as in the first",
+                    place=f"{self._place(column)}, in rows {row} to {row + len(rows) - 1}",
+                )
+            place = self._place(column)
+            parts.append(signal_array("", rows.flatten().to_numpy(zero_copy_only=False), place))
+            row += len(rows)
+        return np.concatenate(parts).reshape(-1, width)
+
+    def _list_batches(self, column: int, size: int) -> Iterator[Any]:
+        name = self._file.schema_arrow.field(column).name
+        try:
+            for batch in self._file.iter_batches(size, columns=[name], use_threads=False):
+                self._room.take(2 * batch.nbytes)
+                yield batch.column(0)
+        except InputError:
+            raise
         except _damage() as error:
             raise self._unreadable(column, error) from None
 

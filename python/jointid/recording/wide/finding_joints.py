@@ -64,7 +64,13 @@ def joint_headers(headers: Sequence[str]) -> Mapping[str, Sequence[JointHeader]]
     ----------
     headers : sequence of str
     """
-    return _joints(tuple(headers))
+    found = _joints(tuple(headers))
+    return {joint: columns for joint, columns in found.items() if _is_joint(columns)}
+
+
+def columns_of(headers: Sequence[str], joint: str) -> Sequence[JointHeader]:
+    """Return the columns of one joint, also where no header names its position."""
+    return _joints(tuple(headers)).get(joint, ())
 
 
 @lru_cache(maxsize=4)  # each joint of a robot asks
@@ -80,10 +86,10 @@ def _joints(headers: tuple[str, ...]) -> Mapping[str, Sequence[JointHeader]]:
         each = each or numbered
         if each is not None:
             found.setdefault(each.joint, []).append(each)
-    return {joint: columns for joint, columns in found.items() if _is_joint(columns)}
+    return found
 
 
-def _is_joint(columns: list[JointHeader]) -> bool:
+def _is_joint(columns: Sequence[JointHeader]) -> bool:
     signals = {each.meaning.signal for each in columns if each.meaning}
     return bool(signals & {"position", "link_position"})
 

@@ -12,7 +12,7 @@ from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.signals import FloatArray, check_signal_name
 from jointid.recording.table import Table, first_cell, raw_values
-from jointid.recording.wide.finding_joints import joint_headers
+from jointid.recording.wide.finding_joints import columns_of, joint_headers
 from jointid.recording.wide.joint_columns import own_columns
 from jointid.recording.wide.one_joint import MARK, is_one
 
@@ -58,7 +58,7 @@ class JointTable:
         extra: Mapping[str, str | int] = MappingProxyType({}),
     ) -> None:
         self._table = table
-        joints = joint_headers(table.headers)
+        joints = {each: columns_of(table.headers, each) for each in joints_of(table, columns)}
         owned = {each.index for found in joints.values() for each in found}
         mine = joints.get(joint, [])
         given = {signal: _index(table, column, joint, signal) for signal, column in columns.items()}

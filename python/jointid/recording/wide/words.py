@@ -34,7 +34,18 @@ COMMAND = frozenset(
 _NEUTRAL = frozenset(
     (
         *("joint", "joints", "axis", "achse", "dof", "actual", "act", "measured", "meas", "state"),
-        *("states", "encoder", "enc", "feedback", "fbk", "fb", "raw"),
+        *(
+            "states",
+            "encoder",
+            "enc",
+            "feedback",
+            "fbk",
+            "fb",
+            "raw",
+            "estimate",
+            "estimated",
+            "est",
+        ),
     )
 )
 KNOWN = frozenset(_NOUNS) | _MOTOR | _LINK | _LINK_SIDE | COMMAND | _NEUTRAL
