@@ -1,6 +1,7 @@
 """Cells that are lists of numbers: one column for each element, of a joint and of robots, in every format."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -48,7 +49,7 @@ def check(robot: jid.RobotRecording) -> None:
         {"beginning": "array('d', [", "end": "])"},
     ],
 )
-def test_a_cell_of_a_text_may_be_a_list(form: dict[str, str], tmp_path: Path) -> None:
+def test_a_cell_of_a_text_may_be_a_list(form: dict[str, Any], tmp_path: Path) -> None:
     check(jid.load_robot(written(tmp_path / "a.csv", text(**form))))
 
 

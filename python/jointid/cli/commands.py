@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
+from jointid.cli.friction_map import printed_map
 from jointid.cli.joint_options import joint_file, joint_of, torque_needed
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.reading import joints_wanted, load_all
@@ -90,7 +91,11 @@ def identify(arguments: argparse.Namespace) -> int:
     model = with_terms(arguments.model, arguments)
     merged = model if file is None else model.over(file.model)
     usable = torque_needed(arguments, file)
-    recordings = load_all(arguments.recordings, arguments, [merged], usable=usable)
+    try:
+        recordings = load_all(arguments.recordings, arguments, [merged], usable=usable)
+    except InputError as error:
+        printed_map(arguments.recordings, arguments, error)
+        return 0
     joint = joint_of(arguments, file, recordings)
     search = Search(
         arguments.method,

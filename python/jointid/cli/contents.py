@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.cli.friction_map import printed_map
 from jointid.cli.reading import load_all
 from jointid.cli.wording import Wording
 
@@ -22,7 +24,11 @@ def info(arguments: argparse.Namespace) -> None:
     """Show what a recording holds."""
     import json
 
-    (recording,) = load_all([arguments.recording], arguments)
+    try:
+        (recording,) = load_all([arguments.recording], arguments)
+    except InputError as error:
+        printed_map([arguments.recording], arguments, error)
+        return
     contents = _contents(recording, Wording.of(arguments))
     if names := _unrecognised(arguments):
         contents["columns not recognised"] = names

@@ -121,7 +121,9 @@ class NpzTable:
                 shape, _, _ = (read if version == (1, 0) else np.lib.format.read_array_header_2_0)(
                     member
                 )
-        except (*_damages(), SyntaxError, TypeError, tokenize.TokenError):
+        except (SyntaxError, TypeError, tokenize.TokenError):
+            return ()
+        except _damages():
             return ()
         return tuple(shape)
 

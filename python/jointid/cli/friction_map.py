@@ -1,0 +1,105 @@
+"""Tables of steady speeds and torques: what `identify` and `info` print where there is no time and no position."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.cli.reading import how_to_read
+
+if TYPE_CHECKING:
+    from jointid.estimate.steady_friction import SteadyFriction
+    from jointid.recording.columns import Column
+
+_OUTPUTS = ("save", "report")
+
+
+def printed_map(paths: Sequence[Path], arguments: argparse.Namespace, error: InputError) -> None:
+    """Print the friction of tables of steady speeds and torques; raise the error again for any other file."""
+    found = _friction_map(paths, arguments)
+    if found is None:
+        raise error
+    for name in _OUTPUTS:
+        if getattr(arguments, name, None) is not None:
+            raise InputError(
+                "a table of steady speeds and torques gives a friction map, which is printed only",
+                argument=name,
+                value=getattr(arguments, name),
+                remedy="leave it out; --json prints it for programs",
+            ) from None
+    if arguments.json:
+        import json
+
+        print(json.dumps(found.document(), indent=1, ensure_ascii=False))
+    else:
+        print(found.report())
+
+
+def _friction_map(paths: Sequence[Path], arguments: argparse.Namespace) -> SteadyFriction | None:
+    from jointid.estimate.steady_friction import steady_friction
+
+    tables = [_steady(path, arguments) for path in paths]
+    known = [each for each in tables if each is not None]
+    if len(known) < len(tables) or len({kind for _, _, kind in known}) > 1:
+        return None
+    velocity = np.concatenate([each[0] for each in known])
+    torque = np.concatenate([each[1] for each in known])
+    try:
+        return steady_friction(velocity, torque, known[0][2])
+    except InputError as error:
+        raise error.at(", ".join(map(str, paths))) from None
+
+
+def _add_friction(headers: Sequence[str], found: dict[str, list[Column]]) -> None:
+    """Take the column beside the velocity for the torque if it has the unit of one: ``friction [Nm]``."""
+    from jointid.recording.columns import Column
+    from jointid.recording.headers import understood
+    from jointid.recording.signals import dimensions
+
+    if len(headers) == 2 and found.get("velocity") and not found.get("torque"):
+        other = 1 - found["velocity"][0].index
+        unit = understood(headers[other]).unit
+        if unit is not None and unit.dimension in dimensions("torque", None):
+            found["torque"] = [Column(index=other, unit=unit)]
+
+
+def _steady(path: Path, arguments: argparse.Namespace) -> tuple[np.ndarray, np.ndarray, str] | None:
+    """Velocity, torque and kind of a table that has these, and neither time nor position; None for any other."""
+    from jointid.recording.columns import candidates_of
+    from jointid.recording.readers.loading import table_of
+
+    reading = how_to_read(arguments)
+    parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
+    try:
+        table = table_of(path, **parts)
+        how = {name: reading[name] for name in ("columns", "units", "scale")}
+        found = candidates_of(table, **how, kind=None).of
+    except InputError:
+        return None
+    _add_friction(table.headers, found)
+    known = {column.index for columns in found.values() for column in columns}
+    # A column that nobody knows may be the time, or the position.
+    if (
+        table.saved is not None
+        or len(known) < len(table.headers)
+        or {"time", "position"} & {*found}
+    ):
+        return None
+    for kind in ("revolute", "prismatic"):
+        pair = [
+            [column for column in found.get(signal, []) if column.fits(signal, kind)]
+            for signal in ("velocity", "torque")
+        ]
+        if [len(columns) for columns in pair] == [1, 1]:
+            (velocity,), (torque,) = pair
+            values = table.numbers([velocity.index, torque.index])
+            v, tau = velocity.to_si(values[0]), torque.to_si(values[1])
+            if not (np.isfinite(v).all() and np.isfinite(tau).all()):
+                return None
+            return v, tau, kind
+    return None
