@@ -71,7 +71,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *("base", "recording", "recording/messages", "recording/hierarchies", "recording/wide"),
         },
-        packages={"numpy", "pyarrow"},
+        packages={"numpy", "pyarrow", "wpiutil"},
     ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),

@@ -106,7 +106,7 @@ def test_an_ending_without_a_reader_is_refused(
     monkeypatch.setattr(registry, "MODULES", left)
     assert refusal(path) == (
         f"{path}: a file name that ends in .csv, .csv.gz, .txt, .tsv, .log, .dat, .npz, .mat, .mcap, "
-        ".bag, .db3, .h5, .hdf5 or .json is expected"
+        ".bag, .db3, .h5, .hdf5, .json or .wpilog is expected"
     )
 
 

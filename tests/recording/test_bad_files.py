@@ -195,7 +195,7 @@ BAD: list[Bad] = [
         "kind is 'prismatic': the recording was saved as revolute; leave it out",
     ),
     ("a.csv", None, {}, "there is no such file"),
-    ("a.xyz", GOOD, {}, r"a file name that ends in \.csv, .* or \.json is expected"),
+    ("a.xyz", GOOD, {}, r"a file name that ends in \.csv, .* or \.wpilog is expected"),
     ("a.gz", GOOD, {}, r"a file name that ends in \.csv, "),
     ("a.npz", GOOD, {}, r"not a \.npz archive"),
     ("a.npz", {}, {}, "the archive is empty; arrays time and position are expected"),

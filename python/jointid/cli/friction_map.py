@@ -13,7 +13,7 @@ from jointid.base.errors import InputError
 from jointid.cli.reading import how_to_read
 
 if TYPE_CHECKING:
-    from jointid.estimate.steady_friction import SteadyFriction
+    from jointid.estimate.steady_speeds import SteadyFriction
     from jointid.recording.columns import Column
 
 _OUTPUTS = ("save", "report")
@@ -41,7 +41,7 @@ def printed_map(paths: Sequence[Path], arguments: argparse.Namespace, error: Inp
 
 
 def _friction_map(paths: Sequence[Path], arguments: argparse.Namespace) -> SteadyFriction | None:
-    from jointid.estimate.steady_friction import steady_friction
+    from jointid.estimate.steady_speeds import steady_friction
 
     tables = [_steady(path, arguments) for path in paths]
     known = [each for each in tables if each is not None]

@@ -13,6 +13,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.recording.readers.column_pairs import Paired, paired_columns
 from jointid.recording.readers.csv_dialect import (
     BLANK,
     cells_of,
@@ -23,7 +24,6 @@ from jointid.recording.readers.csv_layout import SEARCHED, is_comment, layout_of
 from jointid.recording.readers.csv_stream import each_line, even_rows, plain_numbers
 from jointid.recording.readers.csv_text import Texts, text_of
 from jointid.recording.readers.list_columns import list_of
-from jointid.recording.readers.paired_columns import Paired, paired_columns
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
 from jointid.recording.saved import CSV_MARK, saved_attributes

@@ -73,7 +73,7 @@ def load(
         MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
         ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
         (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``; a ``.json``
-        file with a list of records, or of WPILib's SysId.
+        file with a list of records, or of WPILib's SysId, and a ``.wpilog`` (the extra ``wpilib``).
         The cells of a text are separated by commas, semicolons, tabs or blanks; where commas do not separate,
         decimal commas are read as well. Exports of TwinCAT Scope are read, too.
     joint : str or int, optional

@@ -18,6 +18,7 @@ MODULES = (
     "rosbag_reader",
     "hdf5_reader",
     "json_reader",
+    "wpilog_reader",
 )
 
 
