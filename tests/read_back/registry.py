@@ -350,6 +350,7 @@ OTHERS: dict[str, str] = {
     "recording.readers.mat_reader": "tests/recording/test_mat.py",
     "recording.readers.npz_reader": "tests/recording/test_bad_files.py",
     "recording.readers.parquet_reader": "tests/recording/test_bad_files.py",
+    "recording.readers.wpilog_reader": "tests/recording/test_wpilog.py",
     "robot.reading_urdf": "tests/robot/test_robot_refusals.py",
 }
 """Modules that read something else, and where that is tried."""

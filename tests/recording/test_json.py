@@ -9,6 +9,7 @@ import pytest
 from recording_files import refusal, written
 
 import jointid as jid
+from jointid.cli import servo
 from jointid.cli.command_line import main
 from jointid.recording.readers.loading import load, load_runs
 
@@ -148,3 +149,15 @@ def test_a_missing_value_is_named(tmp_path: Path) -> None:
     assert "row 7, column 'torque': the value is missing" in refusal(
         saved(tmp_path / "a.json", rows)
     )
+
+
+@pytest.mark.parametrize(
+    ("names", "read"),
+    [(("a.json", "b.csv"), ["b.csv"]), (("a.json", "b.json"), ["a.json", "b.json"])],
+)
+def test_a_json_file_beside_other_logs_of_a_folder_is_no_run(
+    names: tuple[str, ...], read: list[str], tmp_path: Path
+) -> None:
+    for name in names:
+        (tmp_path / name).write_text("{}")
+    assert [each.name for each in servo._files([tmp_path])] == read

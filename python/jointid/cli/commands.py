@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
-from jointid.cli.friction_map import printed_map
 from jointid.cli.joint_options import joint_file, joint_of, torque_needed
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.reading import joints_wanted, load_all
@@ -94,6 +93,8 @@ def identify(arguments: argparse.Namespace) -> int:
     try:
         recordings = load_all(arguments.recordings, arguments, [merged], usable=usable)
     except InputError as error:
+        from jointid.cli.friction_map import printed_map
+
         printed_map(arguments.recordings, arguments, error)
         return 0
     joint = joint_of(arguments, file, recordings)

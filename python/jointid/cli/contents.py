@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.cli.friction_map import printed_map
 from jointid.cli.reading import load_all
 from jointid.cli.wording import Wording
 
@@ -27,6 +26,8 @@ def info(arguments: argparse.Namespace) -> None:
     try:
         (recording,) = load_all([arguments.recording], arguments)
     except InputError as error:
+        from jointid.cli.friction_map import printed_map
+
         printed_map([arguments.recording], arguments, error)
         return
     contents = _contents(recording, Wording.of(arguments))
