@@ -23,6 +23,7 @@ from jointid.recording.readers.csv_dialect import (
 from jointid.recording.readers.csv_layout import SEARCHED, is_comment, layout_of
 from jointid.recording.readers.csv_stream import each_line, even_rows, plain_numbers
 from jointid.recording.readers.csv_text import Texts, text_of
+from jointid.recording.readers.csv_torn import TORN, without_torn_line
 from jointid.recording.readers.list_columns import list_of
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
@@ -83,6 +84,11 @@ class CsvTable:
         self.header_place = f"{self.source}, line {layout.header_line}"
         if layout.bare:
             self.header_place += " (numbers, no header)"
+        self.notes: dict[str, Any] = {}
+        whole = ending is None and self.saved is None
+        if whole and (text := without_torn_line(self._content, layout)) is not None:
+            self._content, whole = text, False
+            self.notes["incomplete"] = TORN
         self._stream: Path | None = None
         few = len(self.headers) <= _FEW
         if self._separator != BLANK and (few or not long):
@@ -92,14 +98,14 @@ class CsvTable:
         if self._table is None and long and '"' not in self._content:
             if few:
                 self._table = plain_numbers(
-                    path if ending is None else each_line(self._content),
+                    path if whole else each_line(self._content),
                     self._below,
                     self._separator,
                     len(self.headers),
                 )
             if (
                 self._table is None
-                and ending is None
+                and whole
                 and self._separator != BLANK
                 and even_rows(self._content, self._below, self._separator, len(self.headers))
             ):
@@ -236,8 +242,6 @@ class CsvTable:
                 hint = ""
                 if count > len(self.headers) and self._separator == ",":
                     hint = " (write decimal points, not commas)"
-                elif number == self._line_numbers[-1]:
-                    hint = " (this is the last line, which may be truncated)"
                 raise InputError(
                     f"{count} cells where the header names {len(self.headers)}; every row needs one "
                     f"for each header{hint}",

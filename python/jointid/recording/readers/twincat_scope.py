@@ -16,6 +16,7 @@ from jointid.recording.headers import understood
 from jointid.recording.order_statistics import median
 from jointid.recording.readers.csv_dialect import number_of
 from jointid.recording.readers.csv_text import Texts
+from jointid.recording.readers.csv_torn import TORN
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import Stamps, looks_exact, stamps_of
 from jointid.recording.units import UNITS
@@ -116,6 +117,9 @@ class ScopeTable:
         )
         self.notes: dict[str, Any] = {}
         self._rows = [line for line in lines[first:] if line.strip() and not line.startswith("EOF")]
+        if len(self._rows) > 1 and not text.endswith("\n") and self._is_cut():
+            del self._rows[-1]
+            self.notes["incomplete"] = TORN
         self._table = self._plain()
         self._base: FloatArray | None = None
 
@@ -162,6 +166,10 @@ class ScopeTable:
         if len(base) < len(fastest):
             self.notes["cut_samples"] = len(fastest) - len(base)
         return base
+
+    def _is_cut(self) -> bool:
+        above, last = (row.count(self._separator) for row in self._rows[-2:])
+        return last < above
 
     def _is_optional(self, column: int) -> bool:
         meaning = understood(self.headers[column]).meaning
