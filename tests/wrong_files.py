@@ -58,7 +58,7 @@ def _broken_recordings(folder: Path) -> None:
         "header.csv": [_HEADER],
         "plain.csv.gz": [_HEADER, *_ROWS],
         "nan.csv": [_HEADER, *_ROWS, "0.2,nan,1"],
-        "ragged.csv": [_HEADER, *_ROWS, "0.2,1"],
+        "ragged.csv": [_HEADER, *_ROWS, "0.2,1", "0.21,2.1,1.0"],
         "linear.csv": ["time_s,position_m,force_N", *_ROWS],
         "runs.csv": [
             f"run,{_HEADER}",
@@ -66,7 +66,7 @@ def _broken_recordings(folder: Path) -> None:
         ],
     }
     for name, lines in texts.items():
-        (folder / name).write_text("\n".join(lines), encoding="utf-8")
+        (folder / name).write_text("\n".join([*lines, ""]), encoding="utf-8")
     (folder / "folder.csv").mkdir()
     (folder / "empty.csv").touch()
     (folder / "log.xlsx").write_bytes(b"PK")

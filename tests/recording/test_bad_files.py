@@ -202,7 +202,7 @@ BAD: list[Bad] = [
         "a.npz",
         {"position": np.ones(9)},
         {},
-        "the file has no time column; headers are 'position'$",
+        "the file has no time column; headers are 'position'; load with sample_period=",
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.array([None] * 9)}, {}),

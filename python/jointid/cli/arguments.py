@@ -80,6 +80,12 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         "converted to the joint",
     )
     command.add_argument(
+        "--rate",
+        type=decimal,
+        metavar="HZ",
+        help="rows that were taken so many times a second, for a file without a time column",
+    )
+    command.add_argument(
         "--topic",
         metavar="TOPIC",
         help="topic of a log of messages (.mcap, .bag, .db3) that is the recording (default: the only one with joints)",

@@ -11,6 +11,7 @@ _READING = {
     "where": "--where",
     "joints": "--joints",
     "gear_ratio": "--gear-ratio",
+    "sample_period": "--rate",
     "topic": "--topic",
     "group": "--group",
     "unpacked": "--unpacked",
@@ -195,7 +196,11 @@ FILES: Mapping[str, str] = {
 }
 """Options that take a file, and what stands for one that the user has to choose."""
 
-NUMBERS: Mapping[str, str] = {"--gear-ratio": "RATIO", "--unpacked": "BYTES"}
+NUMBERS: Mapping[str, str] = {
+    "--gear-ratio": "RATIO",
+    "--rate": "HZ",
+    "--unpacked": "BYTES",
+}
 """Options that take a number, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset(

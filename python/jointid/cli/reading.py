@@ -114,10 +114,19 @@ def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> 
         "scale": numbers_by_name("scale", arguments.scale) or None,
         "extra": extra or None,
         "where": where or None,
+        "sample_period": _period(arguments),
         "topic": arguments.topic,
         "group": arguments.group,
         "unpacked": arguments.unpacked,
     }
+
+
+def _period(arguments: argparse.Namespace) -> float | None:
+    """The time between rows that --rate states; None if the option is not there."""
+    rate = arguments.rate
+    if rate is not None and not 0.0 < rate < float("inf"):
+        raise InputError("a rate above 0 is expected", argument="sample_period", value=rate)
+    return None if rate is None else 1.0 / rate
 
 
 def joints_wanted(arguments: argparse.Namespace) -> list[str] | None:

@@ -9,6 +9,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import listed
 from jointid.recording.columns import Candidates, Column
+from jointid.recording.even_rows import EVENLY
 from jointid.recording.headers import plain, understood
 from jointid.recording.signals import NEEDED, TORQUES, FloatArray, dimensions, header_unit
 from jointid.recording.stamp_units import unit_of_stamps
@@ -137,6 +138,7 @@ def missing(
             return InputError(
                 f"the file has no {signal} column; headers are {listed(table.headers) or 'none'}",
                 place=table.header_place,
+                remedy=EVENLY if signal == "time" else (),
             )
         best = _best(table, signal, possible, found)
         if not best:

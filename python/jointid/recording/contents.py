@@ -12,9 +12,11 @@ from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.attributes import check_kind, check_torque_hold
+from jointid.recording.clock import clock_of, repeats
 from jointid.recording.column_lookup import column_index
 from jointid.recording.columns import Column
 from jointid.recording.damaged_rows import DROP, checked_rows, few, sound_rows
+from jointid.recording.even_rows import EVENLY
 from jointid.recording.extra import UNITS_KEY, ExtraColumn, extra_columns
 from jointid.recording.matching import match_columns
 from jointid.recording.plausibility import too_large
@@ -79,6 +81,16 @@ class Contents:
             The signals are not finite, too short, or time does not increase.
         """
         signals, extra = self._in_si(rows)
+        clock = None
+        if (
+            self.table.saved is None
+            and len({len(values) for values in (*signals.values(), *extra.values())}) == 1
+        ):
+            clock = clock_of(signals["time"], self._beside(signals, extra))
+            if clock.kept is not None:
+                rows = clock.kept if rows is None else rows[clock.kept]
+                signals, extra = self._in_si(rows)
+            signals["time"] = clock.time
 
         def place(signal: str, index: int) -> str:
             row = index if rows is None else int(rows[index])
@@ -91,6 +103,8 @@ class Contents:
             check_signals(every, place=place, source=self.table.source, time_remedy=time_remedy)
         except InputError as error:
             advised = _with_drop(error, every) if "finite" in error.reason else error
+            if "increase" in error.reason and (np.diff(signals["time"]) >= 0.0).all():
+                advised = _with_rate(error)
             if error.argument in MOTION and self.table.saved is None:
                 advised = with_remedy(advised, error.argument)
             raise advised from None
@@ -107,7 +121,7 @@ class Contents:
         if extra:
             fields["extra"] = extra
         if self.table.saved is None:
-            fields["metadata"] = self._metadata()
+            fields["metadata"] = {**self._metadata(), **(clock.notes if clock else {})}
         units = {name: column.shown for name, (column, _) in self.extra.items() if column.shown}
         if units and isinstance(fields.get("metadata", {}), Mapping):
             fields["metadata"] = {**fields.get("metadata", {}), UNITS_KEY: units}
@@ -128,6 +142,17 @@ class Contents:
         sound = sound_rows(every)
         kept = checked_rows(sound, self.table.source)
         return (kept if rows is None else rows[kept]), len(sound) - len(kept)
+
+    def once(self, rows: Rows | None) -> Rows | None:
+        """Return the rows that do not repeat the stamp and all values of an earlier one; None if none does."""
+        signals, extra = self._in_si(rows)
+        kept = repeats(signals["time"], self._beside(signals, extra))
+        return kept if kept is None or rows is None else rows[kept]
+
+    def _beside(
+        self, signals: Mapping[str, FloatArray], extra: Mapping[str, FloatArray]
+    ) -> list[FloatArray]:
+        return [*(signals[name] for name in signals if name != "time"), *extra.values()]
 
     def _in_si(self, rows: Rows | None) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
         """Return the signals, and the extra signals by their own names."""
@@ -209,10 +234,10 @@ class Contents:
             if column.unit is None and column.scale is None and signal != "sensor"
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
-        left_out = [dict(each) for each in self.left_out]
+        notes = dict(getattr(self.table, "notes", {}))  # how the file was read
+        left_out = [dict(each) for each in (*self.left_out, *notes.pop("left_out", ()))]
         metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
-        metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
-        metadata |= self.notes
+        metadata |= notes | self.notes
         return {name: value for name, value in metadata.items() if value}
 
 
@@ -225,6 +250,17 @@ def _with_drop(error: InputError, signals: Mapping[str, FloatArray]) -> InputErr
         value=error.value,
         place=error.place,
         remedy=(*error.remedy, advice),
+    )
+
+
+def _with_rate(error: InputError) -> InputError:
+    """Return the error of equal stamps with the advice to state the rate."""
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=(EVENLY, *error.remedy),
     )
 
 

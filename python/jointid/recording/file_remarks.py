@@ -39,6 +39,19 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     if isinstance(dropped, int) and dropped:
         rows = "1 damaged row is" if dropped == 1 else f"{dropped} damaged rows are"
         found.append(f"{rows} left out")
+    repeated = metadata.get("repeated_rows")
+    if isinstance(repeated, int) and repeated:
+        rows = "1 row repeats" if repeated == 1 else f"{repeated} rows repeat"
+        verb = "is" if repeated == 1 else "are"
+        found.append(f"{rows} the stamp and all values of an earlier one and {verb} left out")
+    rounded = metadata.get("rounded_stamps")
+    if isinstance(rounded, Mapping):
+        resolution, period = (
+            1e3 * float(rounded.get(key, 0.0)) for key in ("resolution", "period")
+        )
+        found.append(
+            f"stamps in steps of {resolution:.4g} ms are read as even, every {period:.4g} ms"
+        )
     cut = metadata.get("cut_samples")
     if isinstance(cut, int) and cut:
         found.append(f"{cut} samples at the ends are left out, where a channel has none")

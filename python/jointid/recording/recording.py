@@ -176,6 +176,7 @@ class Recording(Parts):
         units: Mapping[str, str] | None = None,
         scale: Mapping[str, float] | None = None,
         extra: Collection[str] | Mapping[str, str | int] | None = None,
+        sample_period: float | None = None,
         kind: str | None = None,
         torque_hold: str | None = None,
     ) -> Self:
@@ -186,7 +187,7 @@ class Recording(Parts):
         df : DataFrame
             Anything with `columns` and `df[column]`; headers are read as `load` reads a file's. Its index is a column,
             too, if it has a name ("time_s"), or holds dates or durations.
-        columns, units, scale, extra, kind, torque_hold
+        columns, units, scale, extra, sample_period, kind, torque_hold
             As in `load`.
 
         Raises
@@ -196,9 +197,11 @@ class Recording(Parts):
         """
         from jointid.recording.contents import read_contents
         from jointid.recording.dataframe import FrameTable
+        from jointid.recording.even_rows import at_rate
 
+        table, columns = at_rate(FrameTable(df), sample_period, columns)
         contents = read_contents(
-            FrameTable(df),
+            table,
             columns=columns,
             units=units,
             scale=scale,

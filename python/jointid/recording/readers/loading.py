@@ -16,6 +16,7 @@ from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import Contents, read_contents
 from jointid.recording.copies import without_copies
 from jointid.recording.damaged_rows import NOTE
+from jointid.recording.even_rows import at_rate
 from jointid.recording.readers.list_columns import with_list_columns
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.readers.reader import Reader
@@ -40,6 +41,7 @@ def load(
     scale: Mapping[str, float] | None = None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
     gear_ratio: float | None = None,
+    sample_period: float | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: Kind | None = None,
     torque_hold: TorqueHold | None = None,
@@ -101,6 +103,9 @@ def load(
         Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
         (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Default: not known;
         positions of the motor stay what they are, and ``metadata["side"]`` is "motor".
+    sample_period : float, optional
+        Time between rows [s], for rows that were taken at an even rate; stamps of the file are not read then.
+        Default: by the file's time column.
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
@@ -158,6 +163,7 @@ def load(
         raise also_joints(
             error, partial(table_of, file, kind=kind, unpacked=unpacked), columns
         ) from None
+    table, columns = at_rate(table, sample_period, columns)
     one = joint_of_table(table, joint, columns, extra)
     ratio = _ratio(one, gear_ratio)
     read = partial(
@@ -205,6 +211,7 @@ def load_runs(
     scale: Mapping[str, float] | None = None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
     gear_ratio: float | None = None,
+    sample_period: float | None = None,
     kind: Kind | None = None,
     torque_hold: TorqueHold | None = None,
     name: str | None = None,
@@ -221,7 +228,7 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    joint, columns, units, scale, extra, gear_ratio, kind, torque_hold, topic, group, unpacked
+    joint, columns, units, scale, extra, gear_ratio, sample_period, kind, torque_hold, topic, group, unpacked
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
@@ -241,12 +248,9 @@ def load_runs(
     >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
-    one = joint_of_table(
-        table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked),
-        joint,
-        columns,
-        extra,
-    )
+    table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)
+    table, columns = at_rate(table, sample_period, columns)
+    one = joint_of_table(table, joint, columns, extra)
     ratio = _ratio(one, gear_ratio)
     contents = read_contents(
         one.table,

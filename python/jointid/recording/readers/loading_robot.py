@@ -7,7 +7,8 @@ import numpy as np
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.recording.contents import read_contents
+from jointid.recording.contents import Contents, read_contents
+from jointid.recording.even_rows import at_rate
 from jointid.recording.extra import named_extra
 from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.readers.open_files import Source, reads_open_files
@@ -35,6 +36,7 @@ def load_robot(
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
     gear_ratio: Sequence[float] | FloatArray | float | None = None,
+    sample_period: float | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: Kind | None = None,
     torque_hold: TorqueHold | None = None,
@@ -59,7 +61,7 @@ def load_robot(
         As in `load`, for all joints.
     gear_ratio : sequence of float, optional
         One a joint, in the order of `joints`, or one for all; signed. Default: not known.
-    where, kind, torque_hold
+    sample_period, where, kind, torque_hold
         As in `load`.
     extra : collection of str, or mapping of str to str or int, optional
         Further columns, as in `load`; with ``{joint}`` in the header one of each joint:
@@ -94,6 +96,7 @@ def load_robot(
         columns or units or scale or where or kind or torque_hold or extra
     ):
         return _changed(whole, joints, gear_ratio, name)
+    table, columns = at_rate(table, sample_period, columns)
     known = joints_of(table, columns)
     if not known:
         raise nothing_named(table, "all" if joints is None else joints, "joints")
@@ -107,21 +110,27 @@ def load_robot(
         )
     wanted = named_extra(extra)
     tables = [JointTable(table, each, columns or {}, wanted) for each in names]
+
+    def contents(one: JointTable) -> Contents:
+        return read_contents(
+            one,
+            columns=one.columns,
+            units=_of_present(units, one),
+            scale=_of_present(scale, one),
+            extra=one.extra,
+            kind=kind,
+            torque_hold=torque_hold,
+        )
+
     fields = []
     for each, one in zip(names, tables, strict=True):
         try:
-            held = read_contents(
-                one,
-                columns=one.columns,
-                units=_of_present(units, one),
-                scale=_of_present(scale, one),
-                extra=one.extra,
-                kind=kind,
-                torque_hold=torque_hold,
-            )
+            held = contents(one)
             fields.append(held.fields(held.rows_where(where) if where else None))
         except InputError as error:
             raise error.at(f"joint {each}") from None
+    if any("repeated_rows" in each.get("metadata", {}) for each in fields):
+        fields = _once([contents(one) for one in tables], where)
     _check_times(names, fields, table.source)
     sides = {one.side for one in tables}
     if whole is not None:  # its headers do not say the side
@@ -154,6 +163,19 @@ def load_robot(
         name=file_name(file, first, name),
         metadata=first.get("metadata"),
     )
+
+
+def _once(
+    contents: Sequence[Contents], where: Mapping[str, float | str] | None
+) -> list[dict[str, Any]]:
+    """Return each joint's arguments, without the rows that are copies in all of them."""
+    rows = contents[0].rows_where(where) if where else np.arange(len(contents[0].values["time"]))
+    every = [each.once(rows) for each in contents]
+    kept = np.unique(np.concatenate([rows if each is None else each for each in every]))
+    fields = [each.fields(kept) for each in contents]
+    for each in fields:
+        each["metadata"] = {**each.get("metadata", {}), "repeated_rows": len(rows) - len(kept)}
+    return fields
 
 
 def _at_joint(
