@@ -17,7 +17,7 @@ SHORTENED = Path(__file__).with_name("foreign_logs")
 # File → corrections, what only the user knows, and a value that the estimate must come near, with its tolerance.
 FILES: dict[str, tuple[int, dict[str, str], tuple[str, float, float]]] = {
     "kr300/kr300_A.csv.gz": (1, {"RATIO": "256.86"}, ("coulomb", 370.0, 0.2)),
-    "emps/DATA_EMPS.mat": (1, {}, ("inertia", 95.11 / 35.150652, 0.01)),
+    "emps/DATA_EMPS.mat": (1, {"HEADER": "vir"}, ("inertia", 95.11 / 35.150652, 0.01)),
     "emps/emps_train.csv.gz": (0, {}, ("inertia", 95.11, 0.01)),
     "tx40/tx40.csv.gz": (1, {}, ("viscous", 8.05 / 32**2, 0.1)),
     "ak80/ak80_swing_up.csv": (0, {}, ("coulomb", 0.22, 0.2)),
@@ -36,7 +36,8 @@ def pasted(sentence: str, known: dict[str, str]) -> list[str]:
     words = shlex.split(advice.partition(" or ")[0])
     for option, value in zip(words[::2], words[1::2], strict=False):
         assert option.startswith("--"), sentence
-        options += [option, known.get(value, value)]
+        name, equals, stated = value.rpartition("=")
+        options += [option, f"{name}{equals}{known.get(stated, stated)}"]
     assert options, sentence
     return options
 
@@ -122,7 +123,7 @@ def test_a_motor_side_without_a_gear_ratio_is_said(
 @pytest.mark.parametrize("name", LOGS)
 def test_a_text_log(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """What middleware and controllers write; the joint is the one of `foreign_text_logs`."""
-    known = {"RATIO": "1", "VALUE": "10"}
+    known = {"RATIO": "1", "VALUE": "10", "HEADER": "2"}
     needed, parameters = estimated(["identify", str(write_log(tmp_path, name))], known, capsys)
     assert needed <= 1
     assert parameters["viscous"]["value"] == pytest.approx(2.0, rel=0.2)

@@ -1,5 +1,6 @@
 """Columns that nobody maps: they never block a file whose needed ones are understood."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -171,15 +172,22 @@ def test_mega_asks_whether_milli_is_meant(header: str, tmp_path: Path) -> None:
     assert loaded.torque[1] == column(2)[1] / 1000
 
 
-def test_what_cannot_be_a_position_is_not_proposed(tmp_path: Path) -> None:
+def test_what_nothing_shows_to_be_a_position_is_asked_for(tmp_path: Path) -> None:
     rows = [f"{0.002 * k:.3f},24.1,{1700000000 + k},{k % 7}" for k in range(20)]
     text = "\n".join(["time_s,data,header.stamp_other,state", *rows])
-    assert "load with columns={'position': 'state'}" in refusal(written(tmp_path / "a.csv", text))
-    text = "\n".join(["time_s,data,header.stamp_other,state", *rows]).replace("state", "name")
-    constant = "\n".join(each.rpartition(",")[0] for each in text.splitlines())
-    message = refusal(written(tmp_path / "b.csv", constant))
+    message = refusal(written(tmp_path / "a.csv", text))
     assert "no column is recognised as position; columns are 'time_s', 'data'" in message
-    assert "load with" not in message
+    assert "load with columns={'position': ...}" in message
+
+
+def test_a_position_is_proposed_where_its_rate_is_the_velocity(tmp_path: Path) -> None:
+    time = [0.002 * k for k in range(200)]
+    rows = [
+        f"{t:.3f},{k % 7},{math.sin(9.0 * t)},{9.0 * math.cos(9.0 * t)}" for k, t in enumerate(time)
+    ]
+    text = "\n".join(["time_s,state,data,velocity_rad_s", *rows])
+    message = refusal(written(tmp_path / "a.csv", text))
+    assert "load with columns={'position': 'data'}" in message
 
 
 def test_german_words(tmp_path: Path) -> None:

@@ -10,7 +10,10 @@ from jointid.base.errors import InputError
 
 _STEPS = 4  # errors that are looked for beyond the first
 _MERGED = ("columns", "units", "scale", "where")
-_USUAL = {"gear_ratio": 1.0}  # in place of what only the user knows, to look further
+_USUAL = {
+    "gear_ratio": 1.0,
+    "sample_period": 0.001,
+}  # in place of what only the user knows, to look further
 _OF_SEVERAL = "load_robot"
 _READING = ("load", "Joint")  # both are options of a command
 

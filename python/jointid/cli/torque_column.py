@@ -26,15 +26,18 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
         The log has a duty or a voltage in place of a torque: it is a servo's.
     """
     from jointid.recording.column_lookup import column_index
-    from jointid.recording.likely_torque import duty_column, torque_column
+    from jointid.recording.even_rows import at_rate
+    from jointid.recording.headers import understood
+    from jointid.recording.likely_torque import duty_column, quantity_of, torque_column
     from jointid.recording.matching import match_columns
     from jointid.recording.readers.loading import table_of
+    from jointid.recording.signals import header_unit
 
     if reading["joint"] is not None:  # the headers of several joints say whose torque it is
         return None
     parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
     table = table_of(path, **parts)
-    columns = reading["columns"]
+    table, columns = at_rate(table, reading["sample_period"], reading["columns"])
     found = match_columns(table, columns=columns, units=None, scale=None, kind=None).found
     taken = {column.index for column in found.values()}
     taken |= {column_index(table, header, "where") for header in reading["where"] or ()}
@@ -44,13 +47,19 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
             raise _of_servo(path, table.headers[index], reading["where"])
         return None
     header = table.headers[index]
+    name = header if table.headers.count(header) == 1 else index
+    unit, quantity = understood(header).unit, quantity_of(header)
+    if quantity:  # what its header states is not asked for
+        columns = {"columns": {quantity: name}}
+        stated = unit is not None and unit.dimension != "voltage"
+        units = {} if stated else {"units": {quantity: header_unit(quantity, "revolute")}}
+        return Action(
+            "call", columns | units, "" if stated else "with the unit that it has", "load"
+        )
     return Action(
         "call",
-        {
-            "columns": {"torque": header if table.headers.count(header) == 1 else index},
-            "scale": {"torque": 1.0},
-        },
-        "if that column is proportional to the torque, with the factor to SI instead of 1",
+        {"columns": {"torque": name}, "scale": {"torque": ...}},
+        "if that column is proportional to the torque, with the factor to N·m",
         "load",
     )
 

@@ -7,28 +7,20 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.recording.column_evidence import by_numbers, shows_position, shows_time, speaks_for
 from jointid.recording.column_lookup import listed
 from jointid.recording.columns import Candidates, Column
 from jointid.recording.even_rows import EVENLY
 from jointid.recording.headers import plain, understood
-from jointid.recording.signals import NEEDED, TORQUES, FloatArray, dimensions, header_unit
+from jointid.recording.signals import NEEDED, TORQUES, dimensions, header_unit
 from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.table import Table
 from jointid.recording.units import UNITS, is_mega, unit_names
 
-_LIKELY = {
-    "time": ("time", "stamp", "clock", "zeit"),
-    "position": ("pos", "ang", "travel", "enc", "winkel"),
-    "torque": ("torq", "tau", "moment", "effort", "force", "trq"),
-    "current": ("curr", "amp", "strom", "iq"),
-}
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
 _MEASURED = ("meas", "actual")
 _SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
-_EXAMINED = 12  # columns without headers
-_ROWS = 5000
 _MOST_TRIED = 200  # columns whose names say nothing
-_ALIKE = 0.999  # correlation of a velocity with the position's rate
 
 
 def of_both_kinds(table: Table, signal: str, columns: Sequence[Column]) -> InputError:
@@ -70,6 +62,7 @@ def in_other_unit(column: Column) -> str:
 def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputError:
     """Return the error for a column whose unit is not one of the signal's."""
     known = unit_names(dimensions(signal, kind))
+    remedy: Action | None
     if is_mega(column.unknown):
         remedy = Action(
             "call",
@@ -84,6 +77,12 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
             function="load",
             text="with the factor from file units to SI instead of 1.0",
         )
+    elif column.unit and column.unit.dimension == "current" and signal == "torque":
+        header = table.headers[column.index]
+        name = header if table.headers.count(header) == 1 else column.index
+        remedy = Action("call", {"columns": {"torque": None, "current": name}}, function="load")
+    elif column.unit:  # what the header states is not overridden
+        remedy = None
     else:
         remedy = Action(
             "call", {"units": {signal: known[0]}}, function="load", text="if this is its unit"
@@ -95,7 +94,7 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
         f"{signal} of a {kind} joint {in_other_unit(column)}; "
         f"{' or '.join(dimensions(signal, kind))} is expected, in {', '.join(known)}",
         place=f"{table.header_place}, column {table.headers[column.index]!r}",
-        remedy=(remedy, other),
+        remedy=(other,) if remedy is None else (remedy, other),
     )
 
 
@@ -128,34 +127,59 @@ def missing(
                     argument=f"columns.{owner}",
                     place=table.header_place,
                 )
-    proposed = _by_numbers(table) if set(signals) == set(NEEDED) else {}
-    shown: list[str] = [table.headers[index] for index in proposed.values()]
-    for signal in signals if not proposed else ():
+    headerless = by_numbers(table) if set(signals) == set(NEEDED) else {}
+    proposed: dict[str, int] = dict(headerless)
+    shown = [table.headers[index] for index in proposed.values()]
+    for signal in signals if not headerless else ():
         possible = _possible(table, signal, {*owners, *proposed.values()}, kind)
-        if not possible and proposed:
-            break
-        if not possible:
-            return InputError(
-                f"the file has no {signal} column; headers are {listed(table.headers) or 'none'}",
-                place=table.header_place,
-                remedy=EVENLY if signal == "time" else (),
-            )
         best = _best(table, signal, possible, found)
-        if not best:
-            return InputError(
-                f"no column is recognised as {signal}; columns are {listed(table.headers)}",
-                place=table.header_place,
-            )
-        proposed[signal] = best[0]
-        shown += [table.headers[index] for index in best if table.headers[index] not in shown]
-    if not any(found.of.get(signal) or signal in proposed for signal in TORQUES):
+        if best:
+            proposed[signal] = best[0]
+            shown += [table.headers[k] for k in best if table.headers[k] not in shown]
+    absent = [signal for signal in signals if signal not in proposed]
+    if not any(found.of.get(signal) or signal in proposed for signal in TORQUES) and proposed:
         proposed |= _torque(table, found, {*owners, *proposed.values()}, proposed, kind)
-    names = " or ".join(signal for signal in signals if signal in proposed)
+    arguments = _proposal(table, proposed, kind)
     return InputError(
-        f"no column is recognised as {names}; candidates are {listed(shown)}",
+        _not_recognised(table, signals, absent, shown)
+        + _asked(table, found, proposed, headerless=bool(headerless)),
         place=table.header_place,
-        remedy=_proposal(table, proposed, kind),
+        remedy=_with_absent(arguments, absent),
     )
+
+
+def _not_recognised(
+    table: Table, signals: Sequence[str], absent: Sequence[str], shown: Sequence[str]
+) -> str:
+    if list(absent) == ["time"] == list(signals):
+        return f"the file has no time column; headers are {listed(table.headers) or 'none'}"
+    names = " or ".join(signals)
+    if not shown:
+        return f"no column is recognised as {names}; columns are {listed(table.headers) or 'none'}"
+    return f"no column is recognised as {names}; candidates are {listed(shown)}"
+
+
+def _asked(
+    table: Table, found: Candidates, proposed: Mapping[str, int], *, headerless: bool
+) -> str:
+    """Return what is asked about a torque of which nothing shows the column."""
+    torque = any(found.of.get(signal) or signal in proposed for signal in TORQUES)
+    known = {each.index for columns in found.of.values() for each in columns}
+    left = len(table.headers) - len({*known, *proposed.values()})
+    if torque or not headerless or left < 1:
+        return ""
+    return "; which column is the torque or current? No number shows it"
+
+
+def _with_absent(proposal: Action | None, absent: Sequence[str]) -> Action:
+    """Return the proposal with what only the user knows: the rate of rows without a time, a position's column."""
+    arguments: dict[str, Any] = dict(proposal.arguments) if proposal else {}
+    if "position" in absent:
+        arguments["columns"] = {**arguments.get("columns", {}), "position": ...}
+    if "time" in absent:
+        arguments["sample_period"] = ...
+    text = proposal.text if proposal else EVENLY.text if list(absent) == ["time"] else ""
+    return Action("call", arguments, function="load", text=text)
 
 
 def together(table: Table, problems: Sequence[InputError]) -> InputError:
@@ -185,34 +209,6 @@ def together(table: Table, problems: Sequence[InputError]) -> InputError:
     )
 
 
-def _by_numbers(table: Table) -> dict[str, int]:
-    """Return what the columns of a table without headers may be, by their numbers; empty if there are headers."""
-    if any(header != f"column {k}" for k, header in enumerate(table.headers)):
-        return {}
-    columns: dict[int, FloatArray] = {}
-    for k in range(min(len(table.headers), _EXAMINED)):
-        try:
-            (values,) = table.numbers([k])
-        except InputError:
-            continue
-        values = values[:_ROWS]
-        if len(values) > 2 and np.isfinite(values).all() and np.ptp(values) > 0.0:
-            columns[k] = values
-    time = next((k for k, values in columns.items() if (np.diff(values) > 0.0).all()), None)
-    others = [k for k in columns if k != time]
-    if time is None or not others:
-        return {}
-    found = {"time": time, "position": others[0]}
-    rate = np.gradient(columns[others[0]], columns[time])
-    for k in others[1:]:
-        moves = float(np.std(rate)) > 0.0 and np.corrcoef(rate, columns[k])[0, 1] > _ALIKE
-        if moves and "velocity" not in found:
-            found["velocity"] = k
-        elif "torque" not in found:
-            found["torque"] = k
-    return found
-
-
 def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> list[int]:
     """Return the columns whose unit may be the signal's."""
     found = []
@@ -229,16 +225,26 @@ def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> l
 
 
 def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> list[int]:
-    """Return those of the possible columns that a header speaks for, the likeliest first."""
+    """Return those of the possible columns that a header or the numbers speak for, the likeliest first."""
     of_joints = [column.index for column in found.of_joints.get(signal, ())]
-    likely = _likely(table, signal, possible)
-    unrecognised = [k for k in possible if understood(table.headers[k]).meaning is None]
-    best = [k for k in of_joints if k in possible] or likely
-    if not best and signal == "position":  # no word of the headers speaks for any
-        best = [k for k in (unrecognised or possible)[:_MOST_TRIED] if _moves(table, k)]
-    elif not best:
-        best = unrecognised or possible
+    if signal == "time":
+        unrecognised = [k for k in possible if understood(table.headers[k]).meaning is None]
+        best = [k for k in unrecognised[:_MOST_TRIED] if shows_time(table, k)]
+        best.sort(key=lambda k: not speaks_for(table.headers[k], "time"))
+    else:
+        best = [k for k in of_joints if k in possible] or _likely(table, signal, possible)
+    if not best and signal == "position":
+        best = _of_velocity(table, possible, found)
     return sorted(best, key=lambda k: _doubts(plain(table.headers[k])))
+
+
+def _of_velocity(table: Table, possible: list[int], found: Candidates) -> list[int]:
+    """Return the columns with the rate that is recognised as velocity."""
+    beside = [found.of.get(signal) for signal in ("time", "velocity")]
+    if not all(beside):
+        return []
+    time, velocity = (columns[0].index for columns in beside if columns)
+    return [k for k in possible[:_MOST_TRIED] if shows_position(table, k, time, velocity)]
 
 
 def _doubts(name: str) -> tuple[bool, bool]:
@@ -247,17 +253,8 @@ def _doubts(name: str) -> tuple[bool, bool]:
     return any(part in name for part in _UNLIKELY), not measured
 
 
-def _moves(table: Table, index: int) -> bool:
-    try:
-        (values,) = table.numbers([index])
-    except InputError:
-        return False
-    values = values[np.isfinite(values)][:_ROWS]
-    return len(values) > 0 and float(values.max()) > float(values.min())
-
-
 def _likely(table: Table, signal: str, possible: list[int]) -> list[int]:
-    return [k for k in possible if any(part in plain(table.headers[k]) for part in _LIKELY[signal])]
+    return [k for k in possible if speaks_for(table.headers[k], signal)]
 
 
 def _torque(
@@ -285,8 +282,10 @@ def _number(table: Table, index: int | None) -> str:
     return next((word for word in words if word.isdigit()), "")
 
 
-def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Action:
+def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Action | None:
     """Return the call with these columns; where it is more than one, also with the units to check."""
+    if not proposed:
+        return None
     columns: dict[str, Any] = {}
     units: dict[str, str] = {}
     for signal, index in proposed.items():

@@ -6,30 +6,23 @@ from collections.abc import Collection
 
 import numpy as np
 
-from jointid.base.errors import InputError
+from jointid.recording.column_evidence import speaks_for, values_of
 from jointid.recording.headers import plain, understood
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
 
-# The words of a header, the likeliest first.
-_WORDS = (
-    ("torq", "tau", "moment", "effort", "force", "trq"),
-    ("curr", "amp", "strom", "iq"),
-)
 _COMMAND = ("command", "cmd", "output")
 _DUTY = ("duty", "pwm", "volt")  # what makes a torque without being proportional to one
 _DIMENSIONS = ("torque", "force", "current", "voltage")
 _SUPPLY = ("supply", "battery", "bus", "limit", "max", "min", "enable", "temp")
 _ALIKE = 0.98  # correlation of another position, as of a reference
-_ROWS = 20_000
 
 
 def torque_column(table: Table, taken: Collection[int], position: int | None) -> int | None:
-    """Return the 0-based number of a column that may be proportional to the torque; None where none stands out.
+    """Return the 0-based number of a column that may be proportional to the torque; None where nothing shows one.
 
-    It changes, does not follow the position, and its header has a word of torque, current or command; without
-    such a word it is the only one of all columns that nobody needs. No duty or voltage is one, nor anything else of
-    a log that has one.
+    It changes, does not follow the position, and its header has a unit or a word of torque or current, or a word of
+    a command. No duty or voltage is one, nor anything else of a log that has one.
 
     Parameters
     ----------
@@ -40,13 +33,23 @@ def torque_column(table: Table, taken: Collection[int], position: int | None) ->
         The column of the position, if it is known.
     """
     found = _candidates(table, taken, position)
-    for group in _WORDS:
-        if (index := _likeliest(table, found, group)) is not None:
-            return index
+    for signal in ("torque", "current"):
+        likely = [k for k in found if quantity_of(table.headers[k]) == signal]
+        if likely:
+            return min(likely, key=lambda k: (_is_coded(table, k), k))
     if _likeliest(table, found, _DUTY) is not None:
         return None
-    index = _likeliest(table, found, _COMMAND)
-    return next(iter(found)) if index is None and len(found) == 1 else index
+    return _likeliest(table, found, _COMMAND)
+
+
+def quantity_of(header: str) -> str:
+    """Return whether a header's unit, or else its words, speak for a torque or a current; empty for neither."""
+    unit = understood(header).unit
+    if unit is not None and unit.dimension in ("torque", "force"):
+        return "torque"
+    if unit is not None and unit.dimension == "current":
+        return "current"
+    return next((each for each in ("torque", "current") if speaks_for(header, each)), "")
 
 
 def duty_column(table: Table, taken: Collection[int], position: int | None) -> int | None:
@@ -65,7 +68,7 @@ def duty_column(table: Table, taken: Collection[int], position: int | None) -> i
 
 def _candidates(table: Table, taken: Collection[int], position: int | None) -> dict[int, str]:
     """The words of the columns that may have to do with the torque, by number."""
-    motion = None if position is None else _numbers(table, position)
+    motion = None if position is None else values_of(table, position)
     found: dict[int, str] = {}
     for index, header in enumerate(table.headers):
         read = understood(header)
@@ -75,7 +78,7 @@ def _candidates(table: Table, taken: Collection[int], position: int | None) -> d
             continue
         if read.meaning is not None and read.meaning.signal not in ("torque", "motor_torque"):
             continue
-        values = _numbers(table, index)
+        values = values_of(table, index)
         if values is not None and not _follows(values, motion):
             found[index] = words
     return found
@@ -89,17 +92,6 @@ def _likeliest(table: Table, found: dict[int, str], group: tuple[str, ...]) -> i
 def _is_coded(table: Table, index: int) -> bool:
     """Whether a header is of a driver's own number, as "pwm_raw"; the same quantity as a share is plainer."""
     return "raw" in plain(table.headers[index])
-
-
-def _numbers(table: Table, index: int) -> FloatArray | None:
-    """The first values of a column that changes; None for text, a constant, or values that are missing."""
-    try:
-        (values,) = table.numbers([index])
-    except InputError:
-        return None
-    values = values[:_ROWS]
-    varies = len(values) > 1 and bool(np.isfinite(values).all()) and float(np.ptp(values)) > 0.0
-    return values if varies else None
 
 
 def _follows(values: FloatArray, motion: FloatArray | None) -> bool:

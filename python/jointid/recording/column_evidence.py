@@ -1,0 +1,118 @@
+"""What shows that a column of a foreign log is a signal: its header's words and unit, or its numbers."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.recording.headers import plain, understood
+from jointid.recording.order_statistics import median
+from jointid.recording.signals import FloatArray
+from jointid.recording.stamps import looks_exact
+from jointid.recording.table import Table, first_cell
+
+LIKELY = {
+    "time": re.compile("time|stamp|clock|zeit"),
+    "position": re.compile(
+        "pos|winkel|travel|(^|_)ang|angle|(^|_)enc|encoder|(^|_)q[a-z0-9]?($|_)"
+    ),
+    "torque": re.compile("torq|moment(?!um)|effort|force|trq|(^|_)tau"),
+    "current": re.compile("curr|strom|(^|_)(amps?|amperes?)($|_)|(^|_)iq"),
+}
+"""Signal → the words in a header that speak for it."""
+_COUNTER = re.compile(
+    r"(^|_)(index|idx|frame|count|counter|seq|sequence|sample|row|id|nr|no|n|k|number|episode|run|trial|step)($|_)"
+)
+_ROWS = 5000
+_EXAMINED = 12  # columns without headers
+_EVEN = 0.2  # of the usual step
+_ALIKE = 0.99  # correlation of a velocity with the position's rate
+_SMOOTHER = 3.0  # times: a position among columns without a velocity
+
+
+def speaks_for(header: str, signal: str) -> bool:
+    """Whether a word of a header speaks for a signal."""
+    return LIKELY[signal].search(plain(header)) is not None
+
+
+def values_of(table: Table, index: int) -> FloatArray | None:
+    """Return the first values of a column that changes; None for text, a constant, or values that are missing."""
+    try:
+        (values,) = table.numbers([index])
+    except InputError:
+        return None
+    values = values[:_ROWS]
+    varies = len(values) > 2 and bool(np.isfinite(values).all()) and float(np.ptp(values)) > 0.0
+    return values if varies else None
+
+
+def shows_time(table: Table, index: int) -> bool:
+    """Whether a column may be the time: it increases, and a word or even steps speak for it."""
+    if looks_exact(first_cell(table, index)):
+        return True
+    values = values_of(table, index)
+    if values is None:
+        return False
+    if (
+        speaks_for(table.headers[index], "time")
+        or understood(table.headers[index]).unit is not None
+    ):
+        return bool((np.diff(values) >= 0.0).all())
+    return not _COUNTER.search(plain(table.headers[index])) and _unevenness(values) < _EVEN
+
+
+def shows_position(table: Table, index: int, time: int, velocity: int) -> bool:
+    """Whether a column's rate is the velocity in another one."""
+    found = [values_of(table, each) for each in (index, time, velocity)]
+    if any(each is None or len(each) != len(found[0]) for each in found):  # type: ignore[arg-type]
+        return False
+    return _is_rate(*found)  # type: ignore[arg-type]
+
+
+def by_numbers(table: Table) -> dict[str, int]:
+    """Return which columns of a table without headers the numbers show; empty if there are headers.
+
+    The time has even steps. A velocity is the rate of the position; without one the position is far smoother than
+    all others. No numbers show a torque.
+    """
+    if any(header != f"column {k}" for k, header in enumerate(table.headers)):
+        return {}
+    found = ((k, values_of(table, k)) for k in range(min(len(table.headers), _EXAMINED)))
+    columns = {k: values for k, values in found if values is not None}
+    uneven = {k: _unevenness(values) for k, values in columns.items()}
+    time = min(uneven, key=lambda k: uneven[k], default=-1)
+    if time < 0 or not np.isfinite(uneven[time]):
+        return {}
+    others = [k for k in columns if k != time and len(columns[k]) == len(columns[time])]
+    for k in others:
+        for other in others:
+            if k != other and _is_rate(columns[k], columns[time], columns[other]):
+                return {"time": time, "position": k, "velocity": other}
+    smoothest = _smoothest(columns, others)
+    return {} if smoothest is None else {"time": time, "position": smoothest}
+
+
+def _unevenness(values: FloatArray) -> float:
+    """Return by how much of the usual step most steps differ; infinite for a column that does not increase."""
+    steps = np.diff(values)
+    if not (steps > 0.0).all():
+        return float("inf")
+    usual = median(steps)
+    return median(np.abs(steps - usual)) / usual
+
+
+def _is_rate(position: FloatArray, time: FloatArray, velocity: FloatArray) -> bool:
+    if not (np.diff(time) > 0.0).all():
+        return False
+    rate = np.gradient(position, time)
+    return float(np.std(rate)) > 0.0 and float(np.corrcoef(rate, velocity)[0, 1]) > _ALIKE
+
+
+def _smoothest(columns: dict[int, FloatArray], others: Sequence[int]) -> int | None:
+    """Return the column that is far smoother than all others; of a single one nothing is shown."""
+    rough = {k: float(np.std(np.diff(columns[k], 2)) / np.std(columns[k])) for k in others}
+    first, *rest = sorted(rough, key=lambda k: rough[k]) or [None]
+    if first is None or not rest or rough[rest[0]] < _SMOOTHER * rough[first]:
+        return None
+    return first

@@ -1,0 +1,86 @@
+"""What is proposed for a foreign log has evidence: a header's unit or words, or numbers; else it is asked for."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line_answers import answer
+
+import jointid as jid
+
+N = 400
+TIME = 0.005 * np.arange(N)
+ANGLE = np.sin(4.0 * TIME) + 0.3 * np.sin(11.0 * TIME)
+SPEED = np.gradient(ANGLE, TIME)
+EFFORT = 3.0 * np.tanh(20.0 * SPEED) + SPEED
+REST = np.random.default_rng(3).normal(-1.57, 1e-4, (3, N))
+
+
+def log(path: Path, header: str, *columns: np.ndarray) -> str:
+    rows = [",".join(f"{value:.7f}" for value in row) for row in zip(*columns, strict=True)]
+    path.write_text("\n".join([header] * bool(header) + [*rows, ""]))
+    return str(path)
+
+
+HEADERLESS = {  # columns, and what is right for time, position and velocity
+    "an arm of which one joint moves": ((TIME, ANGLE, REST[0], SPEED, REST[1], EFFORT), (0, 1, 3)),
+    "a resting joint first": ((TIME, REST[0], REST[1], ANGLE, EFFORT, SPEED), (0, 3, 5)),
+    "the motion before the time": ((EFFORT, ANGLE, SPEED, TIME + 1.2), (3, 1, 2)),
+    "no velocity": ((TIME, EFFORT, ANGLE, REST[0]), (0, 2, None)),
+}
+
+
+@pytest.mark.parametrize("name", HEADERLESS)
+@pytest.mark.parametrize("command", ["info", "identify"])
+def test_bare_numbers_show_no_torque(
+    name: str, command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns, right = HEADERLESS[name]
+    code, said = answer([command, log(tmp_path / "a.csv", "", *columns)], capsys)
+    assert code == 2
+    for signal, column in zip(("time", "position", "velocity"), right, strict=True):
+        assert (f"{signal}='column {column}'" in said) == (column is not None)
+    assert "which column is the torque or current?" in said
+    assert "torque=" not in said.replace("torque=HEADER", "")
+
+
+@pytest.mark.parametrize("header", ["i_A", "motor_amps [A]", "Phasenstrom (A)"])
+def test_amperes_are_a_current(
+    header: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(tmp_path / "a.csv", f"time_s,position_rad,{header}", TIME, ANGLE, EFFORT)
+    for more in ([], ["--column", f"torque={header}"]):
+        code, said = answer(["identify", path, *more], capsys)
+        assert code == 2
+        assert "--torque-constant VALUE" in said
+        assert "--unit torque" not in said
+        assert "--scale torque" not in said
+    with pytest.raises(jid.InputError, match="is in A") as caught:
+        jid.load(path, columns={"torque": header})
+    assert "'Nm'" not in str(caught.value)
+
+
+@pytest.mark.parametrize("header", ["sample_count", "lamp", "extra"])
+def test_a_column_without_evidence_is_no_torque(
+    header: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(tmp_path / "a.csv", f"time_s,position_rad,{header}", TIME, ANGLE, EFFORT)
+    _, said = answer(["identify", path], capsys)
+    assert said.endswith("load with --column torque=HEADER\n")
+
+
+@pytest.mark.parametrize(
+    ("header", "column"),
+    [("stuff,position_rad,torque_Nm", ANGLE + TIME), ("q_0,q_1,tau_0", 9.0 * TIME)],
+)
+def test_a_position_or_counter_is_no_time(
+    header: str, column: np.ndarray, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, said = answer(["info", log(tmp_path / "a.csv", header, column, ANGLE, EFFORT)], capsys)
+    assert "--rate HZ" in said
+    assert "time=" not in said
+    counted = log(
+        tmp_path / "b.csv", "frame_index,position_rad,torque_Nm", np.arange(N), ANGLE, EFFORT
+    )
+    _, said = answer(["info", counted], capsys)
+    assert "time=" not in said
