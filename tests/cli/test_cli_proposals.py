@@ -7,6 +7,7 @@ import pytest
 from command_line_answers import answer
 
 import jointid as jid
+from jointid.cli.command_line import main
 
 N = 400
 TIME = 0.005 * np.arange(N)
@@ -84,3 +85,29 @@ def test_a_position_or_counter_is_no_time(
     )
     _, said = answer(["info", counted], capsys)
     assert "time=" not in said
+
+
+INFO = {
+    "a joint with brackets": (
+        "OSL:timestamp,knee[Pack]:output_position,knee[Pack]:output_torque,knee[Pack]:state",
+        ["--column", "time=OSL:timestamp", "--joints", "knee[Pack]:output"],
+    ),
+    "by numbers and a factor": (
+        "clock,encoder [counts],torque_Nm,knee[Pack]:state",
+        ["--column", "time=0", "--column", "position=1", "--scale", "position=0.001"],
+    ),
+    "a joint and an extra signal": (
+        "time_s,axis2_enc,axis2_torque,knee[Pack]:state",
+        ["--column", "position=axis2_enc", "--extra", "torque_2=axis2_torque"],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", INFO)
+def test_info_names_as_unknown_only_what_it_did_not_read(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    header, options = INFO[name]
+    path = log(tmp_path / "a.csv", header, TIME, ANGLE, EFFORT, np.ones(N))
+    assert main(["info", path, *options]) == 0
+    assert "columns not recognised: knee[Pack]:state\n" in capsys.readouterr().out

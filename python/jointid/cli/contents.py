@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.cli.reading import load_all
+from jointid.cli.reading import how_to_read, joints_wanted, load_all
 from jointid.cli.wording import Wording
 
 if TYPE_CHECKING:
@@ -51,10 +51,12 @@ def _signal_line(signal: tuple[str, Mapping[str, Any]]) -> str:
 
 
 def _unrecognised(arguments: argparse.Namespace) -> str:
-    """The columns that no option names and whose headers name no signal, the first twelve of them."""
+    """The columns that were not read and whose headers name no signal, the first twelve of them."""
     from jointid.recording.headers import understood
     from jointid.recording.readers.loading import table_of
+    from jointid.recording.readers.what_is_read import columns_read
 
+    reading = how_to_read(arguments)
     table = table_of(
         arguments.recording,
         topic=arguments.topic,
@@ -63,11 +65,12 @@ def _unrecognised(arguments: argparse.Namespace) -> str:
     )
     if table.saved is not None:
         return ""
-    named = {header for _, header in (*arguments.column, *arguments.extra)}
+    joints = joints_wanted(arguments)
+    read = columns_read(table, joints[0] if joints else None, reading)
     names = [
         header
         for k, header in enumerate(table.headers)
-        if understood(header).meaning is None and not named & {header, str(k)}
+        if k not in read and understood(header).meaning is None
     ]
     more = f" and {len(names) - 12} more" if len(names) > 12 else ""
     return ", ".join(names[:12]) + more

@@ -88,6 +88,10 @@ class JointTable:
             None if saved is None else {key: saved[key] for key in saved if key != "robot"}
         )
 
+    def in_whole(self, column: int) -> int:
+        """Return the number of a column in the table of all joints."""
+        return self._indices[column]
+
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as numbers."""
         return self._table.numbers([self._indices[column] for column in columns])
