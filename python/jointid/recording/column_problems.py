@@ -54,6 +54,8 @@ def in_other_unit(column: Column) -> str:
         )
     if column.unit is None:
         return f"has the unknown unit {column.unknown!r}"
+    if column.documented is not None and column.documented.asked:
+        return f"is {column.documented.asked} ({column.documented.source})"
     if column.unit.dimension == "raw reading":
         return "is a raw reading"
     return f"is in {column.unit.name} ({column.unit.dimension})"
@@ -70,6 +72,9 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
             function="load",
             text="if milli is meant",
         )
+    elif column.documented is not None:
+        factor = column.documented.factor or "the factor from file units to SI"
+        remedy = Action("call", {"scale": {signal: ...}}, function="load", text=factor)
     elif column.unit and column.unit.dimension in ("raw reading", "voltage"):
         remedy = Action(
             "call",

@@ -12,6 +12,7 @@ from jointid.base.values import dataclass
 from jointid.recording.column_lookup import column_index
 from jointid.recording.header_words import OF_A_JOINT, PLAIN
 from jointid.recording.headers import understood
+from jointid.recording.known_products import Documented, unit_in_table
 from jointid.recording.signals import FloatArray, check_signal_name, dimensions
 from jointid.recording.stamps import fractions
 from jointid.recording.table import Table
@@ -38,6 +39,10 @@ class Column:
         How directly its header names the signal, as in `Meaning`. Default: the clearest.
     joint : str
         Number or name of the joint in its header. Default: none.
+    documented : Documented or None
+        What a product documents of it, where that gave the unit. Default: nothing.
+    overridden : str
+        The unit that its header or its product states, where the call states another. Default: none.
     """
 
     index: int
@@ -47,6 +52,8 @@ class Column:
     chosen: bool = False
     rank: int = PLAIN
     joint: str = ""
+    documented: Documented | None = None
+    overridden: str = ""
 
     def to_si(self, values: FloatArray) -> FloatArray:
         """Return the column's values in SI units."""
@@ -120,7 +127,14 @@ def candidates_of(
             place=table.source,
         )
         candidates[signal] = [
-            replace(column, unit=unit, unknown="") for column in candidates.get(signal, [])
+            replace(
+                column,
+                unit=unit,
+                unknown="",
+                documented=None,
+                overridden=_other_unit(column, unit),
+            )
+            for column in candidates.get(signal, [])
         ]
     for signal, factor in (scale or {}).items():
         check_signal_name(signal, "scale")
@@ -128,10 +142,29 @@ def candidates_of(
         if complete:
             _check_recognised(table, signal, candidates, f"scale.{signal}")
         candidates[signal] = [
-            replace(column, unit=None, unknown="", scale=float(factor))
+            replace(
+                column,
+                unit=None,
+                unknown="",
+                scale=float(factor),
+                documented=None,
+                overridden="" if column.fits(signal, kind or "revolute") else _measured(column),
+            )
             for column in candidates.get(signal, [])
         ]
     return found
+
+
+def _other_unit(column: Column, unit: Unit) -> str:
+    """Return the unit that is stated for a column, if it is another one."""
+    stated = column.unit
+    return stated.name if stated and _measured(column) and stated.name != unit.name else ""
+
+
+def _measured(column: Column) -> str:
+    """Return the unit that is stated for a column; empty for a reading, which only a factor converts."""
+    reading = column.unit is None or column.unit.dimension in ("raw reading", "voltage")
+    return "" if reading or column.unit is None else column.unit.name
 
 
 def _check_recognised(
@@ -184,6 +217,7 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
         meaning = read.meaning
         if index in chosen:
             column_here = Column(index=index, unit=read.unit, unknown=read.unknown, chosen=True)
+            column_here = _as_documented(table, column_here, chosen[index])
             candidates.setdefault(chosen[index], []).append(column_here)
         elif index not in parts and meaning is not None and meaning.signal not in columns:
             if table.saved is None:
@@ -198,8 +232,20 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
                 rank=meaning.rank,
                 joint=meaning.joint,
             )
+            column_here = _as_documented(table, column_here, meaning.signal)
             candidates.setdefault(meaning.signal, []).append(column_here)
     return candidates
+
+
+def _as_documented(table: Table, column: Column, signal: str) -> Column:
+    """Return a column whose header states no unit with the unit that its product documents."""
+    known = understood(table.headers[column.index]).documented
+    if table.saved is not None or known is None or known.signal != signal:
+        return column
+    if column.unit is not None or column.unknown:
+        return column
+    unit = unit_in_table(known, table, column.index)
+    return column if unit is None else replace(column, unit=unit, documented=known)
 
 
 def _of_one_joint(candidates: dict[str, list[Column]]) -> Candidates:

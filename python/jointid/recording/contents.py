@@ -236,7 +236,11 @@ class Contents:
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
         notes = dict(getattr(self.table, "notes", {}))  # how the file was read
         left_out = [dict(each) for each in (*self.left_out, *notes.pop("left_out", ()))]
+        overridden = {
+            signal: each.overridden for signal, each in self.found.items() if each.overridden
+        }
         metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
+        metadata["overridden_units"] = overridden
         metadata |= notes | self.notes
         return {name: value for name, value in metadata.items() if value}
 

@@ -39,6 +39,12 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     if isinstance(dropped, int) and dropped:
         rows = "1 damaged row is" if dropped == 1 else f"{dropped} damaged rows are"
         found.append(f"{rows} left out")
+    overridden = metadata.get("overridden_units")
+    if isinstance(overridden, Mapping):
+        found += [
+            f"{signal}: the file states {unit}, and the call another unit, which is taken"
+            for signal, unit in overridden.items()
+        ]
     repeated = metadata.get("repeated_rows")
     if isinstance(repeated, int) and repeated:
         rows = "1 row repeats" if repeated == 1 else f"{repeated} rows repeat"

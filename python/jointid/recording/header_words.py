@@ -23,7 +23,9 @@ QUANTITIES: dict[str, str] = {
     for word in words.split()
 }
 """Word → the quantity that it names."""
-_MEASURED = _words_of("actual act measured meas measurement estimate estimated est feedback fbk")
+_MEASURED = _words_of(
+    "actual act present measured meas measurement estimate estimated est feedback fbk"
+)
 _COMMANDED = _words_of(
     "desired des d target cmd command commanded set setpoint setpoints ref reference goal soll"
 )

@@ -4,7 +4,8 @@ import re
 from functools import lru_cache
 
 from jointid.base.values import dataclass
-from jointid.recording.header_words import PLAIN, Meaning, meaning_of
+from jointid.recording.header_words import OF_A_JOINT, PLAIN, WORDS, Meaning, meaning_of
+from jointid.recording.known_products import Documented, documented
 from jointid.recording.signals import dimensions
 from jointid.recording.units import Unit, find_unit, is_mega
 
@@ -27,6 +28,7 @@ ALIASES: dict[str, str] = {
 }
 
 
+_AXIS = r"(?i)(?:axis|joint|motor|servo|id)[ _]?(\d+)"
 _INDEX = r"(?<=[\w\]])\[(\d+)\]"
 
 
@@ -43,12 +45,15 @@ class Header:
         Text in the unit's place that is no known unit. Default: none.
     meaning : Meaning or None
         The signal that it names. Default: none is recognised.
+    documented : Documented or None
+        What a product documents of its name. Default: it is no product's.
     """
 
     name: str
     unit: Unit | None
     unknown: str = ""
     meaning: Meaning | None = None
+    documented: Documented | None = None
 
 
 LONGEST = 300  # characters of a header that are looked at: name and unit stand at its end
@@ -66,7 +71,11 @@ def understood(header: str) -> Header:
         other = None if text == whole or unit is None else _meaning(whole)
         if other is not None:
             return Header(plain(whole), None, "", other)
-    return Header(plain(text), unit, unknown, meaning)
+    known = documented(text)
+    if known is not None and (meaning is None or meaning.rank == OF_A_JOINT):
+        axis = re.search(_AXIS, text)
+        meaning = Meaning(known.signal, OF_A_JOINT if axis else WORDS, axis[1] if axis else "")
+    return Header(plain(text), unit, unknown, meaning, known)
 
 
 def _meaning(text: str) -> Meaning | None:

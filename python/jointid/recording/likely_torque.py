@@ -12,7 +12,12 @@ from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
 
 _COMMAND = ("command", "cmd", "output")
-_DUTY = ("duty", "pwm", "volt")  # what makes a torque without being proportional to one
+_DUTY = (
+    "duty",
+    "pwm",
+    "volt",
+    "present_load",
+)  # what makes a torque without being proportional to one
 _DIMENSIONS = ("torque", "force", "current", "voltage")
 _SUPPLY = ("supply", "battery", "bus", "limit", "max", "min", "enable", "temp")
 _ALIKE = 0.98  # correlation of another position, as of a reference

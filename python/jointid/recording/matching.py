@@ -103,7 +103,8 @@ def _take(table: Table, signal: str, candidates: list[Column], match: Match) -> 
             return ambiguous(table, signal, clearest)
         _leave_out(table, signal, clearest, f"several columns are recognised as {signal}", match)
         return None
-    if strict or signal in (*NEEDED, "torque"):
+    asked = signal in TORQUES and candidates[0].documented is not None
+    if strict or asked or signal in (*NEEDED, "torque"):
         return wrong_unit(table, signal, candidates[0], match.kind)
     for column in candidates:
         _leave_out(table, signal, [column], f"{signal} {in_other_unit(column)}", match)

@@ -10,6 +10,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.columns import Column
 from jointid.recording.header_words import AT_THE_LINK, is_at_the_link
+from jointid.recording.known_products import speed_unit
 from jointid.recording.signals import TORQUES, FloatArray
 from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.table import Table
@@ -58,6 +59,7 @@ def read_values(
     if table.saved is None and "torque" in found:
         header = table.headers[found["torque"].index]
         notes |= {AT_THE_LINK: header} if is_at_the_link(header) else {}
+    _recognise_products(table, found, values, notes)
     return {signal: values[signal] for signal in found}
 
 
@@ -90,6 +92,34 @@ def _recognise_time(
     if _COARSE < abs(first) * factor < np.inf:
         values["time"] = since
         notes["first_stamp"] = repr(first)
+
+
+def _recognise_products(
+    table: Table, found: dict[str, Column], values: dict[str, FloatArray], notes: dict[str, Any]
+) -> None:
+    """Enter the units that products document; a servo's velocity has the one that the position's rate shows."""
+    velocity = found.get("velocity")
+    if velocity is not None and velocity.documented and len(velocity.documented.units) > 1:
+        time, position = (found[name].to_si(values[name]) for name in ("time", "position"))
+        unit = speed_unit(time, position, values["velocity"])
+        if unit is None:
+            raise InputError(
+                "none of the units that its name has in servos' manuals agrees with the position's rate",
+                argument="velocity",
+                place=f"{table.header_place}, column {table.headers[velocity.index]!r}",
+                remedy=(
+                    Action("call", {"scale": {"velocity": ...}}, function="load"),
+                    Action("call", {"columns": {"velocity": None}}, function="load"),
+                ),
+            )
+        found["velocity"] = replace(velocity, unit=unit)
+    said = {
+        signal: f"{column.unit.name}, as {column.documented.source} documents it"
+        for signal, column in found.items()
+        if column.documented is not None and column.unit is not None
+    }
+    if said:
+        notes["recognised_units"] = {**notes.get("recognised_units", {}), **said}
 
 
 def _readable(

@@ -37,7 +37,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     if recognised:
         shown = ", ".join(f"{signal} is read in {unit}" for signal, unit in recognised)
         yield ASSUMED_UNITS.finding(
-            f"no unit is stated, but the numbers show it: {shown}",
+            f"no unit is stated, but numbers or names show it: {shown}",
             Action("inspect", text="the header, and name the unit there (time_ns)"),
             severity="info",
         )

@@ -33,19 +33,9 @@ COMMAND = frozenset(
 )
 _NEUTRAL = frozenset(
     (
-        *("joint", "joints", "axis", "achse", "dof", "actual", "act", "measured", "meas", "state"),
-        *(
-            "states",
-            "encoder",
-            "enc",
-            "feedback",
-            "fbk",
-            "fb",
-            "raw",
-            "estimate",
-            "estimated",
-            "est",
-        ),
+        *("joint", "joints", "axis", "achse", "dof", "actual", "act", "present", "measured"),
+        *("meas", "state", "states", "encoder", "enc", "feedback", "fbk", "fb", "raw"),
+        *("estimate", "estimated", "est"),
     )
 )
 KNOWN = frozenset(_NOUNS) | _MOTOR | _LINK | _LINK_SIDE | COMMAND | _NEUTRAL
