@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
 # As `Action` says; other arguments replace those of the call.
-_MERGED = ("columns", "units", "scale", "parameters")
+_MERGED = ("columns", "units", "scale", "parameters", "side")
 _FEWEST = 50  # samples of a piece between two stretches that are left out
 
 

@@ -61,6 +61,11 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         ),
         ("--unit", "SIGNAL=UNIT", "unit of a signal, instead of the one in the header"),
         ("--scale", "SIGNAL=FACTOR", "factor from file units to SI"),
+        (
+            "--side",
+            "SIGNAL=SIDE",
+            "velocity=motor: beside the joint's position; with --gear-ratio or --joint",
+        ),
         ("--where", "COLUMN=VALUE", "keep only the rows with this value"),
         ("--extra", "NAME=COLUMN", "keep a column as an extra signal of this name, for --term"),
     ):

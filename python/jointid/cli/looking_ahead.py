@@ -9,7 +9,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 
 _STEPS = 4  # errors that are looked for beyond the first
-_MERGED = ("columns", "units", "scale", "where")
+_MERGED = ("columns", "units", "scale", "side", "where")
 _USUAL = {
     "gear_ratio": 1.0,
     "sample_period": 0.001,

@@ -52,7 +52,7 @@ def load_all(
         )
     reading = {
         "joint": several[0] if several else None,
-        "gear_ratio": ratios[0] if ratios else None,
+        "gear_ratio": ratios[0] if ratios else _ratio_of_file(arguments),
         "drop_copies": arguments.drop_copies,
         "drop_invalid": arguments.drop_invalid,
         **how_to_read(arguments, models),
@@ -81,6 +81,16 @@ def load_all(
             )
             raise as_given(_of_joints(further), arguments) from None
     return recordings
+
+
+def _ratio_of_file(arguments: argparse.Namespace) -> float | None:
+    """The gear ratio of the joint file, where --side needs one; None otherwise."""
+    file = getattr(arguments, "joint", None)
+    if not arguments.side or file is None:
+        return None
+    from jointid.joint.joint import Joint
+
+    return Joint.load(file).gear_ratio
 
 
 def with_changes(reading: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -114,6 +124,7 @@ def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> 
         "scale": numbers_by_name("scale", arguments.scale) or None,
         "extra": extra or None,
         "where": where or None,
+        "side": by_name("side", arguments.side) or None,
         "sample_period": _period(arguments),
         "topic": arguments.topic,
         "group": arguments.group,

@@ -16,6 +16,7 @@ MOTOR_SIDE = FindingType(
     "or the torque is made from the motor's with a gear ratio of 1, which is what a joint has that states none",
     advice="nothing, if that side is meant, or if the motor has no gear; else give the gear ratio",
 )
+_CLOSE = 0.03  # of the gear ratio
 _RATIO = "the motor's angle per angle of the joint"
 
 
@@ -37,6 +38,41 @@ def _without_gear(evidence: Evidence, run: Recording) -> bool:
     if joint is None or joint.gear_ratio != 1.0:
         return False
     return run.torque is None and (run.motor_torque is not None or run.current is not None)
+
+
+def other_side(evidence: Evidence, factor: float) -> tuple[str, Action] | None:
+    """Return which signal is on the other side of the gear, and how to say so; None where no gear explains a factor.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    factor : float
+        The position's change over the integral of the velocity.
+    """
+    ratio = _known_ratio(evidence)
+    if ratio is None or abs(abs(ratio) - 1.0) < _CLOSE:
+        return None
+    for signal, expected in (("velocity", 1.0 / ratio), ("position", ratio)):
+        if abs(factor / expected - 1.0) < _CLOSE:
+            return signal, _on_motor(signal, ratio)
+    return None
+
+
+def possible_side(factor: float) -> Action:
+    """Return how to read the faster of two signals as the motor's, with the ratio that their rates then show."""
+    signal, ratio = ("velocity", 1.0 / factor) if abs(factor) < 1.0 else ("position", factor)
+    return _on_motor(signal, float(f"{ratio:.4g}"), f"if the {signal} is the motor's")
+
+
+def _on_motor(signal: str, ratio: float, text: str = "") -> Action:
+    return Action("call", {"side": {signal: "motor"}, "gear_ratio": ratio}, text, "load")
+
+
+def _known_ratio(evidence: Evidence) -> float | None:
+    if evidence.joint is not None and evidence.joint.gear_ratio != 1.0:
+        return evidence.joint.gear_ratio
+    stated = [run.metadata.get("gear_ratio") for run in evidence.recordings]
+    return next((float(each) for each in stated if isinstance(each, int | float)), None)
 
 
 CHECK = Check(None, (MOTOR_SIDE,), _in_recording)

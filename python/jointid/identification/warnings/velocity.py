@@ -11,6 +11,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
+from jointid.identification.warnings.motor_side import other_side, possible_side
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice, unit_by_factor
 
 REVERSED_SIGN = FindingType(
@@ -22,7 +23,7 @@ REVERSED_SIGN = FindingType(
 VELOCITY_MISMATCH = FindingType(
     code="velocity_mismatch",
     meaning="the velocity differs from the position's rate by more than 3 %; blocking beyond a factor of 3",
-    advice="correct its unit, or leave the velocity column out",
+    advice="correct its unit, say on which side of the gear it is, or leave the velocity column out",
 )
 
 MISMATCH = 0.03  # of the position's rate
@@ -33,16 +34,28 @@ _WITHOUT_VELOCITY = Action(
 )
 
 
-def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
+def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
     recording, found = inspected.recording, inspected.found.agreement
     if found is None:
         return
     scale = {"scale": Measured(found.scale)}
     suspected, advice = unit_by_factor(recording, found.scale)
-    if found.scale < 0.0:
+    gear = other_side(evidence, found.scale)
+    large = not 1.0 / _OTHER_UNIT < abs(found.scale) < _OTHER_UNIT
+    possible = [possible_side(found.scale)] * large
+    if gear is not None:
+        yield VELOCITY_MISMATCH.finding(
+            f"the position moves by {found.scale:.4g} times the integral of the velocity, which the gear ratio "
+            f"explains: the {gear[0]} is the motor's",
+            gear[1],
+            evidence=scale,
+            severity="blocking",
+        )
+    elif found.scale < 0.0:
         yield REVERSED_SIGN.finding(
             "the velocity has the opposite sign of the position's change: one of the two signs is reversed",
             Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
+            *possible,
             evidence=scale,
         )
     elif not suspected and (_near(found.scale, _DEGREE) or _near(found.scale, 1.0 / _DEGREE)):
@@ -51,21 +64,22 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         yield IMPLAUSIBLE_UNITS.finding(
             f"position and velocity differ by a factor of {factor:.1f}: the {which} seems to be in degrees",
             degrees_advice(recording, (which,)),
+            *([] if _near(factor, 1.0 / _DEGREE, MISMATCH) else possible),
             evidence={"factor": Measured(factor)},
         )
     elif abs(found.scale - 1.0) > MISMATCH:
-        large = not 1.0 / _OTHER_UNIT < found.scale < _OTHER_UNIT
         yield VELOCITY_MISMATCH.finding(
             f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
             *advice,
+            *([] if suspected else possible),
             _WITHOUT_VELOCITY,
             evidence=scale,
             severity="blocking" if large else None,
         )
 
 
-def _near(value: float, wanted: float) -> bool:
-    return 0.8 < value / wanted < 1.25
+def _near(value: float, wanted: float, tolerance: float = 0.25) -> bool:
+    return 1.0 / (1.0 + tolerance) < value / wanted < 1.0 + tolerance
 
 
 CHECK = Check(None, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, VELOCITY_MISMATCH), _in_recording)

@@ -41,6 +41,7 @@ def load(
     scale: Mapping[str, float] | None = None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
     gear_ratio: float | None = None,
+    side: Mapping[str, str] | None = None,
     sample_period: float | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: Kind | None = None,
@@ -103,6 +104,10 @@ def load(
         Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
         (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Default: not known;
         positions of the motor stay what they are, and ``metadata["side"]`` is "motor".
+    side : mapping of str to str, optional
+        Signal → "motor" or "joint", where a position, velocity, reference or torque is on another side of the gear
+        than its header says: ``{"velocity": "motor"}`` beside the joint's position, with `gear_ratio`.
+        Default: by the headers, else the joint's.
     sample_period : float, optional
         Time between rows [s], for rows that were taken at an even rate; stamps of the file are not read then.
         Default: by the file's time column.
@@ -190,7 +195,7 @@ def load(
             raise error.at(str(file)) from None
     if dropped:
         fields["metadata"] = {**fields.get("metadata", {}), NOTE: dropped}
-    return _recording(file, _of_joint(fields, one, ratio), _named(file, fields, name, one))
+    return _recording(file, _of_joint(fields, one, ratio, side), _named(file, fields, name, one))
 
 
 def _one_run(contents: Contents) -> tuple[str | Action, ...]:
@@ -211,6 +216,7 @@ def load_runs(
     scale: Mapping[str, float] | None = None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
     gear_ratio: float | None = None,
+    side: Mapping[str, str] | None = None,
     sample_period: float | None = None,
     kind: Kind | None = None,
     torque_hold: TorqueHold | None = None,
@@ -228,7 +234,7 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    joint, columns, units, scale, extra, gear_ratio, sample_period, kind, torque_hold, topic, group, unpacked
+    joint, columns, units, scale, extra, gear_ratio, side, sample_period, kind, torque_hold, topic, group, unpacked
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
@@ -266,7 +272,7 @@ def load_runs(
     for value, rows in contents.rows_of(by).items():
         run = f"{header}={value}"
         try:
-            fields = _of_joint(contents.fields(rows), one, ratio)
+            fields = _of_joint(contents.fields(rows), one, ratio, side)
             runs.append(
                 _recording(file, fields, f"{_named(file, fields, name, one)} {run}".lstrip())
             )
@@ -362,17 +368,22 @@ def _ratio(one: OneJoint, gear_ratio: float | None) -> float | None:
     return checked_ratio(gear_ratio)
 
 
-def _of_joint(fields: dict[str, Any], one: OneJoint, gear_ratio: float | None) -> dict[str, Any]:
-    if not one.joint and gear_ratio is None:
+def _of_joint(
+    fields: dict[str, Any], one: OneJoint, gear_ratio: float | None, side: Mapping[str, str] | None
+) -> dict[str, Any]:
+    if not one.joint and gear_ratio is None and not side:
         return fields
-    from jointid.recording.wide.sides import at_joint
+    from jointid.recording.wide.sides import at_joint, stated_sides
 
     try:
-        found = at_joint(fields, one.side, gear_ratio, one.other_sides)
+        own, others = stated_sides(one.side, one.other_sides, side)
+        found = at_joint(fields, own, gear_ratio, others)
     except InputError as error:
         raise error.at(one.table.header_place) from None
     if one.joint:
         found["metadata"] = {**found["metadata"], "joint": one.joint}
+    if side:
+        found["metadata"] = {**found["metadata"], "stated_sides": dict(side)}
     return found
 
 

@@ -22,7 +22,7 @@ from jointid.recording.wide.joint_table import (
 from jointid.recording.wide.reading_back import saved_robot
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.recording.wide.robot_signals import ROBOT_SIGNALS, checked_ratios
-from jointid.recording.wide.sides import JOINT, at_joint
+from jointid.recording.wide.sides import JOINT, at_joint, stated_sides
 
 _MOST_JOINTS = 256
 
@@ -36,6 +36,7 @@ def load_robot(
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
     gear_ratio: Sequence[float] | FloatArray | float | None = None,
+    side: Mapping[str, str] | None = None,
     sample_period: float | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: Kind | None = None,
@@ -61,7 +62,7 @@ def load_robot(
         As in `load`, for all joints.
     gear_ratio : sequence of float, optional
         One a joint, in the order of `joints`, or one for all; signed. Default: not known.
-    sample_period, where, kind, torque_hold
+    side, sample_period, where, kind, torque_hold
         As in `load`.
     extra : collection of str, or mapping of str to str or int, optional
         Further columns, as in `load`; with ``{joint}`` in the header one of each joint:
@@ -93,7 +94,7 @@ def load_robot(
     table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)
     whole = saved_robot(table)
     if whole is not None and not (
-        columns or units or scale or where or kind or torque_hold or extra
+        columns or units or scale or side or where or kind or torque_hold or extra
     ):
         return _changed(whole, joints, gear_ratio, name)
     table, columns = at_rate(table, sample_period, columns)
@@ -132,21 +133,22 @@ def load_robot(
     if any("repeated_rows" in each.get("metadata", {}) for each in fields):
         fields = _once([contents(one) for one in tables], where)
     _check_times(names, fields, table.source)
-    sides = {one.side for one in tables}
+    each_side = [stated_sides(one.side, one.other_sides, side) for one in tables]
+    sides = {own for own, _ in each_side}
     if whole is not None:  # its headers do not say the side
         sides = {whole.side}
         if gear_ratio is None and whole.gear_ratio is not None:
             gear_ratio = [whole.gear_ratio[whole.names.index(each)] for each in names]
     if len(sides) > 1:
-        shown = ", ".join(f"{each}: {one.side}" for each, one in zip(names, tables, strict=True))
+        shown = ", ".join(f"{each}: {own}" for each, (own, _) in zip(names, each_side, strict=True))
         raise InputError(
             f"some joints have positions of the motor, others of the joint ({shown})",
             argument="joints",
             place=table.header_place,
             remedy="load those of one side",
         )
-    if any(one.other_sides for one in tables):
-        fields = _at_joint(names, tables, fields, gear_ratio)
+    if any(others for _, others in each_side):
+        fields = _at_joint(names, tables, fields, gear_ratio, each_side)
         sides = {JOINT}
     first = {key: value for key, value in fields[0].items() if key not in ROBOT_SIGNALS}
     # Of a long log only one copy at a time: the table and its columns are no longer needed.
@@ -183,13 +185,16 @@ def _at_joint(
     tables: Sequence[JointTable],
     fields: Sequence[Mapping[str, Any]],
     gear_ratio: Sequence[float] | FloatArray | float | None,
+    sides: Sequence[tuple[str, Mapping[str, str]]],
 ) -> list[dict[str, Any]]:
     """Return all signals at the joint: those of one joint are on both sides of its gear."""
     ratios = checked_ratios(gear_ratio, len(names)) or (None,) * len(names)
     found = []
-    for name, one, held, ratio in zip(names, tables, fields, ratios, strict=True):
+    for name, one, held, ratio, (own, others) in zip(
+        names, tables, fields, ratios, sides, strict=True
+    ):
         try:
-            there = at_joint(held, one.side, ratio, one.other_sides)
+            there = at_joint(held, own, ratio, others)
         except InputError as error:
             raise error.at(f"{one.header_place}, joint {name}") from None
         found.append({**held, **{key: there[key] for key in there if key != "metadata"}})

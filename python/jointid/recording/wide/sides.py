@@ -5,9 +5,9 @@ from types import MappingProxyType
 from typing import Any
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import is_finite
+from jointid.base.argument_checks import is_finite, require_mapping
 from jointid.base.errors import InputError
-from jointid.recording.wide.words import JOINT, MOTOR
+from jointid.recording.wide.words import JOINT, MOTOR, SIDES
 
 _MOTION = ("position", "velocity", "reference")
 
@@ -58,7 +58,9 @@ def at_joint(
     InputError
         Signals are on both sides, and the ratio is not known.
     """
-    if other_sides and gear_ratio is None:
+    if side == MOTOR and fields.get("torque") is None:  # its motor torque is then the torque
+        other_sides = {name: each for name, each in other_sides.items() if name != "torque"}
+    if any(fields.get(name) is not None for name in other_sides) and gear_ratio is None:
         raise _on_both_sides(side, other_sides)
     result = dict(fields)
     metadata = dict(result.get("metadata") or {})
@@ -81,6 +83,38 @@ def at_joint(
     return result
 
 
+def stated_sides(
+    side: str, other_sides: Mapping[str, str], stated: Mapping[str, str] | None
+) -> tuple[str, Mapping[str, str]]:
+    """Return the side of the position and of what is on the other one, as the call states them.
+
+    Parameters
+    ----------
+    side, other_sides
+        As the headers say.
+    stated : mapping of str to str, or None
+        Signal → "joint" or "motor", as given to `load`.
+
+    Raises
+    ------
+    InputError
+        Another signal, or another side.
+    """
+    if not stated:
+        return side, other_sides
+    moving = (*_MOTION, "torque")
+    for name, each in require_mapping("side", stated, "{'velocity': 'motor'}").items():
+        if name not in moving:
+            raise InputError(
+                f"only {', '.join(moving)} have a side of the gear", argument=f"side.{name}"
+            )
+        if each not in SIDES:
+            raise InputError('"motor" or "joint" is expected', argument=f"side.{name}", value=each)
+    sides = {name: stated.get(name, other_sides.get(name, side)) for name in moving}
+    own = sides["position"]
+    return own, {name: each for name, each in sides.items() if each != own}
+
+
 def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
     names = " and ".join(other_sides)
     return InputError(
@@ -92,4 +126,4 @@ def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
     )
 
 
-__all__ = ["JOINT", "MOTOR", "at_joint", "checked_ratio"]
+__all__ = ["JOINT", "MOTOR", "at_joint", "checked_ratio", "stated_sides"]

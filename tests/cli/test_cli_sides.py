@@ -1,0 +1,80 @@
+"""A velocity of the motor beside the joint's position, and the other way: named, and read by what is advised."""
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid.cli.command_line import main
+
+TIME = 0.004 * np.arange(1500)
+ANGLE = np.sin(2.0 * TIME) + 0.4 * np.sin(5.3 * TIME)
+SPEED = 2.0 * np.cos(2.0 * TIME) + 2.12 * np.cos(5.3 * TIME)
+RATE = -4.0 * np.sin(2.0 * TIME) - 11.236 * np.sin(5.3 * TIME)
+TORQUE = 0.5 * RATE + 3.0 * np.sign(SPEED) + 1.2 * SPEED
+
+
+def log(path: Path, position: float = 1.0, velocity: float = 1.0) -> str:
+    columns = (TIME, ANGLE * position, SPEED * velocity, TORQUE)
+    rows = [",".join(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True)]
+    path.write_text("\n".join(["time_s,position_rad,velocity_rad_s,torque_Nm", *rows, ""]))
+    return str(path)
+
+
+def advised(path: str, options: list[str], capsys: pytest.CaptureFixture[str]) -> list[str]:
+    """The options of the first advice that names a side."""
+    line = ["identify", path, "--model", "coulomb_viscous", *options]
+    assert main(line) == 0
+    found = re.search(r"load with (--side \S+ --gear-ratio \S+)", capsys.readouterr().out)
+    assert found is not None
+    return shlex.split(found[1])
+
+
+@pytest.mark.parametrize(
+    ("position", "velocity"), [(1.0, 100.0), (1.0, 50.0), (1.0, -32.0), (6.3, 1.0)]
+)
+@pytest.mark.parametrize("known", [False, True])
+def test_the_motors_side_is_named_and_read(
+    position: float,
+    velocity: float,
+    known: bool,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = log(tmp_path / "a.csv", position, velocity)
+    ratio = position * velocity
+    stated = ["--gear-ratio", f"{ratio:g}"] if known else []
+    options = advised(path, stated, capsys)
+    assert options[1] == ("velocity=motor" if position == 1.0 else "position=motor")
+    assert float(options[3]) == pytest.approx(ratio, rel=0.01)
+    line = ["identify", path, "--model", "coulomb_viscous", *options]
+    assert main(line) == 0
+    shown = capsys.readouterr().out
+    assert "velocity_mismatch" not in shown
+    assert float(shown.partition("coulomb ")[2].split()[0]) == pytest.approx(3.0, rel=0.02)
+
+
+def test_the_ratio_of_the_joint_file_is_taken(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    joint = tmp_path / "joint.toml"
+    jid.Joint(name="a", gear_ratio=100.0, model="coulomb_viscous").save(joint)
+    path = log(tmp_path / "a.csv", velocity=100.0)
+    assert main(["identify", path, "--joint", str(joint), "--side", "velocity=motor"]) == 0
+    assert "velocity_mismatch" not in capsys.readouterr().out
+
+
+def test_a_side_needs_the_ratio_and_a_name(tmp_path: Path) -> None:
+    path = log(tmp_path / "a.csv", velocity=100.0)
+    with pytest.raises(jid.InputError, match="only the gear ratio brings them together"):
+        jid.load(path, side={"velocity": "motor"})
+    with pytest.raises(jid.InputError, match="have a side of the gear"):
+        jid.load(path, side={"current": "motor"}, gear_ratio=100.0)
+    with pytest.raises(jid.InputError, match='"motor" or "joint" is expected'):
+        jid.load(path, side={"velocity": "output"}, gear_ratio=100.0)
+    loaded = jid.load(path, side={"velocity": "motor"}, gear_ratio=100.0)
+    np.testing.assert_allclose(loaded.velocity, SPEED, atol=1e-7)
+    np.testing.assert_allclose(loaded.position, ANGLE, atol=1e-7)
