@@ -27,7 +27,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        The exit code: 0 done, 2 bad input, 3 a session stopped or refused, 70 a bug of jointid,
+        The exit code: 0 done, 2 bad input, 3 a session stopped or refused, 4 a verdict worse
+        than `--require` asks for, 70 a bug of jointid,
         130 interrupted by Ctrl-C.
     """
     _show_every_character()

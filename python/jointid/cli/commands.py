@@ -14,6 +14,7 @@ from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.joint_options import joint_file, joint_of, torque_needed
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.reading import joints_wanted, load_all
+from jointid.cli.required import required
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ def identify(arguments: argparse.Namespace) -> int:
         if causes is not None:
             print(f"\n{causes.report(Wording.of(arguments).of_action)}")
     _say_written(refused, arguments)
-    return _exit_code(refused, arguments)
+    return required({"": estimate.verdict}, arguments) or _exit_code(refused, arguments)
 
 
 def _with_checks(

@@ -3,5 +3,7 @@
 DONE = 0
 BAD_INPUT = 2
 """A command line, or a file that it names, cannot be used."""
+WORSE = 4
+"""The verdict is worse than `--require` asks for."""
 BUG = 70
 """An error in jointid itself."""

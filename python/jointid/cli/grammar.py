@@ -20,6 +20,7 @@ from jointid.cli.arguments import (
 )
 from jointid.cli.joint_options import joint_arguments
 from jointid.cli.parser import CommandParser
+from jointid.cli.required import LEVELS
 
 
 def add_demo(demo: CommandParser) -> None:
@@ -94,6 +95,11 @@ def add_identify(identify: CommandParser) -> None:
         const=1000,
         metavar="DRAWS",
         help="check the standard errors by drawing stretches of the recording anew (default 1000 draws)",
+    )
+    identify.add_argument(
+        "--require",
+        choices=LEVELS,
+        help="end with exit code 4 where the verdict is worse: usable, or care (usable with care)",
     )
     _output_arguments(identify)
 

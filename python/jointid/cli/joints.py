@@ -14,6 +14,7 @@ from jointid.cli.joint_options import facts_of, joint_file, with_facts
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.progress import JointsProgress
 from jointid.cli.reading import as_given, gear_ratios, how_to_read
+from jointid.cli.required import required
 from jointid.cli.wording import ADVICE, Wording
 
 _MARK = "{joint}"
@@ -109,7 +110,13 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         ]
         if lines:
             print("", *lines, sep="\n")
-    return 0 if len(found) else BAD_INPUT
+    if not len(found):
+        return BAD_INPUT
+    verdicts = {
+        name: None if each.estimate is None else each.estimate.verdict
+        for name, each in found.results.items()
+    }
+    return required(verdicts, arguments)
 
 
 def _check(arguments: argparse.Namespace) -> None:

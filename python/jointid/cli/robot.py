@@ -12,6 +12,7 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import refinements, with_terms
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.reading import as_given, gear_ratios, how_to_read, joints_wanted
+from jointid.cli.required import required
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
         if drawn is not None:
             print(f"\n{drawn.report()}")
         _say_written(arguments)
-    return 0
+    return required({"": found.verdict}, arguments)
 
 
 def compare_whole_robot(arguments: argparse.Namespace) -> int:

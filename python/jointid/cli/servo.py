@@ -14,6 +14,7 @@ from jointid.cli.arguments import fixed_values, with_terms
 from jointid.cli.joint_options import joint_of
 from jointid.cli.outputs import check_outputs
 from jointid.cli.reading import as_given, how_to_read
+from jointid.cli.required import required
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     if arguments.json:
         document = found.document() | ({} if rolled is None else {"rollout": rolled.document()})
         print(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
-        return 0
+        return required({"": found.verdict}, arguments)
     print(text_report(found, action=Wording.of(arguments).of_action))
     if rolled is not None:
         print(f"\nRollouts of the closed loop, against the logs\n{rolled.report()}")
@@ -78,7 +79,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     ]
     if written:
         print("", *written, sep="\n")
-    return 0
+    return required({"": found.verdict}, arguments)
 
 
 def _check(arguments: argparse.Namespace) -> None:

@@ -1,0 +1,45 @@
+"""`--require`: the exit code of a verdict."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from jointid.cli.exit_codes import DONE, WORSE
+
+if TYPE_CHECKING:
+    from jointid.estimate.verdict import Level, Verdict
+
+LEVELS: Mapping[str, Level] = {"usable": "usable", "care": "usable with care"}
+"""The worst level that each value of `--require` accepts."""
+
+
+def required(verdicts: Mapping[str, Verdict | None], arguments: argparse.Namespace) -> int:
+    """Return the exit code of verdicts, and say which is worse than the one asked for.
+
+    Parameters
+    ----------
+    verdicts : mapping of str to Verdict or None
+        By joint, whose name may be empty; None: it could not be identified.
+    arguments : Namespace
+        Of `jointid identify`.
+    """
+    if arguments.require is None:
+        return DONE
+    from jointid.estimate.verdict import LEVELS as ORDER
+
+    asked = LEVELS[arguments.require]
+    code = DONE
+    for name, verdict in verdicts.items():
+        level = "not usable" if verdict is None else verdict.level
+        if ORDER.index(level) > ORDER.index(asked):
+            reason = f": {verdict.reasons[0]}" if verdict is not None and verdict.reasons else ""
+            subject = f"the verdict on {name}" if name else "the verdict"
+            print(
+                f'jointid identify: {subject} is "{level}", and --require asks for "{asked}"{reason}',
+                file=sys.stderr,
+            )
+            code = WORSE
+    return code
