@@ -10,6 +10,7 @@ import numpy as np
 import jointid as jid
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate
+from jointid.identification.inference.within import Torques
 from jointid.identification.warnings import registry
 
 TIME = np.arange(2000) * 1e-3
@@ -120,6 +121,12 @@ def evidence(*parameters: ParameterEstimate, **given: Any) -> Any:
         "guessed_sign": False,
         "velocity_effect": None,
         "own_noise": None,
+        "torques": Torques(
+            single={each.name: 1.0 for each in parameters},
+            friction=frozenset(("coulomb", "viscous", "static", "load_friction")),
+            of_friction=0.1,
+            of_drive=0.1,
+        ),
         "model": "stribeck",
         "sensor_parameters": (),
         "cross_check": jid.estimate.cross_check.CrossCheck(reason="none"),

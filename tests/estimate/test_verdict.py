@@ -1,6 +1,7 @@
 """The verdict: what a person who knows the recordings would say of each, listed before it was computed."""
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -15,6 +16,7 @@ import jointid as jid
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.self_test import SelfTest, SelfTestRow
 from jointid.estimate.verdict import LEVELS, judged
+from jointid.estimate.wording import percent
 from jointid.joint.model import ModelName
 from jointid.report.html import html_report
 
@@ -334,7 +336,7 @@ def test_the_page_begins_with_it() -> None:
     found = [Finding(code=f"c{n}", cause=f"reason {n}", parameters=("static",)) for n in range(5)]
     page = html_report(with_findings(*found))
     assert '<p class="verdict usable-with-care"><b>Usable with care.</b></p>' in page
-    assert "<b>compensation: usable with care</b>: static (above Coulomb)" in page
+    assert re.search(r"<b>compensation: usable with care, to ± [\d.]+ %</b>: static \(above", page)
     assert "<li>reason 2</li><li>and 2 more, below</li>" in page
 
 
@@ -343,17 +345,21 @@ def test_text_and_numbers_have_it() -> None:
     assert lines[:3] == [f"jointid estimate — {estimate().joint.name}", "", "verdict: usable"]
     moved = Finding(code="inertia_varies", cause="it varies", parameters=("static",))
     found = with_findings(moved)
-    assert found.report().splitlines()[2:6] == [
+    shown = found.report().splitlines()[2:6]
+    assert [line.partition(", to ± ")[0] for line in shown] == [
         "verdict: usable with care",
         "  compensation: usable with care (static)",
         "  simulation: usable with care (static)",
         "  monitoring: usable",
     ]
+    for line, purpose in zip(shown[1:], ("compensation", "simulation", "monitoring"), strict=True):
+        assert line.endswith(f", to ± {percent(found.within[purpose])}")
     document = json.loads(found.to_json())["verdict"]
     assert document == found.verdict.document()
     assert document["uses"]["compensation"] == {
         "level": "usable with care",
         "parameters": ["static"],
         "codes": ["inertia_varies"],
+        "within": found.within["compensation"],
     }
     assert jid.Estimate.from_json(found.to_json()).verdict == found.verdict

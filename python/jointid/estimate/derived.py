@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+_FLAT = 1e-10  # of the largest information: none
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DerivedValue:
@@ -29,7 +31,7 @@ class DerivedValue:
     ----------
     name : str
         "breakaway", "stribeck_velocity", "coulomb_sum" or "constant", with the parameters' suffix for direction or
-        recording.
+        recording; "coulomb_and_viscous" of any two that the recording does not divide.
     meaning : str
     unit : str
     value : float
@@ -60,7 +62,12 @@ class DerivedValue:
 
 def derived_values(estimate: Estimate) -> dict[str, DerivedValue]:
     """Return breakaway friction, Stribeck velocity, and what is known of an undivided offset, if the model has them."""
-    values = (*_breakaway(estimate), *_constants(estimate), *_stribeck_velocity(estimate))
+    values = (
+        *_breakaway(estimate),
+        *_constants(estimate),
+        *_stribeck_velocity(estimate),
+        *sums_of_splits(estimate),
+    )
     return {each.name: each for each in values}
 
 
@@ -116,6 +123,63 @@ def _constants(estimate: Estimate) -> Iterator[DerivedValue]:
                 slopes={name: 1.0, offset: sign},
                 formula=f"{name} {'+' if sign > 0 else '-'} {offset}",
             )
+
+
+def sums_of_splits(estimate: Estimate) -> Iterator[DerivedValue]:
+    """Yield what is known of two coefficients that the recording does not divide: their sum in its motion.
+
+    The second counts as often as makes the sum the best known: a viscous friction by the speed, an offset once.
+    """
+    found = estimate.parameters
+    for finding in estimate.findings:
+        pairs = [key.split(".") for key in finding.evidence if key.endswith(".correlation")]
+        for first, second, _ in (pair for pair in pairs if finding.code == "undetermined"):
+            names = sorted((first, second), key=lambda name: not name.startswith("coulomb"))
+            if not all(_is_force(estimate, name) for name in names):
+                continue
+            one, other = names
+            matrix = _pair(estimate, one, other)
+            if matrix is None or not matrix[1, 1] > 0.0:
+                continue
+            factor = -float(matrix[0, 1] / matrix[1, 1])
+            error = math.sqrt(max(matrix[0, 0] + factor * matrix[0, 1], 0.0))
+            value, half = (
+                found[one].value + factor * found[other].value,
+                quantile_of(estimate) * error,
+            )
+            times = "" if abs(abs(factor) - 1.0) < 5e-4 else f"{abs(factor):.4g} · "
+            yield DerivedValue(
+                name=f"{one}_and_{other}",
+                meaning=f"{one} and {other} together in the recorded motion, which does not divide them",
+                unit=found[one].unit,
+                value=value,
+                stderr=error,
+                interval=(value - half, value + half),
+                formula=f"{one} {'+' if factor > 0.0 else '-'} {times}{other}",
+            )
+
+
+def _is_force(estimate: Estimate, name: str) -> bool:
+    base = name.partition("[")[0]
+    parts = ("coulomb", "static", "viscous", "load_friction", "torque_offset", "sensor_offset")
+    return (
+        name in estimate.free and base.removesuffix("_positive").removesuffix("_negative") in parts
+    )
+
+
+def _pair(estimate: Estimate, one: str, other: str) -> Array | None:
+    """The covariance of two parameters, large instead of infinite along what the recording does not determine."""
+    information = estimate.information
+    if information is None:
+        return None
+    places = [estimate.free.index(name) for name in (one, other)]
+    scale = np.sqrt(np.diag(information))
+    if not np.all(scale > 0.0):
+        return None
+    values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
+    values = np.maximum(values, _FLAT * values[-1])
+    covariance = vectors / values @ vectors.T / np.outer(scale, scale)
+    return np.asarray(covariance[np.ix_(places, places)])
 
 
 def _stribeck_velocity(estimate: Estimate) -> Iterator[DerivedValue]:

@@ -87,6 +87,10 @@ class Estimate(Questions):
     delays : mapping of str to Delay
         The constant delay of each signal against the position, as far as the data show it; a certain one
         is taken away before the identification.
+    within : mapping of str to float
+        By purpose of the verdict, how far off what it needs may be at most (95 %), as a share of it: "compensation",
+        friction in the recorded motion (or a fifth of the torque, where friction is less); "simulation", the torque;
+        "monitoring", by chance, the parameter that is known worst. What nothing is known of is missing.
     slow_motion : SlowMotion or None
         How the slowest windows disagree with the faster ones; None where that was not asked.
     selection : Selection or None
@@ -127,6 +131,7 @@ class Estimate(Questions):
     selection: Selection | None = field(default=None, repr=False)
     information: Array | None = field(default=None, repr=False)
     cross_check: CrossCheck | None = field(default=None, repr=False)
+    within: Mapping[str, float] = field(default_factory=dict, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:

@@ -109,6 +109,7 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         slow_motion=None if d.get("slow_motion") is None else SlowMotion(**d["slow_motion"]),
         selection=_selection(d.get("selection")),
         cross_check=_cross_check(d.get("cross_check")),
+        within=d.get("within", {}),
     )
 
 

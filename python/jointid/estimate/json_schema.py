@@ -146,6 +146,7 @@ ESTIMATE: dict[int, Kind] = {
             "selftest": Plain(),
             "bootstrap": Plain(),
             "delays": TableOf(DELAY),
+            "within": TableOf(_SIZE),
             "slow_motion": OrNull(_SLOW_MOTION),
             "cross_check": OrNull(_CROSS_CHECK),
         },

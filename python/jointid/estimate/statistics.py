@@ -19,6 +19,7 @@ SYSTEMATIC_PARTS = (
     "lag",
     "velocity",
     "extra",
+    "symmetry",
     "residual_side",
     "given",
 )
@@ -40,8 +41,9 @@ class ParameterEstimate:
         fixed or held at a bound.
     interval : tuple of float or None
         95 % interval: of chance (Student's t, with as many degrees of freedom as the segments give), and of the
-        systematic parts "windows", "sampling", "curvature", "lag", "velocity" and "extra". It holds if the given facts
-        are right.
+        systematic parts "windows", "sampling", "curvature", "lag", "velocity", "extra" and "symmetry". It holds if the
+        given facts are right. Of a coefficient on its bound it is the interval as if there were no bound, of chance
+        alone.
     min, max : float
         Bounds of the search.
     vary : bool
@@ -55,10 +57,10 @@ class ParameterEstimate:
         "windows" (how the value moves when they are halved and doubled, without what noise of the velocity and of
         extra signals adds to that), "curvature" (friction that is not straight between samples), "lag" (delays
         between signals that are certain), "velocity" (its noise), "extra" (noise of the extra signals of own terms),
-        all as one standard error; "sampling" (the unknown instant of the sensor's sample), at its limit;
-        "residual_side" (how the value moves when the other
-        signal is compared; a gain by instruments needs no side); "given" (the tolerances of the joint's
-        facts, at their limits). Parts that do not apply are missing.
+        "symmetry" (of a sensor's offset: friction that is not the same in both directions), all as one standard
+        error; "sampling" (the unknown instant of the sensor's sample), at its limit; "residual_side" (how the value
+        moves when the other signal is compared; a gain by instruments needs no side); "given" (the tolerances of the
+        joint's facts, at their limits). Parts that do not apply are missing.
     """
 
     name: str
@@ -106,6 +108,16 @@ class ParameterEstimate:
     def uncertainty(self) -> float:
         """Chance and all systematic parts together, as one standard error."""
         return math.hypot(self.stderr or 0.0, self.systematic_total)
+
+
+def distance_from_bound(p: ParameterEstimate) -> float:
+    """Return how far a value may be off its bound: within it, unless the best value lies beyond it for certain."""
+    if p.interval is None:
+        return math.inf
+    inside, beyond = p.interval[1] - p.value, p.value - p.interval[0]
+    if p.at_bound == "max":
+        inside, beyond = beyond, inside
+    return inside if inside >= 0.0 else beyond
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

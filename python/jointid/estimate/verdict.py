@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
+from jointid.estimate.derived import sums_of_splits
+from jointid.estimate.wording import percent, two_digits
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -36,6 +39,16 @@ _CHANGING = frozenset(
         "torque_saturated",
     )
 )
+_SPLIT = 0.1  # of all friction: a part of it that may be so much more or less,
+_HALF = 0.5  # and so much of its value, is not known
+# What follows from a cause, and names none.
+_SYMPTOMS = frozenset(
+    (
+        *("explained", "self_test", "at_bound", "model_too_rich", "few_windows", "poor_fit"),
+        *("structured_residual", "given", "errors"),
+    )
+)
+_MOST = 0.5  # of a misfit: its cause goes before what follows from it
 _SEEN = 0.036  # standard error, of a value: with it a change of a tenth is seen, at 95 %
 
 
@@ -50,15 +63,26 @@ class Use:
         Those to mind, or because of which it does not serve; empty where it is not about single ones.
     codes : tuple of str
         Of the findings that say so, and "explained", "self_test" or "given".
+    within : float or None
+        How far off what it needs may be at most (95 %), as a share of it: of `Estimate.within`. None where it does not
+        serve, or where that is not known.
     """
 
     level: Level
     parameters: tuple[str, ...] = ()
     codes: tuple[str, ...] = ()
+    within: float | None = field(default=None, repr=False)
 
     def __str__(self) -> str:
         named = f" ({', '.join(self.parameters)})" if self.parameters else ""
         return f"{self.level}{named}"
+
+    @property
+    def how_good(self) -> str:
+        """How well it serves as a clause, e.g. ", to ± 9 %"; empty where that is not known."""
+        if self.within is None:
+            return ""
+        return f", to ± {percent(self.within)}" if self.within < 1.0 else ", worse than ± 100 %"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,11 +111,12 @@ class Verdict:
         return "; ".join(f"for {purpose}: {use}" for purpose, use in self.uses.items())
 
     def lines(self) -> list[str]:
-        """The verdict as text: one line, and one for each purpose where they differ."""
-        if len({(use.level, use.parameters) for use in self.uses.values()}) == 1:
-            return [f"verdict: {self}"]
-        uses = [f"  {purpose}: {use}" for purpose, use in self.uses.items()]
-        return [f"verdict: {self.level}", *uses]
+        """The verdict as text: one line, and one for each purpose where they differ or say how good they are."""
+        alike = len({(use.level, use.parameters) for use in self.uses.values()}) == 1
+        first = f"verdict: {self if alike else self.level}"
+        if alike and not any(use.how_good for use in self.uses.values()):
+            return [first]
+        return [first, *(f"  {name}: {use}{use.how_good}" for name, use in self.uses.items())]
 
     def document(self) -> dict[str, Any]:
         """The verdict, of JSON's types."""
@@ -103,6 +128,7 @@ class Verdict:
                     "level": use.level,
                     "parameters": list(use.parameters),
                     "codes": list(use.codes),
+                    "within": use.within,
                 }
                 for purpose, use in self.uses.items()
             },
@@ -123,12 +149,25 @@ class Objection:
         Whether the values cannot be used.
     parameters : tuple of str
         Those concerned; empty where all are.
+    share : float
+        Of the misfit, what it is the cause of. Default 0.
     """
 
     code: str
     reason: str
     blocking: bool
     parameters: tuple[str, ...]
+    share: float = 0.0
+
+    @property
+    def rank(self) -> int:
+        """Its place among the reasons: causes before what follows from them, what blocks before what does not."""
+        cause = self.code not in _SYMPTOMS
+        if self.blocking and cause:
+            return 0
+        if cause and self.share > _MOST:
+            return 1
+        return 2 if self.blocking else 3
 
 
 def judged(
@@ -136,15 +175,17 @@ def judged(
 ) -> Verdict:
     """Judge an estimate by its findings.
 
-    Not usable: a blocking finding, a parameter asked for whose self-test fails, or less
-    than 90 % of the windows' variance explained by the model and a cause that a finding names (of held-out torque
-    where the model was chosen by it; neither counts where the windows are explained worse than by their mean and more
-    than 10 % of their squares are left); for compensation and simulation also friction or a sensor's value that
-    `undetermined` names and that has no finite error (where friction differs by direction, offset and directional
-    Coulomb frictions have none for any motion, and need none); for simulation also an inertia on its bound, or an
-    undetermined one whose 95 % interval reaches zero; for compensation alone a torque that holds no friction.
-    Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is larger than everything else
-    together. Usable: else.
+    Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
+    variance explained by the model and a cause that a finding names (of held-out torque where the model was chosen by
+    it; neither counts where the windows are explained worse than by their mean and more than 10 % of their squares
+    are left); for compensation and simulation also a parameter that they need and that is no value: one on its bound
+    that `at_bound` warns of, one without a finite error that `undetermined` names (where friction differs by
+    direction, offset and directional Coulomb frictions have none for any motion, and need none), or a friction that
+    `undetermined` names and that may be off by half of its value and a tenth of all friction; for simulation also an
+    inertia on its bound, or an undetermined one whose 95 % interval reaches zero; for compensation alone a torque
+    that holds no friction.
+    Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is larger than everything
+    else together. Usable: else.
 
     Parameters
     ----------
@@ -176,18 +217,23 @@ def judged(
                 argument="parameters",
                 value=name,
             )
-    asked = asked or estimate.free
+    held = (name for name, p in estimate.parameters.items() if p.at_bound is not None)
+    asked = asked or (*estimate.free, *held)
     objections = [*_objections(estimate, self_test)]
-    friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
-    merged = [*_inseparable(estimate, asked, friction)]
+    merged = [*_no_values(estimate, asked)]
     absent = [*_without_friction(estimate)]
     hidden = [*merged, *_hidden_inertia(estimate, asked)]
     uses = {
-        "compensation": use_by([*objections, *merged, *absent], asked, friction.__contains__),
+        "compensation": use_by([*objections, *merged, *absent], asked, _acts_against_motion),
         "simulation": use_by([*objections, *hidden], asked, lambda _: True),
         "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
-    return concluded(uses, [*objections, *hidden, *absent])
+    served = {
+        purpose: replace(use, within=estimate.within.get(purpose))
+        for purpose, use in uses.items()
+        if use.level != "not usable"
+    }
+    return concluded(uses | served, [*objections, *hidden, *absent])
 
 
 def to_changes(
@@ -210,9 +256,9 @@ def _is_sharp(p: ParameterEstimate) -> bool:
 
 
 def concluded(uses: Mapping[str, Use], objections: Iterable[Objection]) -> Verdict:
-    """Return the verdict of these uses: the worst level, and the reasons, blocking ones first."""
+    """Return the verdict of these uses: the worst level, and the reasons, the cause first."""
     level = max((use.level for use in uses.values()), key=LEVELS.index)
-    ordered = sorted(objections, key=lambda each: not each.blocking)
+    ordered = sorted(objections, key=lambda each: each.rank)
     return Verdict(level=level, reasons=tuple(each.reason for each in ordered), uses=uses)
 
 
@@ -242,6 +288,7 @@ def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Obje
                 reason=found.cause,
                 blocking=found.severity == "blocking",
                 parameters=_free(estimate, found),
+                share=found.evidence["share"].value if "share" in found.evidence else 0.0,
             )
     explained, of_what = _explained(estimate)
     if not _missed(estimate):
@@ -273,24 +320,38 @@ def explained_text(explained: float, of_what: str) -> str:
     return f"the model explains {share} of the variance of {of_what}"
 
 
-def _inseparable(
-    estimate: Estimate, asked: tuple[str, ...], friction: frozenset[str]
-) -> Iterable[Objection]:
-    """Friction that nothing in the recording separates, e.g. a Coulomb friction and an offset in one direction.
+def _no_values(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:
+    """Friction and sensor's values that are none: on a bound, or a part of a sum that nothing in the recording divides.
 
     Where friction differs by direction, an offset is one quantity with it for any motion, and need not be separated.
     """
-    doubted = friction & _doubted(estimate) & frozenset(asked)
+    bounded = _named(estimate, "at_bound")
+    needed = tuple(name for name, share in bounded.items() if name in asked and share > _SPLIT)
+    if needed:
+        yield Objection(
+            code="at_bound",
+            reason=f"compensation and simulation need {' and '.join(needed)}, which ended on a bound: that is no value",
+            blocking=True,
+            parameters=needed,
+        )
+    doubted = _named(estimate, "undetermined")
     merged = tuple(
         name
-        for name, p in estimate.parameters.items()
-        if name in doubted and p.stderr is not None and math.isinf(p.stderr)
+        for name, share in doubted.items()
+        if name in asked
+        and _acts_against_motion(name)
+        and _is_split(estimate.parameters[name], share)
     )
     if merged:
+        sums = "".join(
+            f"; {each.formula} is {each.value:.4g} ± {two_digits(each.interval[1] - each.value)} {each.unit}"
+            for each in sums_of_splits(estimate)
+            if each.interval is not None and set(each.name.split("_and_")) & set(merged)
+        )
         yield Objection(
             code="undetermined",
             reason=f"compensation and simulation need {' and '.join(merged)}, of which this recording determines no "
-            "single value",
+            f"single value{sums}",
             blocking=True,
             parameters=merged,
         )
@@ -312,9 +373,20 @@ def _without_friction(estimate: Estimate) -> Iterable[Objection]:
             )
 
 
+def _is_split(p: ParameterEstimate, share: float) -> bool:
+    """Whether only a sum with it is known: it may be off by any amount, or by half of it and much of all friction.
+
+    `share` is half of its interval, of all friction.
+    """
+    if p.stderr is not None and math.isinf(p.stderr):
+        return True
+    half = 0.0 if p.interval is None else 0.5 * (p.interval[1] - p.interval[0])
+    return share > _SPLIT and half > _HALF * abs(p.value)
+
+
 def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:
     """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
-    doubted = _doubted(estimate)
+    doubted = _named(estimate, "undetermined")
     for name, p in estimate.parameters.items():
         if name.partition("[")[0] != "inertia":
             continue
@@ -334,14 +406,14 @@ def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Obje
             )
 
 
-def _doubted(estimate: Estimate) -> frozenset[str]:
-    """Parameters of which a finding says that they are not well determined."""
-    return frozenset(
-        name
+def _named(estimate: Estimate, code: str) -> dict[str, float]:
+    """Parameters that a warning of this code names, with their shares of all friction as far as it says them."""
+    return {
+        name: found.evidence[key].value if (key := f"{name}.share") in found.evidence else 0.0
         for found in estimate.findings
-        if found.code == "undetermined"
+        if found.code == code and found.severity != "info"
         for name in _free(estimate, found)
-    )
+    }
 
 
 def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence, ResidualStatistics
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
 from jointid.identification.inference.covariance import Triangle, parameter_covariance
+from jointid.identification.inference.held import held_intervals
 from jointid.identification.inference.inference import (
     freedom_of,
     joint_of,
@@ -33,6 +34,7 @@ from jointid.identification.inference.systematic import (
 )
 from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.inference.velocity_noise import velocity_systematic
+from jointid.identification.inference.within import Torques, within
 from jointid.identification.plain_least_squares import second_look
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
@@ -86,7 +88,7 @@ def infer(
     recordings : sequence of Recording
         As the call gave them.
     beside : mapping of str to ndarray or None
-        Change of each parameter by causes that the intervals do not contain.
+        Change of each parameter by what the residuals do not show.
     known : tuple of Cause
         Causes that were taken away from the data before.
     attribute : bool
@@ -107,7 +109,6 @@ def infer(
     groups = undivided([names[index] for index in free])
     kept = divided(free, names, groups)
     free_jacobian = jacobian[:, kept]
-    del jacobian
     centre = _centre(penalty, columns, kept)
     apart = penalty.cumulative  # the table's windows are then not the penalty's
     motion = Motion.of(problem, penalty) if apart else Motion.of_table(table)
@@ -119,7 +120,22 @@ def infer(
     spread = parameter_covariance(
         free_jacobian, residual, centre, own, threads=threads, segments=segments
     )
+    divisible = spread
+    torques = Torques.of(penalty, jacobian, best)
     spread = with_undivided(spread, kept, free, names, groups)
+    held = held_intervals(
+        jacobian,
+        residual,
+        kept,
+        {
+            index: float(best[index])
+            for index, side in enumerate(freedom.at_bound[: penalty.coefficients])
+            if side is not None
+        },
+        segments,
+        threads,
+    )
+    del jacobian
     instant = refinements.sensor_instant
     unknown = 1.0 if instant is None else instant.unknown
     counted = admissible_shifts(penalty, shifts)
@@ -152,7 +168,7 @@ def infer(
         columns = penalty.linear_columns(best)
     at_best = regressor(penalty, columns, threads)
     del columns
-    parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)
+    parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts, held)
     statistics = statistics_of(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
@@ -228,6 +244,7 @@ def infer(
             delays=refinements.delays,
             slow_motion=refinements.slow_motion,
             cross_check=second,
+            torques=torques,
         )
     )
     return Estimate(
@@ -251,6 +268,7 @@ def infer(
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
         cross_check=second,
+        within=within(parameters, [names[i] for i in kept], divisible, own.T @ own, torques),
     )
 
 

@@ -29,6 +29,7 @@ from jointid.identification.inference.given import of_given_facts
 from jointid.identification.inference.own_noise import measured_once_more
 from jointid.identification.inference.residual_side import of_residual_side
 from jointid.identification.inference.systematic import other_windows
+from jointid.identification.inference.undivided import of_symmetry
 from jointid.identification.refinements.refinements import (
     Refinements,
     without_creep,
@@ -170,6 +171,7 @@ class Prepared:
             beside={
                 "residual_side": of_residual_side(self.problem, self.windows, domain, best),
                 "given": of_given_facts(self.problem, self.windows, domain, best),
+                "symmetry": of_symmetry(self.problem.joint, domain, best),
             },
             convergence=outcome.convergence,
             status=outcome.status,

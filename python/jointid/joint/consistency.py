@@ -86,7 +86,7 @@ def _check_tolerances(joint: Joint, owner: str) -> None:
                 place=f"{owner}: tolerances",
                 remedy="give the link's mass and centre_of_mass",
             )
-        if not isinstance(stated, str) and facts[name] is None:
+        if not isinstance(stated, str) and facts.get(name, stated) is None:
             raise InputError(
                 "the fact itself is not given",
                 argument=name,

@@ -30,6 +30,9 @@ class Tolerances:
         [kg·m²]
     mass, centre_of_mass, link_inertia : str or float, optional
         Of the link [kg], [m], [kg·m²].
+    symmetry : str or float, optional
+        How far the Coulomb friction of each direction may be off the mean of both, as a share of it or in its unit:
+        a sensor's offset takes that up. Default, where none is stated: "10 %".
 
     Raises
     ------
@@ -49,6 +52,7 @@ class Tolerances:
     mass: str | float | None = None
     centre_of_mass: str | float | None = None
     link_inertia: str | float | None = None
+    symmetry: str | float | None = None
 
     def __post_init__(self) -> None:
         for name, value in self.given.items():

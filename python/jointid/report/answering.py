@@ -39,7 +39,9 @@ def verdict_lines(
         Words the advice of a finding. Default: as at a Python prompt.
     """
     words = [
-        element("li", element("b", f"{purpose}: {use.level}"), *_named(use.parameters))
+        element(
+            "li", element("b", f"{purpose}: {use.level}{use.how_good}"), *_named(use.parameters)
+        )
         for purpose, use in verdict.uses.items()
     ]
     lines = [

@@ -88,6 +88,8 @@ def _changes(
 ) -> Iterator[_Change]:
     facts, known = joint.facts, known_values(joint)
     for name, stated in joint.tolerances.given.items():
+        if name not in facts:  # how alike the directions are: see undivided.py
+            continue
         size = joint.tolerances.size(name, facts[name])
         scale = 0.0
         if name == "torque_constant":

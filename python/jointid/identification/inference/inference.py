@@ -118,6 +118,7 @@ def parameters_of(
     spread: Covariance,
     parts: Mapping[str, Array],
     shifts: tuple[Array | None, Array | None],
+    held: Mapping[int, tuple[float, float]] | None = None,
 ) -> dict[str, ParameterEstimate]:
     """Return every parameter of the penalty by name, with its error, interval and bounds.
 
@@ -125,6 +126,8 @@ def parameters_of(
     ----------
     parts : mapping of str to ndarray
         Systematic errors of every parameter, by the name of their cause.
+    held : mapping of int to tuple of float
+        Intervals of those that a bound holds. Default: none.
     """
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
     # Most have the same freedom: all of them, where the residuals are white.
@@ -151,7 +154,7 @@ def parameters_of(
             or (described.unit_prismatic if prismatic else described.unit),
             value=value,
             stderr=error,
-            interval=None if half is None else (value - half, value + half),
+            interval=(held or {}).get(i) if half is None else (value - half, value + half),
             min=lower[i],
             max=upper[i],
             vary=vary,

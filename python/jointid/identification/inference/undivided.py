@@ -5,9 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointid.identification.inference.covariance import Covariance
+from jointid.identification.search.domain import SearchDomain
+from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided
+
+_SYMMETRY = "10 %"  # of Coulomb friction, where the joint states none
+_NORMAL = 1.959964
 
 
 def divided(free: list[int], names: list[str], groups: tuple[Undivided, ...]) -> list[int]:
@@ -66,3 +72,25 @@ def with_undivided(
         condition=float("inf"),
         weakest=weakest / np.linalg.norm(weakest),
     )
+
+
+def of_symmetry(
+    joint: Joint | None, domain: SearchDomain, best: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """Return how far a sensor's offset may be off because friction is not the same in both directions.
+
+    With friction that is taken as symmetric, the offset takes up half of the difference of the two directions, and no
+    log divides the two. The tolerance is taken as a 95 % interval. None without such a friction and such an offset.
+    """
+    tolerances = (Joint() if joint is None else joint).tolerances
+    if tolerances.symmetry is None:
+        tolerances = replace(tolerances, symmetry=_SYMMETRY)
+    moved = np.zeros(len(best))
+    for index, name in enumerate(domain.names):
+        base, _, run = name.partition("[")
+        if base == "sensor_offset" and not domain.fixed(name):
+            coulomb = f"coulomb[{run}" if run and f"coulomb[{run}" in domain.names else "coulomb"
+            if coulomb in domain.names:
+                value = float(best[domain.names.index(coulomb)])
+                moved[index] = (tolerances.size("symmetry", value) or 0.0) / _NORMAL
+    return moved if moved.any() else None

@@ -6,6 +6,9 @@ from collections.abc import Iterator
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.statistics import distance_from_bound
+from jointid.estimate.wording import percent, two_digits
+from jointid.identification.inference.within import LARGE
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_too_rich import SHAPES, STATIC, richness
@@ -13,7 +16,8 @@ from jointid.identification.warnings.no_friction import without_friction
 
 AT_BOUND = FindingType(
     code="at_bound",
-    meaning="a value ended on its bound, so it has no standard error",
+    meaning="a value ended on its bound, so it has no standard error: it is no value, and what needs it cannot be done "
+    "(info for a friction of 0 that may be a tenth of all friction at most)",
     advice="widen the bound, or find out why",
 )
 
@@ -24,9 +28,28 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     rich = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
     reported = (*rich, *without_friction(evidence))  # a friction of 0 is then a value
     for p in evidence.parameters.values():
-        if p.at_bound is None or p.name in reported:
+        if p.at_bound is None:
+            continue
+        may_be = distance_from_bound(p)
+        torques, share = evidence.torques, None
+        if torques.is_friction(p.name):
+            share = torques.of_all_friction(p.name, may_be)
+        small = share is not None and share <= LARGE
+        if p.name in reported and (small or share is None):
             continue
         limit = p.min if p.at_bound == "min" else p.max
+        measured = {f"{p.name}.{p.at_bound}": Measured(limit, p.unit)}
+        if share is not None:
+            measured[f"{p.name}.share"] = Measured(share)
+        if small and limit == 0.0:
+            yield AT_BOUND.finding(
+                f"{p.name} is 0, its bound: it is at most {two_digits(may_be)} {p.unit}, "
+                f"{percent(share or 0.0)} of all friction",
+                evidence=measured,
+                parameters=(p.name,),
+                severity="info",
+            )
+            continue
         side = "lower" if p.at_bound == "min" else "upper"
         advice = [Action("inspect", text="units, signs and gear ratio")]
         explained = evidence.residuals.r_squared >= _EXPLAINED
@@ -38,7 +61,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             f"{p.name} ended at its {side} bound {limit:.6g} {p.unit}: the best value lies beyond it, or the data do "
             "not determine it; other values are affected",
             *advice,
-            evidence={f"{p.name}.{p.at_bound}": Measured(limit, p.unit)},
+            evidence=measured,
             parameters=(p.name,),
         )
 

@@ -17,6 +17,7 @@ from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.inference.own_noise import OwnNoise
 from jointid.identification.inference.velocity_noise import VelocityEffect
+from jointid.identification.inference.within import Torques
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided, undivided
@@ -96,6 +97,8 @@ class Evidence:
         Why the model does not fit; None where the residuals are noise.
     cross_check : CrossCheck
         The second look.
+    torques : Torques
+        How large the torque of each coefficient is.
     cause_of : callable
         Returns what a cause does to the values, from its name, which of its kind it is, the share of a misfit
         that it explains, and its size where that is known.
@@ -120,6 +123,7 @@ class Evidence:
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
     cross_check: CrossCheck
+    torques: Torques
     velocity_effect: VelocityEffect | None = None
     own_noise: OwnNoise | None = None
     white: bool = False

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from jointid.base.advice import Action
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.intervals import NORMAL
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType
@@ -109,7 +110,7 @@ def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, La
             lacks[lack.quantity] = lack
     for p in _as_uncertain(evidence, reasons):
         if p.name not in reasons and p.name not in elsewhere:
-            reasons[p.name] = [_uncertain(p, scale_of(p, evidence))]
+            reasons[p.name] = [_uncertain(p, evidence)]
     return reasons, lacks
 
 
@@ -244,10 +245,12 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
         return [_Reason(text, {})]
     if p.stderr is None:
         return []
+    if evidence.torques.is_nothing(p):
+        return []
     scale = scale_of(p, evidence)
     reasons = []
     if _half_width(p) > (_LARGE_GAIN_ERROR if p.name in _GAIN else _LARGE_ERROR) * scale:
-        reasons.append(_uncertain(p, scale))
+        reasons.append(_uncertain(p, evidence))
     chance = evidence.chance[p.name]  # a shift is part of p.stderr, and would hide itself
     shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
     if scale > 0.0 and shift > _LARGE_SHIFT * chance and shift > _NOTICEABLE_SHIFT * scale:
@@ -263,8 +266,9 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
     return reasons
 
 
-def _uncertain(p: ParameterEstimate, scale: float) -> _Reason:
+def _uncertain(p: ParameterEstimate, evidence: Evidence) -> _Reason:
     """The standard error, as a share where the value itself is what it is held against."""
+    scale = scale_of(p, evidence)
     error = p.stderr or 0.0
     relative = scale == abs(p.value) and scale > 0.0
     text = (
@@ -272,13 +276,22 @@ def _uncertain(p: ParameterEstimate, scale: float) -> _Reason:
         if error < 10.0 * scale
         else f"{p.name} is not excited"
     )
-    measured = Measured(error / scale) if relative else Measured(error, p.unit)
-    return _Reason(text, {f"{p.name}.stderr": measured})
+    measured = {
+        f"{p.name}.stderr": Measured(error / scale) if relative else Measured(error, p.unit)
+    }
+    if evidence.torques.is_friction(p.name):
+        share = evidence.torques.of_all_friction(p.name, _half_width(p))
+        measured[f"{p.name}.share"] = Measured(share)
+    return _Reason(text, measured)
 
 
 def _half_width(p: ParameterEstimate) -> float:
-    """Half of the 95 % interval; 0 without one."""
-    return 0.0 if p.interval is None else 0.5 * (p.interval[1] - p.interval[0])
+    """Half of the 95 % interval, without what no recording of this joint could determine; 0 without one."""
+    if p.interval is None:
+        return 0.0
+    half = 0.5 * (p.interval[1] - p.interval[0])
+    beyond = NORMAL * p.systematic.get("symmetry", 0.0)
+    return math.sqrt(max(0.0, half**2 - beyond**2)) if beyond else half
 
 
 def _hidden(p: ParameterEstimate, evidence: Evidence) -> bool:

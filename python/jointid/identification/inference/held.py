@@ -1,0 +1,54 @@
+"""How far a value on its bound may be off: its 95 % interval as if the bound were not there."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.estimate.student import quantile
+from jointid.identification.inference.covariance import Triangle, parameter_covariance
+from jointid.identification.inference.segments import Segments
+
+Array = NDArray[np.float64]
+
+
+def held_intervals(
+    jacobian: Array,
+    residual: Array,
+    kept: list[int],
+    held: dict[int, float],
+    segments: Segments | None,
+    threads: int = 0,
+) -> dict[int, tuple[float, float]]:
+    """Return the interval of each coefficient that a bound holds: one step of least squares with it among the free.
+
+    Where several are held, each is freed alone: two that the motion hardly separates are both held by the same bound.
+
+    Parameters
+    ----------
+    jacobian : ndarray, shape (windows, p)
+        Derivatives of the residuals by all parameters.
+    kept : list of int
+        Free parameters.
+    held : mapping of int to float
+        The coefficients on a bound, and their values.
+    """
+    found = {}
+    for index, value in held.items():
+        columns = jacobian[:, [*kept, index]]
+        count = columns.shape[1]
+        triangle = Triangle(np.column_stack([columns, residual]), threads)
+        own = triangle.matrix[:count, :count]
+        step = triangle.solve(list(range(count)), count, rcond=1e-10)[0]
+        left = residual - np.einsum("ij,j->i", columns, step)  # what the bound leaves is no noise
+        spread = parameter_covariance(columns, left, None, own, threads=threads, segments=segments)
+        error = float(spread.stderr[-1])
+        if math.isfinite(error):
+            best = value - float(step[-1])
+            half = quantile(0.975, float(spread.freedom[-1])) * error
+            found[index] = (best - half, best + half)
+        else:
+            found[index] = (-math.inf, math.inf)
+    return found

@@ -1,0 +1,145 @@
+"""How well an estimate does what it is for: half of a 95 % interval of what each purpose needs, over that."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.values import dataclass
+from jointid.estimate.intervals import NORMAL
+from jointid.estimate.statistics import ParameterEstimate, distance_from_bound
+from jointid.identification.inference.covariance import Covariance
+from jointid.problem.inner_products import column_sizes, size
+
+Array = NDArray[np.float64]
+
+LARGE = 0.1
+"""Of all friction: a coefficient that may be this large, or be missing, is not known."""
+NOTHING = 0.01
+"""Of the torque: friction of less is as good as nothing."""
+
+_FRICTION = 0.2  # of the torque: less friction than this is held against this
+_SHARE = 0.05  # of the torque: the same for a single parameter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Torques:
+    """How large torques are in the recorded motion, in the unit of the residuals.
+
+    Attributes
+    ----------
+    single : mapping of str to float
+        Of each coefficient of 1.
+    friction : frozenset of str
+        Coefficients and shapes of friction.
+    of_friction, of_drive : float
+        Of all friction, and of the drive.
+    """
+
+    single: Mapping[str, float]
+    friction: frozenset[str]
+    of_friction: float
+    of_drive: float
+
+    @property
+    def friction_level(self) -> float:
+        """What is held against friction: all friction, or a fifth of the torque if that is more."""
+        return max(self.of_friction, _FRICTION * self.of_drive)
+
+    def is_friction(self, name: str) -> bool:
+        """Whether a parameter is a coefficient of friction, not one of its shapes."""
+        return name in self.friction and name in self.single
+
+    def of_all_friction(self, name: str, value: float) -> float:
+        """Share of all friction that a coefficient of this value makes up in the recorded motion."""
+        torque = self.single[name]
+        return value * torque / self.friction_level if torque > 0.0 else 0.0
+
+    def is_nothing(self, p: ParameterEstimate) -> bool:
+        """Whether a friction is as good as 0, by how large it may be against the torque."""
+        if p.interval is None or not self.is_friction(p.name):
+            return False
+        largest = max(-p.interval[0], p.interval[1])
+        return self.single[p.name] * largest <= NOTHING * self.of_drive
+
+    @classmethod
+    def of(cls, penalty: _core.Penalty, jacobian: Array, best: Array) -> Torques:
+        """Return those of a fit, from the derivatives of its residuals by all parameters."""
+        names, count = list(penalty.names), penalty.coefficients
+        places = [index for index, term in enumerate(penalty.terms) if term.friction]
+        gain = best[names.index("sensor_gain")] if "sensor_gain" in names else 1.0
+        scale = gain if penalty.residual == _core.Residual.sensor else 1.0
+        return cls(
+            single=dict(zip(names, column_sizes(jacobian[:, :count]).tolist(), strict=False)),
+            friction=frozenset([*(names[index] for index in places), *names[count:]]),
+            of_friction=size(np.einsum("ij,j->i", jacobian[:, places], best[places])),
+            of_drive=size(np.asarray(penalty.target)) / abs(float(scale)),
+        )
+
+
+def within(
+    parameters: Mapping[str, ParameterEstimate],
+    names: Sequence[str],
+    spread: Covariance,
+    gram: Array,
+    torques: Torques,
+) -> dict[str, float]:
+    """Return by purpose how far off what it needs may be, as a share of it; without what nothing is known of.
+
+    Compensation needs the friction torque of the recorded motion, simulation its whole torque, both as root mean
+    squares. Monitoring needs every parameter apart, by chance alone; what hardly has a torque may be off by all of it.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the parameters that `spread` is about.
+    gram : ndarray, shape (p, p)
+        Inner products of the residuals' derivatives by these.
+    """
+    chance = np.sqrt(np.diag(spread.matrix))
+    held = {
+        name: distance_from_bound(p) * torques.single[name]
+        for name, p in parameters.items()
+        if p.at_bound is not None and name in torques.single
+    }
+    floor = _SHARE * torques.of_drive
+    changes = [
+        NORMAL * error * torque / max(abs(parameters[name].value) * torque, floor)
+        for name, error in zip(names, chance.tolist(), strict=True)
+        if "offset" not in name and (torque := torques.single.get(name, 0.0)) > 0.0
+    ]
+    with np.errstate(
+        invalid="ignore"
+    ):  # an infinite variance beside no torque: that purpose has no figure
+        squares = _squared_half_widths(parameters, names, spread.matrix, chance) * gram
+    own = [index for index, name in enumerate(names) if name in torques.friction]
+    of_friction = float(squares[np.ix_(own, own)].sum())
+    of_friction += sum(torque**2 for name, torque in held.items() if name in torques.friction)
+    of_all = float(squares.sum()) + sum(torque**2 for torque in held.values())
+    found = {
+        "compensation": math.sqrt(max(of_friction, 0.0)) / (torques.friction_level or math.nan),
+        "simulation": math.sqrt(max(of_all, 0.0)) / (torques.of_drive or math.nan),
+        "monitoring": max([*changes, *(torque / (floor or math.nan) for torque in held.values())]),
+    }
+    return {purpose: share for purpose, share in found.items() if math.isfinite(share)}
+
+
+def _squared_half_widths(
+    parameters: Mapping[str, ParameterEstimate], names: Sequence[str], matrix: Array, chance: Array
+) -> Array:
+    """The covariance, scaled so that the intervals are on its diagonal; of sums alone known, by chance.
+
+    What an offset has of the asymmetry of friction, friction lacks: the torque is the same.
+    """
+    scale = np.full(len(names), NORMAL)
+    for index, name in enumerate(names):
+        interval = parameters[name].interval
+        if interval is not None and math.isfinite(interval[1]) and chance[index] > 0.0:
+            half = 0.5 * (interval[1] - interval[0])
+            shared = NORMAL * parameters[name].systematic.get("symmetry", 0.0)
+            scale[index] = math.sqrt(max(half**2 - shared**2, 0.0)) / chance[index]
+    return np.asarray(matrix * np.outer(scale, scale))
