@@ -10,7 +10,7 @@ import numpy as np
 import jointid as jid
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.identification.inference.within import Torques
+from jointid.identification.inference.purposes import Torques
 from jointid.identification.warnings import registry
 
 TIME = np.arange(2000) * 1e-3

@@ -14,7 +14,7 @@ from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.joint_options import joint_file, joint_of, torque_needed
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.reading import joints_wanted, load_all
-from jointid.cli.required import required
+from jointid.cli.requirement import required
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:

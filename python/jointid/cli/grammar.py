@@ -20,7 +20,7 @@ from jointid.cli.arguments import (
 )
 from jointid.cli.joint_options import joint_arguments
 from jointid.cli.parser import CommandParser
-from jointid.cli.required import LEVELS
+from jointid.cli.requirement import LEVELS
 
 
 def add_demo(demo: CommandParser) -> None:

@@ -14,7 +14,7 @@ from jointid.cli.joint_options import facts_of, joint_file, with_facts
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.progress import JointsProgress
 from jointid.cli.reading import as_given, gear_ratios, how_to_read
-from jointid.cli.required import required
+from jointid.cli.requirement import required
 from jointid.cli.wording import ADVICE, Wording
 
 _MARK = "{joint}"

@@ -12,7 +12,7 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import refinements, with_terms
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.reading import as_given, gear_ratios, how_to_read, joints_wanted
-from jointid.cli.required import required
+from jointid.cli.requirement import required
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from jointid.cli.arguments import fixed_values, with_terms
 from jointid.cli.joint_options import joint_of
 from jointid.cli.outputs import check_outputs
 from jointid.cli.reading import as_given, how_to_read
-from jointid.cli.required import required
+from jointid.cli.requirement import required
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:

@@ -26,6 +26,7 @@ from jointid.identification.inference.inference import (
 )
 from jointid.identification.inference.measuring_again import Shifts
 from jointid.identification.inference.own_noise import own_systematic
+from jointid.identification.inference.purposes import Torques, within
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import (
     admissible_shifts,
@@ -34,7 +35,6 @@ from jointid.identification.inference.systematic import (
 )
 from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.inference.velocity_noise import velocity_systematic
-from jointid.identification.inference.within import Torques, within
 from jointid.identification.plain_least_squares import second_look
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain

@@ -8,7 +8,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.statistics import distance_from_bound
 from jointid.estimate.wording import percent, two_digits
-from jointid.identification.inference.within import LARGE
+from jointid.identification.inference.purposes import LARGE
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_too_rich import SHAPES, STATIC, richness

@@ -16,8 +16,8 @@ from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.inference.own_noise import OwnNoise
+from jointid.identification.inference.purposes import Torques
 from jointid.identification.inference.velocity_noise import VelocityEffect
-from jointid.identification.inference.within import Torques
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided, undivided
