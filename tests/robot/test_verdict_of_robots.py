@@ -93,3 +93,27 @@ def test_a_joint_that_stands_needs_care_alone(robot: jid.Robot, run: jid.RobotRe
     standing = [each for each in found.findings if each.code == "standing" and each.parameters]
     assert standing
     assert all(name.startswith("elbow.") for each in standing for name in each.parameters)
+
+
+def test_friction_that_is_not_there_is_a_good_value(
+    robot: jid.Robot, run: jid.RobotRecording
+) -> None:
+    """The elbow's viscous friction is taken away, then as much again: 0 is right, then it is no value."""
+    found = jid.identify_robot(run, robot)
+    viscous = found.parameters["elbow.viscous"].value
+    speed = np.gradient(run.position[:, 1], run.time)
+    for times, level in ((1.0, "usable"), (2.0, "not usable")):
+        less = of_one(run, lambda torque, t=times: torque - t * viscous * speed)
+        each = jid.identify_robot(changed(run, torque=less), robot)
+        uses = each.verdict.uses
+        assert (uses["compensation"].level, uses["simulation"].level) == (level, level)
+        if level == "not usable":
+            assert "elbow.viscous" in uses["compensation"].parameters
+            assert any("need elbow.viscous" in reason for reason in each.verdict.reasons)
+
+
+def test_each_purpose_says_how_good(robot: jid.Robot, run: jid.RobotRecording) -> None:
+    found = jid.identify_robot(run, robot)
+    assert 0.0 < found.within["compensation"] < 0.02
+    assert found.verdict.uses["simulation"].within == found.within["simulation"]
+    assert "  compensation: usable, to ± " in found.report()

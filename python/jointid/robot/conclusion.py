@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from jointid.robot.findings import findings_of
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import SCALED
 from jointid.robot.models import PLAIN, STRIBECK, modelled
+from jointid.robot.purposes import held_of, torques_of, within_of
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
 
@@ -38,6 +40,10 @@ def concluded(
     of_joints: list[dict[str, ParameterEstimate]] = [{} for _ in robot.names]
     base: dict[str, ParameterEstimate] = {}
     free: list[str] = []
+    held = held_of(balance, fit)
+    names = [
+        name if joint is None else f"{robot.names[joint]}.{name}" for joint, name in fit.labels
+    ]
     for number, (joint, name) in enumerate(fit.labels):
         place = None if fit.at_bound[number] else int(places[number])
         if joint is None:
@@ -48,9 +54,11 @@ def concluded(
         else:
             unit = UNITS[name][robot.tree.prismatic[joint]]
             p = _parameter(name, MEANINGS[name], unit, fit, number, place, covariance)
+            if number in held:
+                p = replace(p, interval=held[number])
             of_joints[joint][name] = p
         if place is not None:
-            free.append(name if joint is None else f"{robot.names[joint]}.{name}")
+            free.append(names[number])
     joints = {
         name: RobotJoint(
             name=name,
@@ -78,7 +86,12 @@ def concluded(
         robot=robot,
         settings={},
     )
-    return findings_of(estimate, fit.columns)
+    torques = {
+        name: torques_of([n.removeprefix(f"{name}.") for n in names], balance, fit, k)
+        for k, name in enumerate(robot.names)
+    }
+    estimate = replace(estimate, within=within_of(names, balance, fit, estimate, covariance))
+    return findings_of(estimate, fit.columns, torques)
 
 
 def _parameter(

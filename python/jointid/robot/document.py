@@ -29,6 +29,7 @@ def document_of(estimate: RobotEstimate) -> dict[str, Any]:
         "consistent": estimate.consistent,
         "impossible_by": plain(estimate.impossible_by),
         "relative_residual": plain(estimate.relative_residual),
+        "within": plain(estimate.within),
         "condition": plain(estimate.condition),
         "joints": {
             name: {

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.objections import LARGE
+from jointid.estimate.statistics import distance_from_bound
 from jointid.estimate.wording import number, percent, two_digits
+from jointid.identification.inference.purposes import Torques
 from jointid.robot.inertia import FREE, InertiaColumns
 from jointid.robot.result import RobotEstimate, RobotJoint
 
@@ -23,11 +26,23 @@ FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
-def findings_of(estimate: RobotEstimate, columns: InertiaColumns) -> RobotEstimate:
-    """Return the estimate with its findings, the most severe first."""
+def findings_of(
+    estimate: RobotEstimate, columns: InertiaColumns, torques: Mapping[str, Torques]
+) -> RobotEstimate:
+    """Return the estimate with its findings, the most severe first.
+
+    Parameters
+    ----------
+    torques : mapping of str to Torques
+        Of each joint, by the names of its parameters.
+    """
     found = [
         *_standing(estimate),
-        *(each for joint in estimate.joints.values() for each in _of_joint(joint, estimate)),
+        *(
+            each
+            for joint in estimate.joints.values()
+            for each in _of_joint(joint, estimate, torques[joint.name])
+        ),
         *_of_inertia(estimate, columns),
     ]
     return replace(estimate, findings=tuple(sorted(found, key=lambda each: _RANK[each.severity])))
@@ -68,10 +83,12 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
         )
 
 
-def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
+def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> Iterator[Finding]:
     for name in FRICTION:
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
+            continue
+        if torques.is_nothing(p):
             continue
         error = "by any amount" if np.isinf(p.stderr) else f"by {two_digits(p.stderr)} {p.unit}"
         yield Finding(
@@ -84,13 +101,26 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
         )
     held = [name for name in FRICTION if name in joint.parameters]
     held = [name for name in held if joint.parameters[name].at_bound is not None]
-    if held:
-        yield Finding(
-            code="at_bound",
-            parameters=tuple(f"{joint.name}.{name}" for name in held),
-            cause=f"{' and '.join(held)} of {joint.name} would be negative, and is held at 0: the model or a given "
-            "fact is wrong",
-        )
+    held_by = {
+        name: torques.of_all_friction(name, distance_from_bound(joint.parameters[name]))
+        for name in held
+    }
+    for small in (False, True):
+        alike = [name for name, share in held_by.items() if (share <= LARGE) == small]
+        if alike:
+            largest = percent(max(held_by[name] for name in alike))
+            yield Finding(
+                code="at_bound",
+                severity="info" if small else "warning",
+                parameters=tuple(f"{joint.name}.{name}" for name in alike),
+                evidence={f"{joint.name}.{name}.share": Measured(held_by[name]) for name in alike},
+                cause=f"{' and '.join(alike)} of {joint.name} "
+                + (
+                    f"is 0, its bound: it is at most {largest} of the joint's friction"
+                    if small
+                    else "would be negative, and is held at 0: the model or a given fact is wrong"
+                ),
+            )
     residual = joint.relative_residual
     if residual > _POOR:
         freed = Action("call", {"inertia": FREE}, function="identify_robot")

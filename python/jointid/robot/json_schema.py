@@ -95,5 +95,10 @@ ROBOT_ESTIMATE: Kind = Record(
         "findings": ListOf(FINDING),
         "settings": _SETTINGS,
     },
-    {"bootstrap": Plain(), "verdict": VERDICT, "cross_check": OrNull(_CROSS_CHECK)},
+    {
+        "bootstrap": Plain(),
+        "verdict": VERDICT,
+        "cross_check": OrNull(_CROSS_CHECK),
+        "within": TableOf(_ANY),
+    },
 )

@@ -81,6 +81,7 @@ def _estimate(d: Mapping[str, Any]) -> RobotEstimate:
         consistent=d["consistent"],
         impossible_by=d["impossible_by"],
         relative_residual=d["relative_residual"],
+        within=d.get("within", {}),
         free=tuple(d["free"]),
         covariance=matrix_of(d["covariance"]),
         condition=d["condition"],

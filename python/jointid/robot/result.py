@@ -90,6 +90,8 @@ class RobotEstimate:
     settings : mapping
     seconds : float
         Wall time.
+    within : mapping of str to float
+        As `Estimate.within`, of all joints together.
     draws : RobotDraws or None
         What `bootstrap` needs; None where the estimate was read from a file.
     cross_check : CrossCheck or None
@@ -113,6 +115,7 @@ class RobotEstimate:
     draws: RobotDraws | None = field(default=None, repr=False)
     impossible_by: float = 0.0
     cross_check: CrossCheck | None = None
+    within: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:

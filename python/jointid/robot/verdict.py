@@ -4,19 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from jointid.estimate.verdict import (
-    EXPLAINED,
-    Objection,
-    Verdict,
-    concluded,
-    explained_text,
-    to_changes,
-    use_by,
-)
-from jointid.robot.columns import MEANINGS
+from jointid.estimate.objections import EXPLAINED, Objection, explained_text, held_on_bounds
+from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
+from jointid.robot.purposes import FRICTION
 from jointid.robot.result import RobotEstimate
 
-_OF_MOTION = frozenset(("rotor_inertia", "inertia_scale"))  # not of friction
+_COMPENSATED = FRICTION | {"torque_offset"}
 _IMPOSSIBLE = "impossible_inertia"
 
 
@@ -24,6 +17,7 @@ def judged_robot(estimate: RobotEstimate) -> Verdict:
     """Judge a robot's estimate by its findings.
 
     Not usable: a blocking finding, or a joint of whose windows less than 90 % of the variance is explained; for
+    compensation and simulation also a friction on its bound that may be more than a tenth of its joint's; for
     simulation also links that no body can be. Usable with care: a warning. Usable: else.
 
     Parameters
@@ -45,12 +39,13 @@ def judged_robot(estimate: RobotEstimate) -> Verdict:
     every = (*_objections(estimate), *_unexplained(estimate))
     objections = [each for each in every if each.code != _IMPOSSIBLE]
     asked = tuple(estimate.parameters)
+    bounded = [*held_on_bounds(estimate.findings, asked)]
     uses = {
-        "compensation": use_by(objections, asked, _is_friction),
-        "simulation": use_by(every, asked, lambda _: True),
+        "compensation": use_by([*objections, *bounded], asked, _is_friction),
+        "simulation": use_by([*every, *bounded], asked, lambda _: True),
         "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
-    return concluded(uses, every)
+    return concluded(uses, [*every, *bounded], estimate.within)
 
 
 def _objections(estimate: RobotEstimate) -> Iterable[Objection]:
@@ -77,5 +72,4 @@ def _unexplained(estimate: RobotEstimate) -> Iterable[Objection]:
 
 
 def _is_friction(name: str) -> bool:
-    of_joint = name.rpartition(".")[2]
-    return of_joint in MEANINGS and of_joint not in _OF_MOTION
+    return name.rpartition(".")[2] in _COMPENSATED

@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
-from jointid.estimate.verdict import (
-    EXPLAINED,
-    Objection,
-    Verdict,
-    concluded,
-    explained_text,
-    to_changes,
-    use_by,
-)
+from jointid.estimate.objections import EXPLAINED, Objection, explained_text
+from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
 from jointid.servo.estimate import ServoEstimate
 
 _COMPENSATED = frozenset(("torque_per_voltage", "viscous", "coulomb", "load_friction"))
@@ -21,7 +15,8 @@ _COMPENSATED = frozenset(("torque_per_voltage", "viscous", "coulomb", "load_fric
 def judged_servo(estimate: ServoEstimate) -> Verdict:
     """Judge a servo's estimate by its findings.
 
-    Not usable: a blocking finding, or less than 90 % of the load's squared torque explained. Usable with care: a
+    Not usable: a blocking finding, less than 90 % of the load's squared torque explained, or, for what needs it, a
+    value on its bound that `at_bound` warns of. Usable with care: a
     warning, or no errors (``draws=0``). Usable: else. Compensation needs friction and what turns a torque into a
     duty, simulation all values.
 
@@ -41,12 +36,14 @@ def judged_servo(estimate: ServoEstimate) -> Verdict:
     """
     objections = [*_objections(estimate)]
     asked = tuple(estimate.parameters)
+    bounded = [replace(each, blocking=True) for each in objections if each.code == "at_bound"]
+    needed = [each for each in bounded if _COMPENSATED.intersection(each.parameters)]
     uses = {
-        "compensation": use_by(objections, asked, _COMPENSATED.__contains__),
-        "simulation": use_by(objections, asked, lambda _: True),
+        "compensation": use_by([*objections, *needed], asked, _COMPENSATED.__contains__),
+        "simulation": use_by([*objections, *bounded], asked, lambda _: True),
         "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
-    return concluded(uses, objections)
+    return concluded(uses, objections, {})
 
 
 def _objections(estimate: ServoEstimate) -> Iterable[Objection]:

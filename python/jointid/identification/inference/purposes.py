@@ -17,8 +17,6 @@ from jointid.problem.inner_products import column_sizes, size
 
 Array = NDArray[np.float64]
 
-LARGE = 0.1
-"""Of all friction: a coefficient that may be this large, or be missing, is not known."""
 NOTHING = 0.01
 """Of the torque: friction of less is as good as nothing."""
 

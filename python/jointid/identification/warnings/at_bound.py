@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.objections import LARGE
 from jointid.estimate.statistics import distance_from_bound
 from jointid.estimate.wording import percent, two_digits
-from jointid.identification.inference.purposes import LARGE
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_too_rich import SHAPES, STATIC, richness
@@ -34,7 +35,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         torques, share = evidence.torques, None
         if torques.is_friction(p.name):
             share = torques.of_all_friction(p.name, may_be)
-        small = share is not None and share <= LARGE
+        small = share is not None and share <= LARGE and math.isfinite(may_be)
         if p.name in reported and (small or share is None):
             continue
         limit = p.min if p.at_bound == "min" else p.max
