@@ -73,8 +73,8 @@ def test_a_robot_has_one_verdict(capsys: pytest.CaptureFixture[str], tmp_path: P
     run = small_arm.recording(urdf, duration=4.0)
     assert run.torque is not None
     noise = np.random.default_rng(1).normal(scale=5.0, size=run.torque.shape)
-    kept = {"time": run.time, "position": run.position, "names": run.names}
-    jid.RobotRecording(torque=noise, **kept).save(tmp_path / "arm.csv")
+    noisy = jid.RobotRecording(time=run.time, position=run.position, names=run.names, torque=noise)
+    noisy.save(tmp_path / "arm.csv")
     code, said = ran(capsys, tmp_path / "arm.csv", "--robot", urdf, "--require", "care")
     assert code == 4
     assert 'the verdict is "not usable"' in said

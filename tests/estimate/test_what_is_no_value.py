@@ -29,12 +29,12 @@ def log(
 
 def swinging() -> Array:
     """All speeds up to 3 rad/s, in both directions."""
-    return 2.0 * np.sin(2.0 * TIME) + 1.0 * np.sin(5.3 * TIME)
+    return np.asarray(2.0 * np.sin(2.0 * TIME) + 1.0 * np.sin(5.3 * TIME))
 
 
 def back_and_forth(speed: float) -> Array:
     """One speed in both directions, with quick reversals."""
-    return np.clip(60.0 * np.sin(2.0 * TIME), -speed, speed)
+    return np.asarray(np.clip(60.0 * np.sin(2.0 * TIME), -speed, speed))
 
 
 def plain(coulomb: float, viscous: float) -> Callable[[Array], Array]:
@@ -53,7 +53,7 @@ def test_a_friction_that_is_not_there_is_a_good_value(
 ) -> None:
     """A simulator without friction; bearings without grease; an air bearing."""
     run = log(swinging(), plain(coulomb, viscous), noise, gravity=4.0)
-    found = jid.identify(run, model="coulomb_viscous:gravity=free")
+    found = jid.identify(run, model=jid.Model("coulomb_viscous", gravity="free"))
     assert levels(found) == ("usable", "usable", "usable"), found.verdict.reasons
     for p in found.parameters.values():
         if p.at_bound is not None:  # "at most" holds what is true

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from defects import changed
 from example_recordings import WELL_EXCITED
 
 import jointid as jid
@@ -15,8 +16,7 @@ def asymmetric(share: float) -> jid.Recording:
     run = jid.load(WELL_EXCITED)
     assert run.torque is not None
     torque = run.torque + share * 25.0 * (run.velocity != 0.0)
-    signals = {"position": run.position, "velocity": run.velocity, "sensor": run.sensor}
-    return jid.Recording(time=run.time, torque=torque, torque_hold=run.torque_hold, **signals)
+    return changed(run, torque=torque)
 
 
 def half_width(p: ParameterEstimate) -> float:
@@ -52,7 +52,7 @@ def test_what_is_stated_or_measured_replaces_the_default() -> None:
         "symmetry" not in p.systematic or not p.systematic["symmetry"]
         for p in unloaded.parameters.values()
     )
-    each = jid.identify(run, joint, model="stribeck:asymmetric")
+    each = jid.identify(run, joint, model=jid.Model("stribeck", asymmetric=True))
     assert "symmetry" not in each.parameters["sensor_offset"].systematic
 
 
