@@ -1,0 +1,348 @@
+"""200 logs with one random fault each: right, refused for the right cause, or wrong and called usable.
+
+Joints, motions and faults are drawn at random from a seed and written as text files; the command line identifies each
+with the options that its user would know. `--clean N` runs logs without a fault instead. One log is repeated by its
+seed and number: `--seed 1 --number 17 --keep FOLDER`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import contextlib
+import gzip
+import io
+import json
+import re
+import shlex
+import tempfile
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from clean_logs import clean
+from faults_of_columns import (
+    bare_numbers,
+    behind_friction,
+    current,
+    geared_torque,
+    motor_velocity,
+    no_units,
+    one_of_several,
+    product_names,
+    recorder_pairs,
+    reversed_torque,
+    saturated,
+)
+from faults_of_rows import (
+    cut_line,
+    held_rows,
+    late_signal,
+    many_turns,
+    no_split,
+    no_time,
+    repeated_stamps,
+    rounded_stamps,
+    short_run,
+    standing,
+    torn_tail,
+    wrapped,
+)
+from foreign_joints import DURATION, Draw, simulated
+from log_plans import Log, Plan
+
+import jointid as jid
+from jointid.cli.command_line import main as jointid_main
+
+KINDS = {
+    each.__name__: each
+    for each in (
+        *(held_rows, wrapped, behind_friction, many_turns, product_names, no_time),
+        *(repeated_stamps, rounded_stamps, torn_tail, cut_line, one_of_several, no_units),
+        *(bare_numbers, current, recorder_pairs, short_run, saturated, no_split),
+        *(motor_velocity, late_signal, standing, reversed_torque, geared_torque),
+    )
+}
+OFF = 0.05  # a relative error above this one is wrong if the 95 % interval does not excuse it
+_TOGETHER = 50  # logs of one simulation
+_NEAR_ZERO = ("torque_offset", "sensor_offset", "gravity_cos", "gravity_sin")
+Outcome = Literal["right", "cause first", "other cause", "wrong and usable"]
+OUTCOMES: tuple[Outcome, ...] = ("right", "cause first", "other cause", "wrong and usable")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """What the command line said of a log.
+
+    Attributes
+    ----------
+    document : dict
+        The estimate, empty where there is an error.
+    error : str
+    """
+
+    document: Mapping[str, Any]
+    error: str = ""
+
+    @property
+    def first(self) -> str:
+        """The first finding, the most severe first, or the error."""
+        if self.error:
+            return self.error
+        serious = self.serious()
+        if serious:
+            return f"{serious[0]['code']}: {serious[0]['message']}"
+        return "; ".join(self.document["verdict"]["reasons"][:1])
+
+    def serious(self) -> list[Mapping[str, Any]]:
+        """Findings of severity blocking, then warning."""
+        found = [f for f in self.document.get("findings", ()) if f["severity"] != "info"]
+        return sorted(found, key=lambda each: each["severity"] != "blocking")
+
+    def usable(self, purpose: str = "") -> bool:
+        """Whether the verdict, or that for a purpose, is one of the two usable levels."""
+        if self.error:
+            return False
+        verdict = self.document["verdict"]
+        level = verdict["uses"][purpose]["level"] if purpose else verdict["level"]
+        return bool(level != "not usable")
+
+    def wrong(self, truth: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+        """Value and truth of the parameters that are more than 5 % off and outside their intervals."""
+        found = {}
+        for name, p in self.document.get("parameters", {}).items():
+            if name not in truth or not p["vary"]:
+                continue
+            value, true = float(p["value"]), truth[name]
+            scale = max(abs(true), _coulomb(truth)) if name in _NEAR_ZERO or not true else abs(true)
+            low, high = (float(end) for end in p["interval"] or (value, value))
+            if abs(value - true) > OFF * scale and not low <= true <= high:
+                found[name] = value, true
+        return found
+
+
+def _coulomb(truth: Mapping[str, float]) -> float:
+    return abs(truth.get("coulomb", truth.get("coulomb_plus", 0.0)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judged:
+    """The outcome of one log."""
+
+    number: int
+    kind: str
+    log: Log
+    answer: Answer
+    outcome: Outcome
+
+    @property
+    def text(self) -> str:
+        """One line of a list."""
+        values = self.answer.wrong(self.log.truth)
+        said = ", ".join(f"{name} {v:.4g} (true {t:.4g})" for name, (v, t) in values.items())
+        level = "" if self.answer.error else f" [{self.answer.document['verdict']['level']}]"
+        words = " ".join(self.answer.first.split())
+        return (
+            f"{self.number} {self.kind}: {self.outcome}{level}; {self.log.what}; {said or 'no value wrong'}; "
+            f"first: {words[:200] or 'nothing'}"
+        )
+
+
+def judged(number: int, kind: str, log: Log, answer: Answer) -> Judged:
+    """Hold an answer against the truth.
+
+    A value counts where a use is usable: friction for compensation, all of them for simulation. Changes between
+    recordings (monitoring) do not need a right value.
+    """
+    wrong = answer.wrong(log.truth)
+    friction = [n for n in wrong if n.split("_")[0] in ("coulomb", "viscous", "static", "sensor")]
+    misled = (answer.usable() or answer.usable("simulation")) and wrong
+    misled = misled or (answer.usable("compensation") and friction)
+    named = bool(re.search(log.causes, answer.first, re.IGNORECASE))
+    false = log.never and any(
+        re.search(log.never, f"{each['code']}: {each['message']}") for each in answer.serious()
+    )
+    outcome: Outcome
+    if misled:
+        outcome = "wrong and usable"
+    elif answer.usable() and not false:
+        outcome = "right"
+    else:
+        outcome = "cause first" if named and not false else "other cause"
+    return Judged(number=number, kind=kind, log=log, answer=answer, outcome=outcome)
+
+
+def drawn(
+    seed: int, numbers: Iterable[int], kinds: Sequence[str]
+) -> Iterator[tuple[int, str, Plan]]:
+    """The plans of these numbers; kinds take turns, and a log depends on its seed, number and kind alone."""
+    for number in numbers:
+        kind = kinds[number % len(kinds)]
+        draw = Draw(np.random.default_rng([seed, number, list(KINDS).index(kind)]))
+        yield number, kind, KINDS[kind](draw)
+
+
+def written(
+    plans: Iterable[tuple[int, str, Plan]], duration: float = DURATION
+) -> Iterator[tuple[int, str, Log]]:
+    """The logs of plans, simulated many at a time."""
+    waiting = list(plans)
+    for begin in range(0, len(waiting), _TOGETHER):
+        part = waiting[begin : begin + _TOGETHER]
+        runs = simulated([plan.drawn for _, _, plan in part], duration)
+        for (number, kind, plan), tables in zip(part, runs, strict=True):
+            yield number, kind, plan.write(tables)
+
+
+def answered(log: Log, folder: Path) -> Answer:
+    """What `jointid identify` says of a log's files, and of its pasted advice where the kind is about that."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in log.files.items():
+        data = text.encode()
+        (folder / name).write_bytes(gzip.compress(data, 1) if name.endswith(".gz") else data)
+    words = [str(folder / name) for name in log.files] + list(log.options)
+    (folder / "command.txt").write_text(f"jointid identify {shlex.join(words)}\n", encoding="utf-8")
+    answer = _identified(words)
+    pasted = re.findall(r"--(?:column|unit|scale) '?[\w.]+=(?:'[^']*'|[^\s,;']*)'?", answer.error)
+    if log.paste and pasted:
+        followed = _identified([*words, *shlex.split(" ".join(pasted))])
+        return followed if followed.document else answer
+    return answer
+
+
+def _identified(words: Sequence[str]) -> Answer:
+    out, said = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
+        try:
+            jointid_main(["identify", *words, "--json", "--quiet"])
+        except SystemExit:  # an option that this version does not have
+            said = io.StringIO("the command line does not know these options")
+    text = out.getvalue()
+    error = re.sub(r"/\S+/", "", said.getvalue())  # a folder's name is no cause
+    return Answer(document=json.loads(text) if text else {}, error="" if text else error)
+
+
+# Tables.
+
+
+def table(found: Sequence[Judged]) -> list[str]:
+    """Outcomes by kind."""
+    counts: dict[str, collections.Counter[str]] = {}
+    for each in found:
+        counts.setdefault(each.kind, collections.Counter())[each.outcome] += 1
+    head = f"| kind | logs | {' | '.join(OUTCOMES)} |"
+    lines = [head, f"|---|{'--:|' * (len(OUTCOMES) + 1)}"]
+    total = sum(counts.values(), collections.Counter())
+    for kind, of in [*counts.items(), ("**all**", total)]:
+        lines.append(f"| {kind} | {of.total()} | {' | '.join(str(of[o]) for o in OUTCOMES)} |")
+    good = total["right"] + total["cause first"]
+    share = 100.0 * good / max(total.total(), 1)
+    return [*lines, "", f"Right, or the right cause in the first finding: {share:.1f} %."]
+
+
+def faulty(given: argparse.Namespace, folder: Path) -> list[str]:
+    """The table of logs with faults, and the list of those that are wrong and usable."""
+    kinds = [kind for kind in KINDS if given.kind in kind]
+    numbers = [given.number] if given.number >= 0 else range(given.logs)
+    found = []
+    for number, kind, log in written(drawn(given.seed, numbers, kinds)):
+        each = judged(number, kind, log, answered(log, folder / f"{number:03d}_{kind}"))
+        found.append(each)
+        if given.list:
+            print(each.text, flush=True)
+    misled = [each for each in found if each.outcome == "wrong and usable"]
+    listed = [f"- seed {given.seed}, {each.text}" for each in misled]
+    return [*table(found), "", "## Wrong and usable", "", *(listed or ["None."])]
+
+
+def cleanly(given: argparse.Namespace, folder: Path) -> list[str]:
+    """The table of logs without a fault."""
+    rngs = (np.random.default_rng([given.seed, number]) for number in range(given.clean))
+    plans = [clean(Draw(rng), number) for number, rng in enumerate(rngs)]
+    rows: dict[str, list[tuple[Log, Answer]]] = {}
+    looks: collections.Counter[bool | None] = collections.Counter()
+    contradicted = []
+    for number, name, log in written((k, p.name, p.plan) for k, p in enumerate(plans)):
+        place = folder / f"clean_{number:04d}"
+        answer = answered(log, place)
+        rows.setdefault(name, []).append((log, answer))
+        if answer.error:
+            contradicted.append(f"- number {number}, {name}: {answer.error.strip()}")
+            continue
+        look = getattr(jid.Estimate.from_json(json.dumps(answer.document)), "cross_check", None)
+        disagrees = getattr(look, "disagrees", None)
+        looks[disagrees] += 1
+        wrong = answer.wrong(log.truth)
+        if disagrees:
+            contradicted.append(f"- number {number}, {name}: {answer.first[:300]}")
+        if wrong and answer.usable():
+            contradicted.append(f"- number {number}, {name}: wrong and usable: {wrong}")
+        if given.list:
+            print(number, name, answer.document["verdict"]["level"], wrong, answer.first[:200])
+    lines = [
+        "| log | logs | not usable | wrong | coverage | warnings |",
+        "|---|--:|--:|--:|--:|---|",
+    ]
+    for name, of in sorted(rows.items()):
+        lines.append(_clean_row(name, of))
+    counts = f"{looks[True]} of {looks.total()}, none in {looks[None]}"
+    return [*lines, "", f"Disagreements of the second look: {counts}.", "", *contradicted]
+
+
+def _clean_row(name: str, of: Sequence[tuple[Log, Answer]]) -> str:
+    codes = collections.Counter(
+        each["code"] for _, a in of for each in {f["code"]: f for f in a.serious()}.values()
+    )
+    inside = []
+    for log, answer in of:
+        for parameter, p in answer.document.get("parameters", {}).items():
+            if parameter in log.truth and parameter != "sensor_offset" and p["interval"]:
+                low, high = (float(end) for end in p["interval"])
+                inside.append(low <= log.truth[parameter] <= high)
+    said = ", ".join(f"`{code}` {count}" for code, count in codes.most_common()) or "none"
+    unusable = sum(not answer.usable() for _, answer in of)
+    wrong = sum(bool(answer.wrong(log.truth)) for log, answer in of)
+    share = f"{100.0 * np.mean(inside):.1f} %" if inside else ""
+    return f"| {name} | {len(of)} | {unusable} | {wrong} | {share} | {said} |"
+
+
+def main() -> None:
+    """Draw the logs, identify them, and write the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--logs", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--number", type=int, default=-1, help="only this log")
+    parser.add_argument("--kind", default="", help="kinds whose name contains this")
+    parser.add_argument("--clean", type=int, default=0, help="so many logs without a fault instead")
+    parser.add_argument("--keep", type=Path, help="a folder for the files and their commands")
+    parser.add_argument("--list", action="store_true", help="print each log as it is judged")
+    parser.add_argument("--output", type=Path, help="a file to write instead of printing")
+    given = parser.parse_args()
+    began = time.perf_counter()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = given.keep or Path(temporary)
+        lines = cleanly(given, folder) if given.clean else faulty(given, folder)
+    text = "\n".join([_TEXT.format(seed=given.seed), *lines, ""])
+    if given.output is None:
+        print(text)
+    else:
+        given.output.write_text(text, encoding="utf-8")
+    print(f"{time.perf_counter() - began:.0f} s")
+
+
+_TEXT = """# Logs with one fault
+
+Written by `benchmarks/faulty_logs.py`; do not edit. Joints of `tests/plants`, which shares no code with the package,
+on random motions, written as text files with one random fault each, seed {seed}. `jointid identify` reads them with
+the options that their user would know: gear ratio, torque constant, a known inertia.
+
+*Right*: usable or usable with care, and every value is within 5 % or inside its 95 % interval. *Cause first*: an
+error, or "not usable", whose first finding names the fault. *Other cause*: not usable, for another reason.
+*Wrong and usable*: a value is off by more, and a verdict that needs it calls it usable.
+"""
+
+if __name__ == "__main__":
+    main()
