@@ -30,8 +30,13 @@ def clean(draw: Draw, number: int) -> Clean:
     """One of the 24 kinds of clean logs: four models, with and without a sensor, three rates."""
     model, sensor = MODELS[number % 4], bool(number // 4 % 2)
     every = CLEAN_RATES[number // 8 % 3]
-    motions = [draw.motion(draw.scale(0.3, 1.5))]
-    drawn = draw.joint(motions, every, gravity=sensor or None, stribeck=model == "stribeck")
+    motions = [draw.motion(draw.scale(0.5, 1.5))]
+    drawn = draw.joint(
+        *(motions, every),
+        gravity=sensor or None,
+        stribeck=model == "stribeck",
+        held=draw.chance(0.5),
+    )
     plant = dict(drawn.plant)
     lean = 0.0
     if model == "coulomb":
@@ -39,6 +44,7 @@ def clean(draw: Draw, number: int) -> Clean:
     if model == "asymmetric":
         lean = draw.between(0.05, 0.3) * draw.one((-1.0, 1.0))
         plant["asymmetry"], plant["viscous_asymmetry"] = lean, draw.between(-0.3, 0.3)
+        plant["constant"] = 0.0  # nothing tells it from the lean
     if sensor:
         plant["link_inertia"] = plant["inertia"] * draw.between(0.1, 0.5)
         plant["constant"] = 0.0
@@ -53,9 +59,8 @@ def clean(draw: Draw, number: int) -> Clean:
         if model == "asymmetric":
             for name in ("coulomb", "viscous"):
                 share = plant["asymmetry"] if name == "coulomb" else plant["viscous_asymmetry"]
-                truth[f"{name}_plus"] = truth[name] * (1.0 + share)
-                truth[f"{name}_minus"] = truth[name] * (1.0 - share)
-                del truth[name]
+                truth[f"{name}_positive"] = truth[name] * (1.0 + share)
+                truth[f"{name}_negative"] = truth[name] * (1.0 - share)
         options = ["--model", words if sensor or not plant["gravity"] else f"{words}:gravity=free"]
         form = SI
         if sensor:

@@ -96,7 +96,7 @@ def outcome(condition: Condition, recording: jid.Recording) -> Outcome:
         inside=inside,
         named=frozenset(named),
         codes=frozenset(codes),
-        false=frozenset(codes - _UNCERTAIN if _uncertain(estimate, truth) else codes),
+        false=frozenset(codes - UNCERTAIN if uncertain(estimate, truth) else codes),
     )
 
 
@@ -106,12 +106,12 @@ def _undivided(recording: jid.Recording) -> float:
     return float(plant["asymmetry"] * plant["coulomb"])
 
 
-_UNCERTAIN = {"undetermined", "at_bound", "model_too_rich", "noisy_velocity"}
+UNCERTAIN = {"undetermined", "at_bound", "model_too_rich", "noisy_velocity"}
 _WIDE = 0.04  # what `undetermined` says: half of a 95 % interval
 _WIDE_GAIN = 0.01
 
 
-def _uncertain(estimate: jid.Estimate, truth: Mapping[str, float]) -> bool:
+def uncertain(estimate: jid.Estimate, truth: Mapping[str, float]) -> bool:
     """Whether a 95 % interval is wider than ±4 % (a gain's: ±1 %), so that a finding that says so is not false."""
     gravity = float(np.hypot(truth.get("gravity_cos", 0.0), truth.get("gravity_sin", 0.0)))
     for name, parameter in estimate.parameters.items():

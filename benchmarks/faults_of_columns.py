@@ -13,7 +13,7 @@ def behind_friction(draw: Draw) -> Plan:
     """The torque of a sensor behind the friction; its header says so, or does not."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
-        header = draw.one(("tau_J", "joint_torque_Nm", "torque_sensor_Nm", "torque_Nm"))
+        header = draw.variant(("tau_J", "joint_torque_Nm", "torque_sensor_Nm", "torque_Nm"))
         table["torque"] = table["link"]
         form = layout("time_s", "position_rad", "velocity_rad_s", header)
         causes = r"behind|link side|at the link|holds no friction|torque sensor|joint's side|--column sensor"
@@ -27,7 +27,7 @@ def reversed_torque(draw: Draw) -> Plan:
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         table["torque"] *= -1.0
-        return log_of(draw, [table], drawn, causes=r"sign|against|opposite|revers")
+        return log_of(draw, [table], drawn, causes=r"\bsigns?\b|against|opposite|revers")
 
     return one_run(draw, change)
 
@@ -36,7 +36,7 @@ def geared_torque(draw: Draw) -> Plan:
     """The motor's torque, with the gear ratio known: its header says so, or the known inertia contradicts it."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
-        ratio, said = draw.scale(5.0, 150.0), draw.chance(0.5)
+        ratio, said = draw.scale(5.0, 150.0), draw.variant((True, False))
         table["torque"] /= ratio
         header = draw.one(("motor_torque_Nm", "motor torque [Nm]")) if said else "torque_Nm"
         options = ["--gear-ratio", f"{ratio:.6g}"]
@@ -47,7 +47,7 @@ def geared_torque(draw: Draw) -> Plan:
             *(draw, [table], drawn),
             form=form,
             options=tuple(options),
-            causes=r"scale|gear|motor|implausible|inertia",
+            causes=r"scale|gear|motor|implausible|known inertia",
             what=f"gear {ratio:.0f}, {header}",
         )
 
@@ -58,7 +58,7 @@ def current(draw: Draw) -> Plan:
     """A current in amperes, as its header says, with and without the torque constant."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
-        constant, known = draw.scale(0.02, 0.5), draw.chance(0.5)
+        constant, known = draw.scale(0.02, 0.5), draw.variant((True, False))
         ratio = draw.scale(5.0, 120.0) if draw.chance(0.6) else 1.0
         table["torque"] /= constant * ratio
         header = draw.one(("current_A", "motor_current [A]", "i_q [A]", "actual_current_A"))
@@ -79,9 +79,10 @@ def current(draw: Draw) -> Plan:
 
 def saturated(draw: Draw) -> Plan:
     """The torque rests on a limit: the drive's, or that of the recorder alone."""
-    applied = draw.chance(0.5)
-    every, share = draw.one(RATES), draw.between(0.5, 0.75)
-    motion = draw.motion(draw.scale(0.3, 1.5))
+    applied = draw.variant((True, False))
+    every = draw.one(RATES)
+    share = draw.between(0.3, 0.7) if applied else draw.between(0.6, 0.85)
+    motion = draw.motion(draw.scale(0.5, 1.5))
     drawn = draw.joint([motion], every, limit=share if applied else 1e6)
 
     def write(runs: list[Table]) -> Log:
@@ -91,7 +92,7 @@ def saturated(draw: Draw) -> Plan:
         table["torque"] = np.clip(torque, -most, most)
         at = float(np.mean(np.abs(table["torque"]) >= most))
         what = f"{'applied' if applied else 'recorded'} limit in {100 * at:.0f} % of the rows"
-        return log_of(draw, [table], drawn, causes=r"saturat|limit|clip", what=what)
+        return log_of(draw, [table], drawn, causes=r"saturat|limit of|clip", what=what)
 
     return Plan(drawn=drawn, write=write)
 
@@ -115,9 +116,10 @@ def product_names(draw: Draw) -> Plan:
     """Names of a product with documented units that are not SI, and no unit in the header."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
-        product = draw.one(("ODrive", "ODrive", "CiA 402", "Feetech", "Dynamixel"))
+        product = draw.variant(("ODrive", "CiA 402", "Feetech", "ODrive", "Dynamixel"))
         constant = draw.scale(0.02, 0.5)
-        counts, options = 4096 / TURN, ("--torque-constant", f"{constant:.6g}")
+        counts = 4096 / TURN
+        options: tuple[str, ...] = ("--torque-constant", f"{constant:.6g}")
         if product == "ODrive":
             names = ("time", "pos_estimate", "vel_estimate", "Iq_measured")
             factors = (1.0, 1.0 / TURN, 1.0 / TURN, 1.0 / constant)
@@ -147,9 +149,8 @@ def product_names(draw: Draw) -> Plan:
             for name in signals[1:]:
                 table[name] = np.round(table[name] * form.factors[name]) / form.factors[name]
         causes = r"units?\b|turn|count|increment|per mille|rated|ODrive|CiA|Feetech|Dynamixel|servo"
-        return log_of(
-            *(draw, [table], drawn), form=form, options=options, causes=causes, what=product
-        )
+        more = {"options": options, "causes": causes, "what": product, "paste": True}
+        return log_of(draw, [table], drawn, form=form, **more)
 
     return one_run(draw, change)
 
@@ -158,7 +159,7 @@ def no_units(draw: Draw) -> Plan:
     """Degrees and rpm under headers that name no unit."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
-        position, velocity = draw.one(
+        position, velocity = draw.variant(
             (("deg", "deg/s"), ("deg", "rpm"), ("rad", "rpm"), ("deg", ""))
         )
         factors = {"rad": 1.0, "deg": 360.0 / TURN, "deg/s": 360.0 / TURN, "rpm": 60.0 / TURN}
@@ -180,7 +181,7 @@ def bare_numbers(draw: Draw) -> Plan:
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         size = table["time"].size
-        arm = draw.chance(0.5)
+        arm = draw.variant((True, False))
         columns = dict(table) if not arm else {"time": table["time"]}
         if arm:
             rests = draw.rng.uniform(-2.0, 2.0, 2)
@@ -230,7 +231,7 @@ def one_of_several(draw: Draw) -> Plan:
     def write(runs: list[Table]) -> Log:
         tables = [draw.sampled(run, drawn) for run in runs]
         bad = draw.whole(0, count - 1)
-        fault = draw.one(("spike", "reversed", "standing", "constant", "degrees"))
+        fault = draw.variant(("spike", "reversed", "standing", "constant", "degrees"))
         table = tables[bad]
         size = table["time"].size
         if fault == "spike":
@@ -241,10 +242,10 @@ def one_of_several(draw: Draw) -> Plan:
             causes = "spike"
         elif fault == "reversed":
             table["torque"] *= -1.0
-            causes = r"sign|against|opposite|revers"
+            causes = r"\bsigns?\b|against|opposite|revers"
         elif fault == "standing":
             table["position"][:], table["velocity"][:] = table["position"][0], 0.0
-            causes = r"stand|still|move"
+            causes = r"stands? still|never moves?|does not move"
         elif fault == "constant":
             table["torque"][:] = table["torque"][size // 2]
             causes = r"never change|constant|frozen|freez"

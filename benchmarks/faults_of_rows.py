@@ -7,23 +7,22 @@ from dataclasses import replace
 import numpy as np
 from foreign_joints import RATES, TURN, Array, Draw, Drawn, Table
 from log_plans import Log, Plan, log_of, one_run
-from plants import Motion, trapezoids
+from plants import Motion, sines, trapezoids
 
 
 def held_rows(draw: Draw) -> Plan:
     """Rows faster than the bus: 2 to 10 rows a sample of 5 to 20 ms."""
     row = draw.one((1, 2, 4, 5))
     rows = draw.whole(max(2, -(-5 // row)), min(10, 20 // row))
-    fresh, velocity = draw.chance(0.5), draw.chance(0.6)
-    several = draw.chance(0.5)
+    fresh, velocity, several = (bool(draw.turn & bit) for bit in (1, 2, 4))
     amplitude = draw.scale(0.5, 5.0)
     motions = [draw.motion(amplitude)]
     if several:
         motions += [
-            trapezoids([amplitude * f], amplitude * f * draw.between(0.25, 0.5), 10.0 * amplitude)
+            trapezoids([amplitude * f], amplitude * f * draw.between(0.25, 0.5), 4.0 * amplitude)
             for f in (1.0, draw.between(1.0, 2.0))
         ]
-    drawn = draw.joint(motions, row if fresh else row * rows)
+    drawn = draw.joint(motions, row * rows)
 
     def write(runs: list[Table]) -> Log:
         tables = []
@@ -60,7 +59,7 @@ def rounded_stamps(draw: Draw) -> Plan:
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         period = 1e-3 * drawn.every
-        step = period * draw.one((2.0, 2.5, 4.0, 5.0))
+        step = period * draw.variant((2.0, 2.5, 4.0, 5.0))
         rounded = np.floor if draw.chance(0.5) else np.round
         stamps = rounded(table["time"] / step + 1e-9) * step
         what = f"rows of {drawn.every} ms, stamps in steps of {1e3 * step:g} ms"
@@ -74,7 +73,7 @@ def torn_tail(draw: Draw) -> Plan:
     """The end of a buffer: the last row again and again, or zeros in all columns."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
-        count, zeros = draw.whole(20, 400), draw.chance(0.5)
+        count, zeros = draw.whole(20, 400), draw.variant((True, False))
         ends = {n: np.full(count, 0.0 if zeros else v[-1]) for n, v in table.items()}
         torn = {name: np.concatenate([values, ends[name]]) for name, values in table.items()}
         what = f"{count} {'zeros' if zeros else 'repeats'} at the end"
@@ -101,7 +100,7 @@ def no_time(draw: Draw) -> Plan:
     """No column of time; half of the users give the rate."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
-        given = draw.chance(0.5)
+        given = draw.variant((True, False))
         options = ("--rate", f"{1000 / drawn.every:g}") if given else ()
         del table["time"]
         what = f"{1000 / drawn.every:g} Hz, {'given' if given else 'not given'}"
@@ -114,7 +113,7 @@ def no_time(draw: Draw) -> Plan:
 
 def wrapped(draw: Draw) -> Plan:
     """An angle modulo a turn, in all runs or in some."""
-    every, count = draw.one(RATES), draw.one((1, 1, 3, 5))
+    every, count = draw.one(RATES), draw.variant((1, 1, 3, 5))
     velocity, half = draw.chance(0.5), draw.chance(0.5)
     edge = np.pi if half else 0.0
     motions = []
@@ -156,10 +155,10 @@ def many_turns(draw: Draw) -> Plan:
 def late_signal(draw: Draw) -> Plan:
     """Torque, velocity or position late by 2 to 10 ms."""
     every = draw.one((1, 2, 4, 5))
-    drawn = draw.joint([draw.motion(draw.scale(0.3, 1.5))], every)
+    drawn = draw.joint([draw.motion(draw.scale(0.5, 1.5))], every)
 
     def write(runs: list[Table]) -> Log:
-        name, late = draw.one(("torque", "velocity", "position")), draw.between(2e-3, 10e-3)
+        name, late = draw.variant(("torque", "velocity", "position")), draw.between(2e-3, 10e-3)
         run = runs[0]
         if name == "torque":  # a held command is late by whole milliseconds
             late = round(late, 3)
@@ -169,15 +168,17 @@ def late_signal(draw: Draw) -> Plan:
             moved = np.interp(run["time"] - late, run["time"], run[name])
         table = draw.sampled(run | {name: moved}, drawn)
         what = f"{name} late by {1e3 * late:.1f} ms"
-        return log_of(draw, [table], drawn, causes=r"late|delay|lag|early", what=what)
+        return log_of(draw, [table], drawn, causes=r"\blate\b|delay|lag\b|\bearly\b", what=what)
 
     return Plan(drawn=drawn, write=write)
 
 
 def short_run(draw: Draw) -> Plan:
     """80 to 160 rows: the largest torque stands there once, which is no limit."""
-    every = draw.one((10, 20))
-    drawn = draw.joint([draw.motion(draw.scale(0.3, 1.5), "sines")], every, stribeck=False)
+    every, amplitude = draw.one((10, 20)), draw.scale(0.5, 1.0)
+    rates = TURN / (0.09 * every) * np.array([[1.0, 2.3]]) * draw.rng.uniform(0.8, 1.1, (1, 2))
+    motion = sines([[amplitude, 0.3 * amplitude]], rates, draw.rng.uniform(0.0, TURN, (1, 2)))
+    drawn = draw.joint([motion], every, stribeck=False, gravity=False, held=True)
 
     def write(runs: list[Table]) -> Log:
         rows = draw.whole(80, 160)
@@ -185,9 +186,7 @@ def short_run(draw: Draw) -> Plan:
         cut = slice(begin, begin + rows)
         table = {name: values[cut] for name, values in draw.sampled(runs[0], drawn).items()}
         table["time"] = table["time"] - table["time"][0]
-        return log_of(
-            draw, [table], drawn, causes=r"(?!)", never=r"saturat|limit", what=f"{rows} rows"
-        )
+        return log_of(draw, [table], drawn, causes=r"(?!)", never="saturat", what=f"{rows} rows")
 
     return Plan(drawn=drawn, write=write)
 
@@ -209,9 +208,9 @@ def _onward(draw: Draw) -> Motion:
 
 def no_split(draw: Draw) -> Plan:
     """One direction only, or one speed there and back: Coulomb friction and another value cannot be told apart."""
-    every, onward = draw.one(RATES), draw.chance(0.6)
+    every, onward = draw.one(RATES), draw.variant((True, False))
     size = draw.scale(0.5, 3.0)
-    motion = _onward(draw) if onward else trapezoids([size], [size * 0.8], [size * 40.0], 0.0)
+    motion = _onward(draw) if onward else trapezoids([size], [size * 0.8], [size * 6.0], 0.0)
     if onward:
         drawn = draw.joint([motion], every, gravity=False, stribeck=False)
     else:
@@ -226,21 +225,30 @@ def no_split(draw: Draw) -> Plan:
     return Plan(drawn=drawn, write=write)
 
 
+_STANDS = r"stands still|standing|never moves?|does not move|hardly_moves"
+
+
 def standing(draw: Draw) -> Plan:
     """The joint stands still: constant, or one step of the encoder to and fro."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         time = table["time"]
         step = TURN / draw.one((4096, 65536, 1_000_000))
-        dithers = draw.chance(0.5)
-        toggles = draw.rng.integers(0, 2, time.size) if dithers else np.zeros(time.size)
-        table["position"] = step * (draw.whole(-1000, 1000) + toggles)
+        dithers = draw.variant((True, False))
+        toggles = draw.rng.integers(0, 2, time.size) * int(dithers)
+        table["position"] = np.asarray(step * (draw.whole(-1000, 1000) + toggles), dtype=float)
         table["velocity"] = np.zeros(time.size)
         pushes = 0.5 * drawn.plant["coulomb"] * np.sin(draw.between(0.5, 5.0) * time)
         table["torque"] = pushes + draw.rng.normal(0.0, drawn.noise, time.size)
         if draw.chance(0.5):
             del table["velocity"]
         what = "dithers" if dithers else "constant"
-        return log_of(draw, [table], drawn, causes=r"stand|still|move|motion|constant", what=what)
+        return log_of(
+            draw,
+            [table],
+            drawn,
+            causes=r"stands still|standing|never moves?|does not move|hardly_moves",
+            what=what,
+        )
 
     return one_run(draw, change)

@@ -20,10 +20,11 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from clean_logs import clean
+from conditions_study import UNCERTAIN, uncertain
 from faults_of_columns import (
     bare_numbers,
     behind_friction,
@@ -69,8 +70,11 @@ KINDS = {
 OFF = 0.05  # a relative error above this one is wrong if the 95 % interval does not excuse it
 _TOGETHER = 50  # logs of one simulation
 _NEAR_ZERO = ("torque_offset", "sensor_offset", "gravity_cos", "gravity_sin")
-Outcome = Literal["right", "cause first", "other cause", "wrong and usable"]
-OUTCOMES: tuple[Outcome, ...] = ("right", "cause first", "other cause", "wrong and usable")
+_PASTES = 3  # so often advice is followed
+_ADVICE = re.compile(r"--(?:column|unit|scale) '?[\w.]+=(?:'[^']*'|[^\s,;']*)'?")
+_GENERAL = "units, signs and gear ratio"  # advice of many findings, which names no cause
+Outcome = Literal["right", "cause first", "cause later", "other cause", "wrong and usable"]
+OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,14 +92,17 @@ class Answer:
     error: str = ""
 
     @property
-    def first(self) -> str:
-        """The first finding, the most severe first, or the error."""
+    def sentences(self) -> list[str]:
+        """The error, or the findings, the most severe first; without findings the verdict's reasons."""
         if self.error:
-            return self.error
-        serious = self.serious()
-        if serious:
-            return f"{serious[0]['code']}: {serious[0]['message']}"
-        return "; ".join(self.document["verdict"]["reasons"][:1])
+            return [self.error]
+        found = [f"{each['code']}: {each['message']}" for each in self.serious()]
+        return found or list(self.document["verdict"]["reasons"])
+
+    @property
+    def first(self) -> str:
+        """What is said first."""
+        return next(iter(self.sentences), "")
 
     def serious(self) -> list[Mapping[str, Any]]:
         """Findings of severity blocking, then warning."""
@@ -113,19 +120,19 @@ class Answer:
     def wrong(self, truth: Mapping[str, float]) -> dict[str, tuple[float, float]]:
         """Value and truth of the parameters that are more than 5 % off and outside their intervals."""
         found = {}
-        for name, p in self.document.get("parameters", {}).items():
-            if name not in truth or not p["vary"]:
-                continue
+        parameters = self.document.get("parameters", {})
+        hidden = truth.get("gravity_sin", 0.0) and "gravity_sin" not in parameters
+        for name, p in parameters.items():
+            if name not in truth or not p["vary"] or (hidden and name == "torque_offset"):
+                continue  # an offset holds the weight that a model lacks
             value, true = float(p["value"]), truth[name]
-            scale = max(abs(true), _coulomb(truth)) if name in _NEAR_ZERO or not true else abs(true)
+            scale = (
+                max(abs(true), truth["coulomb"]) if name in _NEAR_ZERO or not true else abs(true)
+            )
             low, high = (float(end) for end in p["interval"] or (value, value))
             if abs(value - true) > OFF * scale and not low <= true <= high:
                 found[name] = value, true
         return found
-
-
-def _coulomb(truth: Mapping[str, float]) -> float:
-    return abs(truth.get("coulomb", truth.get("coulomb_plus", 0.0)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,30 +166,32 @@ def judged(number: int, kind: str, log: Log, answer: Answer) -> Judged:
     """
     wrong = answer.wrong(log.truth)
     friction = [n for n in wrong if n.split("_")[0] in ("coulomb", "viscous", "static", "sensor")]
-    misled = (answer.usable() or answer.usable("simulation")) and wrong
-    misled = misled or (answer.usable("compensation") and friction)
-    named = bool(re.search(log.causes, answer.first, re.IGNORECASE))
-    false = log.never and any(
-        re.search(log.never, f"{each['code']}: {each['message']}") for each in answer.serious()
-    )
-    outcome: Outcome
+    misled = bool(wrong) and (answer.usable() or answer.usable("simulation"))
+    misled = misled or (bool(friction) and answer.usable("compensation"))
+    names = [
+        bool(re.search(log.causes, said.replace(_GENERAL, ""), re.IGNORECASE))
+        for said in answer.sentences
+    ]
+    false = log.never and any(re.search(log.never, said) for said in answer.sentences)
+    outcome: Outcome = "other cause"
     if misled:
         outcome = "wrong and usable"
-    elif answer.usable() and not false:
-        outcome = "right"
-    else:
-        outcome = "cause first" if named and not false else "other cause"
+    elif not false:
+        if answer.usable():
+            outcome = "right"
+        elif any(names):
+            outcome = "cause first" if names[0] else "cause later"
     return Judged(number=number, kind=kind, log=log, answer=answer, outcome=outcome)
 
 
-def drawn(
-    seed: int, numbers: Iterable[int], kinds: Sequence[str]
-) -> Iterator[tuple[int, str, Plan]]:
-    """The plans of these numbers; kinds take turns, and a log depends on its seed, number and kind alone."""
+def drawn(seed: int, numbers: Iterable[int], kind: str = "") -> Iterator[tuple[int, str, Plan]]:
+    """The plans of these numbers, of kinds with this in their name; a log depends on its seed and number alone."""
     for number in numbers:
-        kind = kinds[number % len(kinds)]
-        draw = Draw(np.random.default_rng([seed, number, list(KINDS).index(kind)]))
-        yield number, kind, KINDS[kind](draw)
+        turn, place = divmod(number, len(KINDS))
+        name = list(KINDS)[place]
+        if kind in name:
+            draw = Draw(np.random.default_rng([seed, number]), turn)
+            yield number, name, KINDS[name](draw)
 
 
 def written(
@@ -198,19 +207,21 @@ def written(
 
 
 def answered(log: Log, folder: Path) -> Answer:
-    """What `jointid identify` says of a log's files, and of its pasted advice where the kind is about that."""
+    """What `jointid identify` says to a log's files, and to its pasted advice where the kind is about that."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in log.files.items():
         data = text.encode()
         (folder / name).write_bytes(gzip.compress(data, 1) if name.endswith(".gz") else data)
     words = [str(folder / name) for name in log.files] + list(log.options)
     (folder / "command.txt").write_text(f"jointid identify {shlex.join(words)}\n", encoding="utf-8")
-    answer = _identified(words)
-    pasted = re.findall(r"--(?:column|unit|scale) '?[\w.]+=(?:'[^']*'|[^\s,;']*)'?", answer.error)
-    if log.paste and pasted:
-        followed = _identified([*words, *shlex.split(" ".join(pasted))])
-        return followed if followed.document else answer
-    return answer
+    first = answer = _identified(words)
+    for _ in range(_PASTES if log.paste else 0):
+        advice = _ADVICE.findall(answer.error)
+        if not advice:
+            break
+        words += shlex.split(" ".join(advice))
+        answer = _identified(words)
+    return answer if answer.document else first
 
 
 def _identified(words: Sequence[str]) -> Answer:
@@ -245,10 +256,9 @@ def table(found: Sequence[Judged]) -> list[str]:
 
 def faulty(given: argparse.Namespace, folder: Path) -> list[str]:
     """The table of logs with faults, and the list of those that are wrong and usable."""
-    kinds = [kind for kind in KINDS if given.kind in kind]
     numbers = [given.number] if given.number >= 0 else range(given.logs)
     found = []
-    for number, kind, log in written(drawn(given.seed, numbers, kinds)):
+    for number, kind, log in written(drawn(given.seed, numbers, given.kind)):
         each = judged(number, kind, log, answered(log, folder / f"{number:03d}_{kind}"))
         found.append(each)
         if given.list:
@@ -258,55 +268,72 @@ def faulty(given: argparse.Namespace, folder: Path) -> list[str]:
     return [*table(found), "", "## Wrong and usable", "", *(listed or ["None."])]
 
 
+@dataclass(frozen=True, kw_only=True)
+class CleanRun:
+    """What is counted of a log without a fault."""
+
+    name: str
+    answer: Answer
+    wrong: dict[str, tuple[float, float]]
+    inside: list[bool]
+    false: frozenset[str]
+    disagrees: bool | None
+
+
+def clean_run(name: str, log: Log, answer: Answer) -> CleanRun:
+    """Hold the answer to a clean log against the truth; the interval of `sensor_offset` does not count."""
+    if answer.error:
+        return CleanRun(
+            name=name,
+            answer=answer,
+            wrong={},
+            inside=[],
+            false=frozenset({"error"}),
+            disagrees=None,
+        )
+    estimate = jid.Estimate.from_json(json.dumps(answer.document))
+    inside = [
+        p.interval[0] <= log.truth[key] <= p.interval[1]
+        for key, p in estimate.parameters.items()
+        if key in log.truth and key != "sensor_offset" and p.interval is not None
+    ]
+    codes = {each["code"] for each in answer.serious()}
+    return CleanRun(
+        name=name,
+        answer=answer,
+        wrong=answer.wrong(log.truth) if answer.usable() else {},
+        inside=inside,
+        false=frozenset(codes - UNCERTAIN if uncertain(estimate, log.truth) else codes),
+        disagrees=getattr(getattr(estimate, "cross_check", None), "disagrees", None),
+    )
+
+
 def cleanly(given: argparse.Namespace, folder: Path) -> list[str]:
-    """The table of logs without a fault."""
+    """The table of logs without a fault, and the list of those with something to explain."""
     rngs = (np.random.default_rng([given.seed, number]) for number in range(given.clean))
     plans = [clean(Draw(rng), number) for number, rng in enumerate(rngs)]
-    rows: dict[str, list[tuple[Log, Answer]]] = {}
-    looks: collections.Counter[bool | None] = collections.Counter()
-    contradicted = []
-    for number, name, log in written((k, p.name, p.plan) for k, p in enumerate(plans)):
-        place = folder / f"clean_{number:04d}"
-        answer = answered(log, place)
-        rows.setdefault(name, []).append((log, answer))
-        if answer.error:
-            contradicted.append(f"- number {number}, {name}: {answer.error.strip()}")
-            continue
-        look = getattr(jid.Estimate.from_json(json.dumps(answer.document)), "cross_check", None)
-        disagrees = getattr(look, "disagrees", None)
-        looks[disagrees] += 1
-        wrong = answer.wrong(log.truth)
-        if disagrees:
-            contradicted.append(f"- number {number}, {name}: {answer.first[:300]}")
-        if wrong and answer.usable():
-            contradicted.append(f"- number {number}, {name}: wrong and usable: {wrong}")
-        if given.list:
-            print(number, name, answer.document["verdict"]["level"], wrong, answer.first[:200])
-    lines = [
-        "| log | logs | not usable | wrong | coverage | warnings |",
-        "|---|--:|--:|--:|--:|---|",
-    ]
-    for name, of in sorted(rows.items()):
-        lines.append(_clean_row(name, of))
-    counts = f"{looks[True]} of {looks.total()}, none in {looks[None]}"
-    return [*lines, "", f"Disagreements of the second look: {counts}.", "", *contradicted]
+    runs = []
+    for number, name, log in written((k, plan.name, plan.plan) for k, plan in enumerate(plans)):
+        run = clean_run(name, log, answered(log, folder / f"clean_{number:04d}"))
+        runs.append(run)
+        if given.list and (run.false or run.wrong):
+            print(number, name, *sorted(run.false), run.wrong, run.answer.first[:300], flush=True)
+    lines = ["| log | logs | disagree | no second look | wrong and usable | coverage | false |"]
+    lines += ["|---|--:|--:|--:|--:|--:|---|"]
+    names = sorted({run.name for run in runs})
+    lines += [_clean_row(name, [run for run in runs if run.name == name]) for name in names]
+    return [*lines, _clean_row("**all**", runs)]
 
 
-def _clean_row(name: str, of: Sequence[tuple[Log, Answer]]) -> str:
-    codes = collections.Counter(
-        each["code"] for _, a in of for each in {f["code"]: f for f in a.serious()}.values()
-    )
-    inside = []
-    for log, answer in of:
-        for parameter, p in answer.document.get("parameters", {}).items():
-            if parameter in log.truth and parameter != "sensor_offset" and p["interval"]:
-                low, high = (float(end) for end in p["interval"])
-                inside.append(low <= log.truth[parameter] <= high)
+def _clean_row(name: str, runs: Sequence[CleanRun]) -> str:
+    codes = collections.Counter(code for run in runs for code in run.false)
     said = ", ".join(f"`{code}` {count}" for code, count in codes.most_common()) or "none"
-    unusable = sum(not answer.usable() for _, answer in of)
-    wrong = sum(bool(answer.wrong(log.truth)) for log, answer in of)
+    counts = [run.disagrees is True for run in runs], [run.disagrees is None for run in runs]
+    disagree, none = map(sum, counts)
+    wrong = sum(bool(run.wrong) for run in runs)
+    inside = [each for run in runs for each in run.inside]
     share = f"{100.0 * np.mean(inside):.1f} %" if inside else ""
-    return f"| {name} | {len(of)} | {unusable} | {wrong} | {share} | {said} |"
+    return f"| {name} | {len(runs)} | {disagree} | {none} | {wrong} | {share} | {said} |"
 
 
 def main() -> None:
@@ -340,7 +367,8 @@ on random motions, written as text files with one random fault each, seed {seed}
 the options that their user would know: gear ratio, torque constant, a known inertia.
 
 *Right*: usable or usable with care, and every value is within 5 % or inside its 95 % interval. *Cause first*: an
-error, or "not usable", whose first finding names the fault. *Other cause*: not usable, for another reason.
+error, or "not usable", whose first finding names the fault. *Cause later*: a later finding does. *Other cause*: none
+does, or right values stand beside a finding that is false.
 *Wrong and usable*: a value is off by more, and a verdict that needs it calls it usable.
 """
 

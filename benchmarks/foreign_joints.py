@@ -36,7 +36,9 @@ class Drawn:
     motions : sequence of Motion
         One run each.
     every : int
-        Milliseconds between commands.
+        Milliseconds between samples.
+    held : bool
+        Whether the torque is a command that is held between samples, not a measured one.
     plant : dict
         Fields of `Plant`.
     noise : float
@@ -47,6 +49,7 @@ class Drawn:
 
     motions: Sequence[Motion]
     every: int
+    held: bool
     plant: Mapping[str, float]
     noise: float
     limit: float = 1e6
@@ -55,10 +58,11 @@ class Drawn:
     def bench(self) -> Bench:
         """What is simulated: without noise, each millisecond."""
         p = self.plant
+        command = self.every if self.held else 1
         law = Law(
-            every=self.every,
+            every=command,
             inertia=p["inertia"] + p["link_inertia"],
-            stiffness=min(30.0, 300.0 / self.every),
+            stiffness=min(30.0, 300.0 / command),
             on_reference=1.0,
             coulomb=0.9 * p["coulomb"],
             static=0.0,
@@ -109,9 +113,17 @@ def _table(run: jid.Recording) -> Table:
 
 @dataclass(frozen=True)
 class Draw:
-    """Random values of one log."""
+    """Random values of one log.
+
+    Attributes
+    ----------
+    rng : Generator
+    turn : int
+        How often the log's kind came before: what is to be seen in each variant takes turns.
+    """
 
     rng: np.random.Generator
+    turn: int = 0
 
     def between(self, low: float, high: float) -> float:
         """Evenly."""
@@ -129,13 +141,17 @@ class Draw:
         """One of these."""
         return values[int(self.rng.integers(len(values)))]
 
+    def variant(self, values: Sequence[T]) -> T:
+        """One of these, in turn."""
+        return values[self.turn % len(values)]
+
     def chance(self, share: float) -> bool:
         """Whether a thing of this probability happens."""
         return bool(self.rng.random() < share)
 
-    def motion(self, amplitude: float, name: str = "") -> Motion:
-        """One run about this far [rad], of three sines, the thesis, a chirp, or there and back at one speed."""
-        name = name or self.one(("sines", "sines", "thesis", "chirp", "trapezoids"))
+    def motion(self, amplitude: float) -> Motion:
+        """One run about this far [rad]: three sines, the thesis, a chirp, or trapezoids."""
+        name = self.one(("sines", "sines", "thesis", "chirp", "trapezoids"))
         if name == "sines":
             sizes = amplitude * np.array([0.6, 0.3, 0.1]) * self.rng.uniform(0.8, 1.2, 3)
             rates = np.array([1.1, 2.7, 5.3]) * self.rng.uniform(0.8, 1.2, 3)
@@ -156,6 +172,7 @@ class Draw:
         gravity: bool | None = None,
         stribeck: bool | None = None,
         offset: bool | None = None,
+        held: bool = False,
         limit: float = 1e6,
     ) -> Drawn:
         """A joint of any size with friction, inertia and weight in proportion to its motions.
@@ -164,11 +181,13 @@ class Draw:
         ----------
         motions : sequence of Motion
         every : int
-            Milliseconds between commands.
+            Milliseconds between samples.
         gravity, stribeck, offset : bool, optional
-            Whether it has them. Default: by chance (1/2, 1/3, 1/3).
+            Whether it has them. Default: by chance (1/2, 1/6 where 5 ms or less show it, 1/3).
+        held : bool
+            Whether the torque is a command that is held between samples.
         limit : float
-            Of the torque, as a share of the largest that the motions need. Default: none.
+            Of the torque beyond Coulomb friction and weight, as a share of what the motions need. Default: none.
         """
         times = np.arange(0.0, DURATION, 0.01)
         moves = [motion.at(times) for motion in motions]
@@ -178,7 +197,7 @@ class Draw:
         inertia = coulomb * self.between(0.4, 2.0) / rise
         weight = coulomb * self.between(0.5, 3.0)
         static = coulomb * self.between(0.3, 0.8)
-        decay = speed * self.between(0.05, 0.15)
+        decay = speed * self.between(0.1, 0.25)
         constant = coulomb * self.between(-0.3, 0.3)
         share = self.between(0.05, 0.2)
         plant = {
@@ -186,15 +205,20 @@ class Draw:
             "link_inertia": inertia * share,
             "coulomb": coulomb,
             "viscous": coulomb * self.between(0.2, 1.0) / speed,
-            "static": static if self._has(stribeck, 1 / 3) else 0.0,
+            "static": static if self._has(stribeck, 1 / 6 if every <= 5 else 0.0) else 0.0,
             "stribeck": decay**-2,
             "gravity": weight if self._has(gravity, 1 / 2) else 0.0,
             "constant": constant if self._has(offset, 1 / 3) else 0.0,
         }
-        most = coulomb + plant["viscous"] * speed + inertia * rise + plant["gravity"]
+        most = coulomb + plant["gravity"] + limit * (plant["viscous"] * speed + inertia * rise)
         noise = coulomb * self.between(0.005, 0.02)
         return Drawn(
-            motions=motions, every=every, plant=plant, noise=noise, limit=min(1e6, limit * most)
+            motions=motions,
+            every=every,
+            held=held,
+            plant=plant,
+            noise=noise,
+            limit=most,
         )
 
     def _has(self, given: bool | None, share: float) -> bool:
@@ -213,7 +237,7 @@ class Draw:
         run : Table
         joint : Drawn
         every : int
-            Milliseconds between samples. Default: as between commands.
+            Milliseconds between samples. Default: the joint's.
         velocity : bool
             Whether it is recorded.
         fine : float
@@ -226,7 +250,7 @@ class Draw:
         step = travel / (self.scale(2e4, 2e5) * fine)
         table["position"] = step * np.round(table["position"] / step)
         fast = float(np.abs(run["velocity"]).max())
-        table["velocity"] += self.rng.normal(0.0, 0.002 * fast, size)
+        table["velocity"] += self.rng.normal(0.0, 0.0005 * fast, size)
         for name in ("torque", "link"):
             table[name] += self.rng.normal(0.0, joint.noise, size)
         if not velocity:

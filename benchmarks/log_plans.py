@@ -52,8 +52,8 @@ def one_run(
     draw: Draw, change: Callable[[Draw, Table, Drawn], Log], *, rates: Sequence[int] = RATES
 ) -> Plan:
     """A single ordinary run; `change` makes the log of the sampled table."""
-    every = draw.one(rates)
-    drawn = draw.joint([draw.motion(draw.scale(0.3, 1.5))], every)
+    every, held = draw.one(rates), draw.chance(0.3)
+    drawn = draw.joint([draw.motion(draw.scale(0.5, 1.5))], every, held=held)
 
     def write(runs: list[Table]) -> Log:
         return change(draw, draw.sampled(runs[0], drawn), drawn)
@@ -62,10 +62,12 @@ def one_run(
 
 
 def log_of(draw: Draw, tables: Sequence[Table], drawn: Drawn, **more: object) -> Log:
-    """The log of tables: any usual layout, one of three compressed."""
+    """The log of tables: any usual layout, one of three compressed; a user knows that a command is held."""
     form = more.pop("form", None)
     form = form if isinstance(form, Layout) else draw.one(LAYOUTS)
     ending = ".csv.gz" if draw.chance(1 / 3) else ".csv"
     names = [f"run_{k}" for k in range(len(tables))] if len(tables) > 1 else ["log"]
     files = {f"{name}{ending}": form.text(t) for name, t in zip(names, tables, strict=True)}
+    if drawn.held:
+        more["options"] = (*more.get("options", ()), "--torque-hold", "zoh")  # type: ignore[misc]
     return replace(Log(files=files, truth=drawn.truth, causes=""), **more)  # type: ignore[arg-type]
