@@ -84,6 +84,7 @@ def evidence(*parameters: ParameterEstimate, **given: Any) -> Any:
         "window_duration": 0.01,
         "noise_share": 0.0,
         "r_squared": 0.999,
+        "relative": 0.01,
         "autocorrelation": 0.0,
         "standing": 0.0,
     } | given.pop("residuals", {})

@@ -44,8 +44,9 @@ class Clock:
 def clock_of(time: FloatArray, others: Sequence[FloatArray]) -> Clock:
     """Return the rows that stand there once, with stamps that are not rounded.
 
-    A row that repeats the stamp and all values of an earlier one is left out. Stamps that an even clock explains
-    within their resolution become those of that clock. What is left of repeated stamps is refused later.
+    A row that repeats the stamp and all values of an earlier one is left out, and so are rows of zeros at the end,
+    which a logger never filled. Stamps that an even clock explains within their resolution become those of that
+    clock. What is left of repeated stamps is refused later.
 
     Parameters
     ----------
@@ -54,6 +55,12 @@ def clock_of(time: FloatArray, others: Sequence[FloatArray]) -> Clock:
     others : sequence of ndarray, each of shape (n,)
         The other signals.
     """
+    filled = _filled(time, others)
+    if filled < len(time):
+        rest = clock_of(time[:filled], [each[:filled] for each in others])
+        kept = np.arange(filled) if rest.kept is None else rest.kept
+        empty = {"empty_rows": len(time) - filled}
+        return Clock(time=rest.time, kept=kept, notes={**rest.notes, **empty})
     as_it_is = Clock(time=time, kept=None, notes={})
     steps = np.diff(time)
     if len(time) < SHORTEST or not np.isfinite(time).all():
@@ -69,6 +76,15 @@ def clock_of(time: FloatArray, others: Sequence[FloatArray]) -> Clock:
         if even is None
         else Clock(time=even[0], kept=kept, notes={**notes, **even[1]})
     )
+
+
+def _filled(time: FloatArray, others: Sequence[FloatArray]) -> int:
+    """How many rows there are before those of zeros at the end."""
+    empty = time == 0.0
+    for each in others:
+        empty &= each == 0.0
+    rows = np.flatnonzero(~empty)
+    return int(rows[-1]) + 1 if len(rows) else len(time)
 
 
 def repeats(time: FloatArray, others: Sequence[FloatArray]) -> npt.NDArray[np.intp] | None:

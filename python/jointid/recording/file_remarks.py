@@ -56,6 +56,9 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
         rows = "1 row repeats" if repeated == 1 else f"{repeated} rows repeat"
         verb = "is" if repeated == 1 else "are"
         found.append(f"{rows} the stamp and all values of an earlier one and {verb} left out")
+    empty = metadata.get("empty_rows")
+    if isinstance(empty, int) and empty:
+        found.append(f"{empty} row(s) of zeros at the end are left out")
     rounded = metadata.get("rounded_stamps")
     if isinstance(rounded, Mapping):
         resolution, period = (

@@ -27,6 +27,10 @@ SENSOR_CLIPPED = FindingType(
     advice=f"widen the sensor's range, or load the link less{DESIGNED}",
 )
 _CLIPPED = 0.01  # share of the samples on a limit
+_MUCH, _MISSED = (
+    0.05,
+    0.03,
+)  # of the samples, and of the torque: the record was clipped, not the torque
 _INSIDE = 0.9  # of the sensor's range
 _FEWEST = 3  # samples: the largest of a short log is one in a hundred
 _PASSAGES = 2  # in all recordings together
@@ -108,12 +112,20 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         else:
             limit = max(abs(signal.lowest), abs(signal.highest))
             unit = recording.unit(name)
+            missed = evidence.residuals.relative
+            clipped = share > _MUCH and missed > _MISSED
             yield TORQUE_SATURATED.finding(
                 f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples; if the "
-                "record was clipped and the torque was not, every value is wrong",
+                "record was clipped and the torque was not, every value is wrong"
+                + (f", and the model misses {percent(missed)} of the torque" if clipped else ""),
                 other_motion(evidence, "gentler motion", gentler=True),
                 Action("record", text="the torque that the drive applied"),
-                evidence={"clipped": Measured(share), "limit": Measured(limit, unit)},
+                evidence={
+                    "clipped": Measured(share),
+                    "limit": Measured(limit, unit),
+                    "missed": Measured(missed),
+                },
+                severity="blocking" if clipped else None,
             )
 
 

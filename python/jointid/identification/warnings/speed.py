@@ -85,7 +85,7 @@ def _of_many_turns(recording: Recording, *, agrees: bool) -> Severity:
     unstated = set(assumed) if isinstance(assumed, list | tuple) else set()
     if "position" not in unstated or (agrees and "velocity" not in unstated):
         return "info"
-    return "warning" if agrees else "blocking"
+    return "blocking"  # two columns in one wrong unit agree, too
 
 
 def _of_the_motor(recording: Recording) -> bool:
