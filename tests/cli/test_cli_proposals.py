@@ -87,6 +87,13 @@ def test_a_position_or_counter_is_no_time(
     assert "time=" not in said
 
 
+def test_volts_need_a_factor(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = log(tmp_path / "a.csv", "time_s,position_rad,torque_monitor [V]", TIME, ANGLE, EFFORT)
+    _, said = answer(["identify", path], capsys)
+    assert "--scale torque=FACTOR" in said
+    assert "--unit" not in said
+
+
 INFO = {
     "a joint with brackets": (
         "OSL:timestamp,knee[Pack]:output_position,knee[Pack]:output_torque,knee[Pack]:state",

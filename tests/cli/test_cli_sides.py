@@ -61,7 +61,7 @@ def test_the_ratio_of_the_joint_file_is_taken(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     joint = tmp_path / "joint.toml"
-    jid.Joint(name="a", gear_ratio=100.0, model="coulomb_viscous").save(joint)
+    jid.Joint(name="a", gear_ratio=100.0, model=jid.Model.of("coulomb_viscous")).save(joint)
     path = log(tmp_path / "a.csv", velocity=100.0)
     assert main(["identify", path, "--joint", str(joint), "--side", "velocity=motor"]) == 0
     assert "velocity_mismatch" not in capsys.readouterr().out

@@ -92,7 +92,12 @@ BAD: list[Bad] = [
         {"columns": {"position": "time_s"}},
         "no column is left for time: 'time_s' is chosen as position$",
     ),
-    ("a.csv", headed("t,x,y,z"), {}, r"candidates are 'x', 'y'; .* columns=\{'position'"),
+    (
+        "a.csv",
+        headed("t,x,y,z"),
+        {},
+        r"columns are 't', 'x', 'y', 'z'; .* columns=\{'position': \.\.\.\}",
+    ),
     (
         "a.csv",
         headed("t,q_rad,q_deg,x"),

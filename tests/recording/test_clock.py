@@ -12,7 +12,7 @@ import jointid as jid
 from jointid.cli.command_line import main
 
 PERIOD = 0.0025
-TRUE = PERIOD * np.arange(2000)
+TRUE: NDArray[np.float64] = np.asarray(PERIOD * np.arange(2000), dtype=np.float64)
 
 
 def written(
@@ -148,3 +148,12 @@ def test_rows_of_a_robot_that_repeat_in_all_joints_are_left_out(tmp_path: Path) 
     robot = jid.load_robot(path)
     assert len(robot.time) == 100
     assert robot.metadata["repeated_rows"] == 2
+
+
+def test_a_missing_time_is_said_beside_another_problem(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    rows = [f"{k % 9},{k % 7}" for k in range(20)]
+    path.write_text("\n".join(["position [counts],torque_Nm", *rows, ""]))
+    with pytest.raises(jid.InputError, match=r"no time column.* is a raw reading.*") as caught:
+        jid.load(path)
+    assert "load with sample_period=..., scale={'position': 1.0}" in str(caught.value)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import jointid as jid
 from jointid.cli.command_line import main
 
-TIME = 0.005 * np.arange(600)
+TIME: NDArray[np.float64] = np.asarray(0.005 * np.arange(600), dtype=np.float64)
 ANGLE = 1.2 * np.sin(3.0 * TIME) + 0.4 * np.sin(8.0 * TIME)  # rad
 SPEED = 3.6 * np.cos(3.0 * TIME) + 3.2 * np.cos(8.0 * TIME)
 EFFORT = np.sign(SPEED) + SPEED

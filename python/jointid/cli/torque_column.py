@@ -49,13 +49,11 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
     header = table.headers[index]
     name = header if table.headers.count(header) == 1 else index
     unit, quantity = understood(header).unit, quantity_of(header)
-    if quantity:  # what its header states is not asked for
-        columns = {"columns": {quantity: name}}
-        stated = unit is not None and unit.dimension != "voltage"
-        units = {} if stated else {"units": {quantity: header_unit(quantity, "revolute")}}
-        return Action(
-            "call", columns | units, "" if stated else "with the unit that it has", "load"
-        )
+    volts = unit is not None and unit.dimension == "voltage"
+    if quantity and not volts:  # what its header states is not asked for
+        call: dict[str, Any] = {"columns": {quantity: name}}
+        units = {} if unit else {"units": {quantity: header_unit(quantity, "revolute")}}
+        return Action("call", call | units, "" if unit else "with the unit that it has", "load")
     return Action(
         "call",
         {"columns": {"torque": name}, "scale": {"torque": ...}},

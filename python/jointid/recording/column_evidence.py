@@ -112,7 +112,7 @@ def _is_rate(position: FloatArray, time: FloatArray, velocity: FloatArray) -> bo
 def _smoothest(columns: dict[int, FloatArray], others: Sequence[int]) -> int | None:
     """Return the column that is far smoother than all others; of a single one nothing is shown."""
     rough = {k: float(np.std(np.diff(columns[k], 2)) / np.std(columns[k])) for k in others}
-    first, *rest = sorted(rough, key=lambda k: rough[k]) or [None]
-    if first is None or not rest or rough[rest[0]] < _SMOOTHER * rough[first]:
+    order = sorted(rough, key=lambda k: rough[k])
+    if len(order) < 2 or rough[order[1]] < _SMOOTHER * rough[order[0]]:
         return None
-    return first
+    return order[0]

@@ -7,7 +7,13 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.recording.column_evidence import by_numbers, shows_position, shows_time, speaks_for
+from jointid.recording.column_evidence import (
+    by_numbers,
+    shows_position,
+    shows_time,
+    speaks_for,
+    values_of,
+)
 from jointid.recording.column_lookup import listed
 from jointid.recording.columns import Candidates, Column
 from jointid.recording.even_rows import EVENLY
@@ -138,6 +144,11 @@ def missing(
     for signal in signals if not headerless else ():
         possible = _possible(table, signal, {*owners, *proposed.values()}, kind)
         best = _best(table, signal, possible, found)
+        if not possible and signal == "position":
+            return InputError(
+                f"the file has no position column; headers are {listed(table.headers) or 'none'}",
+                place=table.header_place,
+            )
         if best:
             proposed[signal] = best[0]
             shown += [table.headers[k] for k in best if table.headers[k] not in shown]
@@ -191,13 +202,14 @@ def together(table: Table, problems: Sequence[InputError]) -> InputError:
     """Return several errors as one, whose remedy removes them all."""
     if len(problems) == 1:
         return problems[0]
-    arguments: dict[str, dict[str, Any]] = {}
+    arguments: dict[str, Any] = {}
     purposes = []
     for problem in problems:
         action = next((each for each in problem.remedy if isinstance(each, Action)), None)
         if action is not None:
-            for name, mapping in action.arguments.items():
-                arguments.setdefault(name, {}).update(mapping)
+            for name, value in action.arguments.items():
+                both = isinstance(value, Mapping)
+                arguments[name] = {**arguments.get(name, {}), **value} if both else value
             purposes += [action.text] if action.text else []
     reasons = []
     for problem in problems:
@@ -239,7 +251,8 @@ def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> 
     else:
         best = [k for k in of_joints if k in possible] or _likely(table, signal, possible)
     if not best and signal == "position":
-        best = _of_velocity(table, possible, found)
+        only = [k for k in possible if len(possible) == 1 and values_of(table, k) is not None]
+        best = only or _of_velocity(table, possible, found)
     return sorted(best, key=lambda k: _doubts(plain(table.headers[k])))
 
 

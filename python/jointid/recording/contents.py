@@ -241,7 +241,7 @@ class Contents:
         }
         metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
         metadata["overridden_units"] = overridden
-        metadata |= notes | self.notes
+        metadata |= {**notes, **self.notes}
         return {name: value for name, value in metadata.items() if value}
 
 

@@ -99,7 +99,8 @@ class EvenRows:
         found = iter(self._table.numbers([column for column in columns if column != own]))
         values = [None if column == own else next(found) for column in columns]
         length = next((len(each) for each in values if each is not None), None)
-        time = self._period * np.arange(self._length() if length is None else length)
+        rows = np.arange(self._length() if length is None else length, dtype=np.float64)
+        time: FloatArray = np.asarray(self._period * rows, dtype=np.float64)
         return [time if each is None else each for each in values]
 
     def _length(self) -> int:

@@ -14,7 +14,8 @@ from jointid.recording.file_remarks import remarks
 MESSAGE_LOG = FindingType(
     code="message_log",
     severity="info",
-    meaning="a file was read otherwise than as it stands: damaged rows are left out; a log of messages is "
+    meaning="a file was read otherwise than as it stands: damaged or repeated rows, or a cut last line, are left out; "
+    "stamps, units or sides are other than the file states; a log of messages is "
     "unfinished, has no stamps of its own, or repeated or late messages; or a file holds "
     "objects that are not read, or channels that end before the others",
     advice="nothing, if that is known; else record again, with stamps taken where the samples are",

@@ -64,7 +64,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         yield IMPLAUSIBLE_UNITS.finding(
             f"position and velocity differ by a factor of {factor:.1f}: the {which} seems to be in degrees",
             degrees_advice(recording, (which,)),
-            *([] if _near(factor, 1.0 / _DEGREE, MISMATCH) else possible),
+            *([] if abs(factor * _DEGREE - 1.0) < MISMATCH else possible),
             evidence={"factor": Measured(factor)},
         )
     elif abs(found.scale - 1.0) > MISMATCH:
@@ -78,8 +78,8 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         )
 
 
-def _near(value: float, wanted: float, tolerance: float = 0.25) -> bool:
-    return 1.0 / (1.0 + tolerance) < value / wanted < 1.0 + tolerance
+def _near(value: float, wanted: float) -> bool:
+    return 0.8 < value / wanted < 1.25
 
 
 CHECK = Check(None, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, VELOCITY_MISMATCH), _in_recording)

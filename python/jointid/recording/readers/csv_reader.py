@@ -85,9 +85,13 @@ class CsvTable:
         if layout.bare:
             self.header_place += " (numbers, no header)"
         self.notes: dict[str, Any] = {}
-        whole = ending is None and self.saved is None
-        if whole and (text := without_torn_line(self._content, layout)) is not None:
-            self._content, whole = text, False
+        whole = ending is None
+        if (
+            whole
+            and self.saved is None
+            and (cut := without_torn_line(self._content, layout)) is not None
+        ):
+            self._content, whole = cut, False
             self.notes["incomplete"] = TORN
         self._stream: Path | None = None
         few = len(self.headers) <= _FEW

@@ -34,7 +34,8 @@ def columns_read(table: Table, joint: str | None, reading: Mapping[str, Any]) ->
         scale={name: factor for name, factor in scale.items() if name not in own},
         kind=None,
     ).found
-    read = {column.index for column in (*found.values(), *own.values())}
+    read = {column.index for column in found.values()}
+    read |= {column.index for column in own.values()}
     if isinstance(one.table, JointTable):
         read = {one.table.in_whole(index) for index in read}
     return read
