@@ -145,7 +145,7 @@ def bad_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, estimate_text: st
         "time_s,position_rad\n" + "\n".join(row.rsplit(",", 1)[0] for row in rows)
     )
     (tmp_path / "back.csv").write_text(
-        "time_s,position_rad,torque_Nm\n" + "\n".join([*rows, "0.05,1,2"])
+        "time_s,position_rad,torque_Nm\n" + "\n".join([*rows, "0.05,1,2", ""])
     )
     (tmp_path / "still.csv").write_text(
         "time_s,position_rad,torque_Nm\n" + "\n".join(f"{0.01 * k:.2f},1,2" for k in range(200))
@@ -160,8 +160,8 @@ def bad_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, estimate_text: st
     header = "time_s,position_rad,torque_Nm\n"
     (tmp_path / "plain.csv.gz").write_text(header + "\n".join(rows))
     (tmp_path / "good.csv").write_text(header + "\n".join(rows))
-    (tmp_path / "nan.csv").write_text(header + "\n".join([*rows, "0.2,nan,1"]))
-    (tmp_path / "ragged.csv").write_text(header + "\n".join([*rows, "0.2,1"]))
+    (tmp_path / "nan.csv").write_text(header + "\n".join([*rows, "0.2,nan,1", ""]))
+    (tmp_path / "ragged.csv").write_text(header + "\n".join([*rows, "0.2,1", "0.21,2.1,1.0"]))
     (tmp_path / "linear.csv").write_text("time_s,position_m,force_N\n" + "\n".join(rows))
     (tmp_path / "sensor.toml").write_text("schema = 1\n[sensor]\npresent = true\n")
     estimate = json.loads(estimate_text)

@@ -82,7 +82,7 @@ def bad_parquets() -> list[tuple[dict[str, Any], str]]:
             "row 1, column 't': time is 1.0: the sample before is at 1.0",
         ),
         ({"t": TIME, "q": [np.inf] * N}, "row 0, column 'q': position is inf"),
-        ({"x": TIME}, "no column is recognised as time or position; candidates are 'x'"),
+        ({"x": TIME}, "the file has no position column; headers are 'x'"),
         ({}, "the file has no columns; time and position are expected"),
     ]
 

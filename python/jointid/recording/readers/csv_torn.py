@@ -44,12 +44,11 @@ def without_torn_line(text: str, layout: Layout) -> str | None:
         return None
     if len(cells) < len(layout.headers):
         return text[:cut]
-    if (
-        last.endswith(("\n", "\r"))
-        or len(whole) < _FEW
-        or number_of(whole[-1][-1], layout.separator) is None
-    ):
+    if last.endswith(("\n", "\r")) or len(whole) < _FEW:
+        return None
+    *numbers, number = (number_of(cell, layout.separator) is not None for cell in cells)
+    *wanted, expected = (number_of(cell, layout.separator) is not None for cell in whole[-1])
+    if not expected or numbers != wanted:  # what is damaged further left was not cut
         return None
     shortest = min(len(row[-1]) for row in whole)
-    number = number_of(cells[-1], layout.separator) is not None
     return None if number and len(cells[-1]) >= shortest else text[:cut]
