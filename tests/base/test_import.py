@@ -188,13 +188,13 @@ LIBRARY = {
     "zlib",
 }
 COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
-    "identify": (["identify", "RUN", "--quiet"], IDENTIFYING, 220),
+    "identify": (["identify", "RUN", "--quiet"], IDENTIFYING, 245),
     "identify --report": (
         ["identify", "RUN", "--quiet", "--report", "PAGE"],
         IDENTIFYING | {"report", "report.drawing"},
-        245,
+        265,
     ),
-    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 230),
+    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 255),
     "info": (["info", "RUN"], IDENTIFYING, 220),
 }
 

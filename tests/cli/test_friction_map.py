@@ -102,7 +102,7 @@ def test_the_report_says_what_is_not_in_it(
     ("header", "options", "reason"),
     [
         # A column that nobody knows may be the position: a log, and no table of steady speeds.
-        ("clock,speed,torque", [], "no column is recognised as time"),
+        ("clock,speed,torque", [], "no position column"),
         ("time,speed,torque", [], "no position column"),
         ("speed,torque", ["--save", "a.toml"], "a friction map, which is printed only"),
     ],

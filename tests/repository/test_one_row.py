@@ -50,6 +50,11 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("static", "python/jointid/identification/refinements/", "decays of any shape, for a delay"),
     ("coulomb", "python/jointid/identification/refinements/", "the size of what creep contradicts"),
     ("coulomb*", "python/jointid/problem/constant_torque.py", "collinear with an offset"),
+    (
+        "coulomb",
+        "python/jointid/identification/inference/undivided.py",
+        "an offset takes up its asymmetry",
+    ),
     ("*", "python/jointid/joint/own_terms.py", "kinds of own terms, called like the terms"),
     ("*", "python/jointid/problem/own_integrals.py", "kinds of own terms, called like the terms"),
     ("*", "python/jointid/joint/thesis.py", "the thesis's joint, with its bounds"),

@@ -19,6 +19,7 @@ from jointid.estimate.cross_check import CrossCheck, SecondValue
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
+from jointid.recording.order_statistics import median, quantile_of_sizes
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -31,7 +32,7 @@ _BAND = 0.225  # cutoff of these passes times their width
 _SETTINGS = ((1.0, 1.0), (0.5, 1.0), (1.0, 1.5))  # of the cutoff and of the least speed
 _FAST = 2.2  # over the root of the Stribeck shape: there static friction is below 1 %
 _SPEED, _MOST_SPEED = 0.15, 0.5  # of the peak speed
-_PEAK = 99.5  # percentile of the speeds
+_PEAK = 0.995  # of the rows are slower
 _JUMP, _ALONE = 20.0, 5.0  # times the usual step of the position, and times both neighbours
 _DELAY, _STEP = 0.03, 0.0025  # s
 _WORTH = 0.8  # of the residual: a delay has to leave less
@@ -207,7 +208,7 @@ def _rows_of(
             found.append((stretch.run, width, time, position, velocity, torque, sensor))
     if not found:
         return None
-    peak = float(np.percentile(np.abs(np.concatenate([each[4] for each in found])), _PEAK))
+    peak = quantile_of_sizes(np.concatenate([each[4] for each in found]), _PEAK)
     stribeck = [value for name, value in shapes.items() if name.startswith("stribeck")]
     least = _SPEED * peak
     if stribeck and min(stribeck) > 0.0:
@@ -251,7 +252,7 @@ def _jumps(position: Array) -> list[int]:
         return []
     size = steps[moved]
     around = np.maximum(np.append(size[1:], 0.0), np.concatenate([[0.0], size[:-1]]))
-    jump = (size > _JUMP * np.median(size)) & (size > _ALONE * around)
+    jump = (size > _JUMP * median(size)) & (size > _ALONE * around)
     return [int(each) + 1 for each in moved[jump]]
 
 

@@ -58,9 +58,11 @@ def clock_of(time: FloatArray, others: Sequence[FloatArray]) -> Clock:
     filled = _filled(time, others)
     if filled < len(time):
         rest = clock_of(time[:filled], [each[:filled] for each in others])
-        kept = np.arange(filled) if rest.kept is None else rest.kept
-        empty = {"empty_rows": len(time) - filled}
-        return Clock(time=rest.time, kept=kept, notes={**rest.notes, **empty})
+        return Clock(
+            time=rest.time,
+            kept=np.arange(filled) if rest.kept is None else rest.kept,
+            notes={**rest.notes, "empty_rows": len(time) - filled},
+        )
     as_it_is = Clock(time=time, kept=None, notes={})
     steps = np.diff(time)
     if len(time) < SHORTEST or not np.isfinite(time).all():

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.recording.order_statistics import median
 from jointid.recording.recording import Recording
 from jointid.recording.signals import FloatArray
 
@@ -63,7 +64,7 @@ def _near(steps: FloatArray, large: NDArray[np.intp]) -> FloatArray:
 
 def _size(position: FloatArray, jumps: FloatArray) -> float:
     """The size of the wraps: a turn, unless several alike are as large as the position's range."""
-    usual = float(np.median(np.abs(jumps)))
+    usual = median(np.abs(jumps))
     alike = np.abs(np.abs(jumps) / usual - 1.0) < _ALIKE
     whole = float(np.ptp(position))
     if len(jumps) >= _MANY and alike.all() and abs(usual / whole - 1.0) < _ALIKE:

@@ -89,8 +89,10 @@ def of_symmetry(
     for index, name in enumerate(domain.names):
         base, _, run = name.partition("[")
         if base == "sensor_offset" and not domain.fixed(name):
-            coulomb = f"coulomb[{run}" if run and f"coulomb[{run}" in domain.names else "coulomb"
-            if coulomb in domain.names:
-                value = float(best[domain.names.index(coulomb)])
+            dry = "coulomb"
+            own = f"{dry}[{run}"
+            dry = own if own in domain.names else dry
+            if dry in domain.names:
+                value = float(best[domain.names.index(dry)])
                 moved[index] = (tolerances.size("symmetry", value) or 0.0) / _NORMAL
     return moved if moved.any() else None
