@@ -108,6 +108,7 @@ study: .venv/.installed .venv/.bench-tools  ## accuracy over many seeds; by hand
 	@$(BIN)/python benchmarks/ring_study.py
 	@$(BIN)/python benchmarks/emulated_ring.py --output docs/emulated_ring.md
 	@$(BIN)/python benchmarks/conditions_study.py --output docs/conditions.md
+	@$(BIN)/python benchmarks/faulty_logs.py --logs 200 --seed 2026 --output docs/foreign_logs.md
 	@$(BIN)/python benchmarks/delays_study.py --output docs/delays.md
 	@$(BIN)/python benchmarks/causes_study.py --joints 100 --output docs/causes.md
 	@$(BIN)/python benchmarks/causes_study.py --joints 30 --seed 7001 --size .1 --output docs/causes.md --append
