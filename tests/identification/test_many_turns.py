@@ -46,9 +46,9 @@ def test_a_velocity_of_stated_unit_speaks_for_the_position() -> None:
     assert [each.severity for each in of_units(estimate)] == ["info"]
 
 
-def test_a_velocity_that_agrees_keeps_many_turns_of_no_stated_unit_from_being_blocked() -> None:
+def test_two_columns_of_no_stated_unit_agree_in_degrees_too() -> None:
     (found,) = of_units(jid.identify(turning(30.0, **UNSTATED)))
-    assert found.severity == "warning"
+    assert found.severity == "blocking"
     assert {"units": {"position": "deg", "velocity": "deg/s"}} in [
         dict(each.arguments) for each in found.advice
     ]

@@ -126,7 +126,7 @@ def _information(
     estimate: Estimate, names: tuple[str, ...], held: set[str], unknown: set[str]
 ) -> Array:
     """Information of these parameters, as wide as their intervals: at what is held, whatever the unknown ones are."""
-    wider = half_widths(estimate) / NORMAL
+    wider = half_widths(estimate, without="symmetry") / NORMAL  # which no motion tells
     whole = _of_chance(estimate) / np.outer(wider, wider)
     free = estimate.free
     kept = [free.index(name) for name in names if name in free and name not in unknown]

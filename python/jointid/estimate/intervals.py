@@ -38,17 +38,20 @@ def quantile_of(estimate: Estimate) -> float:
     return max(found)
 
 
-def half_widths(estimate: Estimate) -> Array:
+def half_widths(estimate: Estimate, *, without: str = "") -> Array:
     """Return half of each free parameter's interval, in its standard errors by chance: the normal quantile or more.
 
-    Each parameter's interval has its own quantile and its own systematic part.
+    Each parameter's interval has its own quantile and its own systematic part; the part `without` is left out.
     """
     scale = np.full(len(estimate.free), NORMAL)
     quantile = quantile_of(estimate)
     for i, name in enumerate(estimate.free):
         p = estimate.parameters[name]
         if p.interval is not None and p.stderr is not None and _TINY < p.stderr < np.inf:
-            scale[i] = 0.5 * (p.interval[1] - p.interval[0]) / p.stderr
+            error = math.hypot(p.stderr, interval_part(p))
+            left_out = p.systematic.get(without, 0.0)
+            share = math.sqrt(max(0.0, 1.0 - (left_out / error) ** 2))
+            scale[i] = share * 0.5 * (p.interval[1] - p.interval[0]) / p.stderr
         elif p.stderr == np.inf:
             # Of what no recording divides only sums are known: their chance is the covariance's, at a given offset.
             chance = float(np.sqrt(max(estimate.covariance[i, i], 0.0)))

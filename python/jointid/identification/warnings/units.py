@@ -14,7 +14,7 @@ IMPLAUSIBLE_UNITS = FindingType(
     severity="blocking",
     meaning="degrees taken for radians: position and velocity differ by 57.3, a known inertia is contradicted by "
     "as much, or the motion would be impossibly fast or wide; or other stamps than seconds. A wide motion in units "
-    "that a header states is an info, and in units that none states a warning where a velocity agrees with it",
+    "that a header states is an info",
     advice="state the unit of position, velocity and time when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
