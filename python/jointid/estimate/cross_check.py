@@ -20,7 +20,8 @@ class SecondValue:
     stderr : float
         Standard error from blocks of the recording that are left out in turn.
     spread : float
-        Range of the value over the settings of filter and rows.
+        Range of the value over the settings of filter and rows; 0 where the first setting agrees, and no other is
+        asked.
     agrees : bool
         Whether it contradicts the estimate's value by no more than both errors and 5 %.
     """

@@ -6,6 +6,7 @@ identification; the shape of the Stribeck term alone is the estimate's.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -124,6 +125,7 @@ def second_look(
     ]
     stretches = _stretches(given, problem)
     looks: list[tuple[dict[str, float], dict[str, float], float]] = []
+    found: dict[str, SecondValue] = {}
     for cutoff, speed in _SETTINGS:
         rows = _rows_of(stretches, cutoff * _CUTOFF, speed, shapes)
         if rows is None or len(rows.time) < max(2 * _BLOCKS, _ROWS * len(free)):
@@ -132,29 +134,31 @@ def second_look(
             continue
         delay = looks[0][2] if looks else None
         looks.append(_fitted(rows, problem, terms, names, parameters, shapes, delay))
-    values, errors, delay = looks[0]
-    found = {}
-    for name, value in values.items():
-        if name.partition("[")[0] not in _compared(terms):
-            continue
-        every = [each[0][name] for each in looks if name in each[0]]
-        spread = max(every) - min(every)
-        p = parameters[name]
-        allowed = (
-            _SHARE * _scale(p, friction, parameters)
-            + _ERRORS * float(np.hypot(errors[name], p.uncertainty if p.vary else 0.0))
-            + spread
-        )
-        found[name] = SecondValue(
-            value=value,
-            stderr=errors[name],
-            spread=spread,
-            # It knows no bounds; a friction of 0 is slightly negative there as often as not.
-            agrees=not abs(min(max(value, p.min), p.max) - p.shown_value) > allowed,
-        )
+        values, errors, delay = looks[0]
+        for name, value in values.items():
+            if name.partition("[")[0] not in _compared(terms):
+                continue
+            every = [each[0][name] for each in looks if name in each[0]]
+            scale = _scale(parameters[name], friction, parameters)
+            found[name] = _compared_with(
+                parameters[name], value, errors[name], max(every) - min(every), scale
+            )
+        if all(each.agrees for each in found.values()):
+            break  # another setting can only excuse a difference
     if not found:
         return CrossCheck(reason="its rows determine no parameter")
-    return CrossCheck(values=found, delay=delay)
+    return CrossCheck(values=found, delay=looks[0][2])
+
+
+def _compared_with(
+    p: ParameterEstimate, value: float, stderr: float, spread: float, scale: float
+) -> SecondValue:
+    allowed = _SHARE * scale + spread
+    allowed += _ERRORS * math.hypot(stderr, p.uncertainty if p.vary else 0.0)
+    # It knows no bounds; a friction of 0 is slightly negative there as often as not.
+    within = min(max(value, p.min), p.max)
+    agrees = not abs(within - p.shown_value) > allowed
+    return SecondValue(value=value, stderr=stderr, spread=spread, agrees=agrees)
 
 
 def _compared(terms: Sequence[_core.Term]) -> set[str]:
