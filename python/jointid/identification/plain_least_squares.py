@@ -35,7 +35,7 @@ _FAST = 2.2  # over the root of the Stribeck shape: there static friction is bel
 _SPEED, _MOST_SPEED = 0.15, 0.5  # of the peak speed
 _PEAK = 0.995  # of the rows are slower
 _JUMP, _ALONE = 20.0, 5.0  # times the usual step of the position, and times both neighbours
-_DELAY, _STEP = 0.03, 0.0025  # s
+_STEP, _STEPS = 0.0025, 12  # s; delays of at most 12 steps are tried
 _WORTH = 0.8  # of the residual: a delay has to leave less
 _BLOCKS = 20
 _ROWS = 10  # for each unknown, at least
@@ -288,7 +288,7 @@ def _fitted(
         signal, less = 2, np.zeros(len(rows.time))
         regressors[:, -1] -= known
     delay = _best_delay(rows, regressors, signal, less) if delay is None else delay
-    target = _shifted(rows, signal, delay) - less
+    target = _shifted(rows, signal, np.array([delay]))[:, 0] - less
     solved, stderr, determined = _solved(regressors, target)
     if sensed:
         return *_of_reading(order, solved, determined), delay
@@ -342,29 +342,23 @@ def _column(
     return column if own is None else np.where(rows.run == int(own[1]), column, 0.0)
 
 
-def _shifted(rows: _Rows, signal: int, delay: float) -> Array:
-    """The torque (1) or the reading (2) at the rows, taken later by a delay."""
-    if delay == 0.0:
-        return rows.torque if signal == 1 else rows.sensor
-    target = np.empty(len(rows.time))
+def _shifted(rows: _Rows, signal: int, delays: Array) -> Array:
+    """The torque (1) or the reading (2) at the rows, taken later by each delay; shape (rows, delays)."""
+    target = np.empty((len(rows.time), len(delays)))
     for time, torque, sensor, here in rows.smooth:
         values = torque if signal == 1 else sensor
-        target[here] = np.interp(rows.time[here] + delay, time, values)
+        target[here] = np.interp(rows.time[here, None] + delays, time, values)
     return target
 
 
 def _best_delay(rows: _Rows, regressors: Array, signal: int, less: Array) -> float:
     """The delay of the target that leaves clearly less, or 0."""
     basis = np.linalg.qr(regressors)[0]
-
-    def left(delay: float) -> float:
-        target = _shifted(rows, signal, delay) - less
-        return float(np.linalg.norm(target - basis @ (basis.T @ target)))
-
-    grid = np.arange(-_DELAY, 0.5 * _STEP + _DELAY, _STEP)
-    sizes = [left(float(each)) for each in grid]
+    grid = _STEP * np.arange(-_STEPS, _STEPS + 1)
+    targets = _shifted(rows, signal, grid) - less[:, None]
+    sizes = np.linalg.norm(targets - basis @ (basis.T @ targets), axis=0)
     best = int(np.argmin(sizes))
-    return float(grid[best]) if sizes[best] < _WORTH * left(0.0) else 0.0
+    return float(grid[best]) if sizes[best] < _WORTH * sizes[_STEPS] else 0.0
 
 
 def _solved(regressors: Array, target: Array) -> tuple[Array, Array, NDArray[np.bool_]]:

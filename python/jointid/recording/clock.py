@@ -64,10 +64,11 @@ def clock_of(time: FloatArray, others: Sequence[FloatArray]) -> Clock:
             notes={**rest.notes, "empty_rows": len(time) - filled},
         )
     as_it_is = Clock(time=time, kept=None, notes={})
-    steps = np.diff(time)
     if len(time) < SHORTEST or not np.isfinite(time).all():
         return as_it_is
-    kept = None if (steps > 0.0).all() else _once(time, others)
+    kept = repeats(time, others)
+    if kept is not None and len(kept) < SHORTEST:
+        return as_it_is
     once = time if kept is None else time[kept]
     if kept is not None and not (np.diff(once) > 0.0).all() and (even := _even(time)) is not None:
         return Clock(time=even[0], kept=None, notes=even[1])  # equal values of a joint at rest
@@ -114,9 +115,9 @@ def _even(time: FloatArray) -> tuple[FloatArray, dict[str, Any]] | None:
     if len(time) < _SHOWN or (steps < 0.0).any() or not (steps > 0.0).any():
         return None
     usual = median(steps)
-    if (steps > 0.0).all() and np.count_nonzero(
-        np.abs(steps - usual) > _COARSE * usual
-    ) < _ODD * len(steps):
+    odd = np.count_nonzero(steps > (1.0 + _COARSE) * usual)
+    odd += np.count_nonzero(steps < (1.0 - _COARSE) * usual)
+    if (steps > 0.0).all() and odd < _ODD * len(steps):
         return None
     finest = int(np.gcd.reduce(np.rint(steps * _NANO).astype(np.int64))) / _NANO
     resolution = finest

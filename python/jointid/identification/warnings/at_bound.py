@@ -26,11 +26,12 @@ _EXPLAINED = 0.95  # where the model is poor, a wider bound lets it go further a
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
+    ended = [p for p in evidence.parameters.values() if p.at_bound is not None]
+    if not ended:
+        return
     rich = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
     reported = (*rich, *without_friction(evidence))  # a friction of 0 is then a value
-    for p in evidence.parameters.values():
-        if p.at_bound is None:
-            continue
+    for p in ended:
         may_be = distance_from_bound(p)
         torques, share = evidence.torques, None
         if torques.is_friction(p.name):
