@@ -195,7 +195,7 @@ def _stretches(given: Sequence[Recording], problem: Problem) -> list[_Stretch]:
             if count < _SHORTEST:
                 continue
             rows = np.array([each[begin : begin + count * block] for each in signals])
-            means = rows.reshape(len(signals), count, block).mean(axis=2)
+            means = rows.reshape(len(signals), count, block) @ np.full(block, 1.0 / block)
             found.append(_Stretch(run=number, signals=means, period=block * run.sample_period))
     return found
 
