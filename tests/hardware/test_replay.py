@@ -138,6 +138,41 @@ def test_other_options_give_another_recording(
     assert np.allclose(again.position, recording.position + 0.25, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize("counted", [-1, 1, 7])
+def test_a_run_that_begins_elsewhere_than_counted_is_found_by_its_positions(
+    made: Callable[[str], tuple[jid.Recording, Path]], tmp_path: Path, counted: int
+) -> None:
+    recording, log = made("converter")
+    right = recording.metadata["cycles_before"]
+    before, other = right + counted, tmp_path / "run.csv"
+    rows = log.with_suffix(".csv").read_text(encoding="utf-8")
+    other.write_text(
+        rows.replace(f'"cycles_before": {right}', f'"cycles_before": {before}'), encoding="utf-8"
+    )
+    same(jid.hardware.replay(log, JOINT, recording=other), recording)
+    moved = replace(CONVERTER, position_offset=0.25, counts_per_turn=4000)
+    again = jid.hardware.replay(log, JOINT, moved, recording=other)
+    assert np.allclose(again.position, 2.0 * recording.position + 0.25, rtol=0.0, atol=1e-12)
+
+
+def test_a_log_of_another_session_is_refused(
+    made: Callable[[str], tuple[jid.Recording, Path]],
+) -> None:
+    recording, log = made("converter")
+    position = recording.position.copy()
+    position[40] += 1e-4
+    other = recording.with_signals(position=position)
+    with pytest.raises(
+        jid.InputError,
+        match=r"row 40 of the recording has the position .* rad, the frames .*; cycles_before=\d+ takes",
+    ):
+        jid.hardware.replay(log, JOINT, recording=other)
+    again = jid.hardware.replay(
+        log, JOINT, recording=other, cycles_before=recording.metadata["cycles_before"]
+    )
+    assert np.array_equal(again.position, recording.position)
+
+
 def test_a_truncated_log_and_recording_give_their_beginning(
     made: Callable[[str], tuple[jid.Recording, Path]], tmp_path: Path
 ) -> None:

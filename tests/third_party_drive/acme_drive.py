@@ -73,6 +73,7 @@ class AcmeDrive:
 
     def enable(self) -> None:
         self._ask(POWER, b"\x01")
+        self.command(0.0)  # whatever was commanded before
 
     def read(self, timeout: float) -> DriveSample:
         del timeout  # this line replies at once or never

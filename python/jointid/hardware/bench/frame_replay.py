@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
+from jointid.hardware.bench.run_in_log import LoggedPositions
 from jointid.hardware.can.frame_log import logged_frames
 from jointid.hardware.session.cycle import LoggedCycle, capped, held_torque, target_at
 from jointid.joint.joint import Joint
@@ -60,8 +61,8 @@ def replay(
     period : float, optional
         Of the session [s]. Default: the recording's.
     cycles_before : int, optional
-        Cycles that were commanded on the way to the start. Default: the recording's; without one 0, and the way
-        to the start is in what is returned.
+        Cycles that were commanded before the run. Default: those behind which the frames have the positions of
+        the recording; without one 0, and the way to the start is in what is returned.
     stamped : bool, optional
         Frames bear the time of their arrival to the microsecond, as SocketCAN's do. Default: the
         recording's; without one True.
@@ -76,7 +77,8 @@ def replay(
     Raises
     ------
     InputError
-        The log cannot be read; frames are missing; the period is not known; the drive's type is not installed.
+        The log cannot be read; frames are missing; they have other positions than the recording; the period is
+        not known; the drive's type is not installed.
 
     Examples
     --------
@@ -99,9 +101,16 @@ def replay(
         if stamped is not None:
             identity["stamped_frames"] = stamped
         every = adapter.decode(logged_frames(file), joint, drive_options, identity)
-        kept = _recorded(every, before)
-        late = _late(every, kept, before, session)
-        _check_count(len(kept), before, session)
+        positions = LoggedPositions(every)
+        found: int | None = before
+        if session is not None and cycles_before is None:
+            found = positions.begin(before, session, scaled=options is not None)
+        begin = before if found is None else found
+        kept = positions.kept(begin)
+        late = _late(every, kept, begin, session)
+        _check_count(len(kept), begin, session)
+        if session is not None and found is None:
+            raise positions.difference(begin, session)
     except InputError as error:
         raise error.at(str(file)) from error
     if session is not None and (trajectory is None or "truncated" not in metadata):
@@ -166,14 +175,6 @@ def _check_count(found: int, before: int, session: Recording | None) -> None:
         raise InputError(
             f"{max(0, found)} cycles after the first {before}; at least {_LEAST} are expected"
         )
-
-
-def _recorded(every: Sequence[LoggedCycle], before: int) -> npt.NDArray[np.intp]:
-    """Cycles of the run that a session keeps: those with a sample, but the first behind one without."""
-    lost = np.array([bool(cycle.lost) for cycle in every], dtype=np.bool_)
-    waited = np.concatenate([[False], lost[:-1]])
-    waited[before : before + 1] = False
-    return np.flatnonzero(~lost[before:] & ~waited[before:]) + before
 
 
 def _late(

@@ -1,0 +1,89 @@
+"""Which cycles of a frame log are a session's run: those with the positions of its recording."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.base.errors import InputError
+from jointid.hardware.session.cycle import LoggedCycle
+from jointid.recording.recording import Recording
+
+_FARTHEST = 1000  # cycles from where the run should begin
+_SHARE = 1e-6  # of the motion, by which positions may differ
+_LEAST = 1e-9  # [rad]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class LoggedPositions:
+    """The positions of all cycles in a frame log.
+
+    Parameters
+    ----------
+    every : sequence of LoggedCycle
+    """
+
+    def __init__(self, every: Sequence[LoggedCycle]) -> None:
+        self._lost = np.array([bool(cycle.lost) for cycle in every], dtype=np.bool_)
+        self._position = np.array([cycle.position for cycle in every], dtype=np.float64)
+
+    def kept(self, before: int) -> npt.NDArray[np.intp]:
+        """Return the cycles of a run that a session keeps: those with a sample, but the first behind one without."""
+        waited = np.concatenate([[False], self._lost[:-1]])
+        waited[before : before + 1] = False
+        return np.flatnonzero(~self._lost[before:] & ~waited[before:]) + before
+
+    def begin(self, counted: int, session: Recording, *, scaled: bool) -> int | None:
+        """Return the cycles before the run; nearest to the number that the session counted where several fit.
+
+        A drive type may decode a command that the session did not count, such as a zero torque of `enable`.
+
+        Parameters
+        ----------
+        counted : int
+        session : Recording
+        scaled : bool
+            Positions may also be shifted and scaled: other options are tried.
+
+        Returns
+        -------
+        int or None
+            None: the positions are nowhere those of the recording.
+        """
+        lowest = max(0, counted - _FARTHEST)
+        near = sorted(range(lowest, counted + _FARTHEST + 1), key=lambda n: abs(n - counted))
+        for fit in (_same, _same_when_scaled) if scaled else (_same,):
+            for before in near:
+                found = self._position[self.kept(before)[: len(session.position)]]
+                if len(found) == len(session.position) and fit(found, session.position):
+                    return before
+        return None
+
+    def difference(self, before: int, session: Recording) -> InputError:
+        """Return what is wrong with a log whose positions are not those of the recording."""
+        found = self._position[self.kept(before)[: len(session.position)]]
+        row = int(np.argmax(~(np.abs(found - session.position) <= _tolerance(session.position))))
+        return InputError(
+            f"row {row} of the recording has the position {session.position[row]:.9g} rad, the frames "
+            f"{found[row]:.9g} rad, and no other cycle as the first makes them agree; is it the log of this "
+            "session, and of this joint?",
+            remedy=f"cycles_before={before} takes the frames as they are",
+        )
+
+
+def _same(found: FloatArray, recorded: FloatArray) -> bool:
+    return bool((np.abs(found - recorded) <= _tolerance(recorded)).all())
+
+
+def _same_when_scaled(found: FloatArray, recorded: FloatArray) -> bool:
+    moved, wanted = found - found.mean(), recorded - recorded.mean()
+    size = moved @ moved
+    scale = moved @ wanted / size if size > 0.0 else 0.0
+    return bool((np.abs(scale * moved - wanted) <= _tolerance(recorded)).all())
+
+
+def _tolerance(recorded: FloatArray) -> float:
+    return _LEAST + _SHARE * float(np.ptp(recorded))
