@@ -172,11 +172,11 @@ class ElmoDrive:
         self._refuse_if_motor_on(_IN_USE_ANSWER)
         link.foreign.decide()
         link.raise_foreign()
-        link.booted = False
+        link.alone.begin()
         link.forget_fault(but="bus")
         link.send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
         link.wait(
-            lambda: link.booted,
+            lambda: link.alone.booted,
             _BOOT,
             f"no boot-up message from node {node}",
             advice="; check that the drive is on, and that this is its node",

@@ -17,6 +17,7 @@ from jointid.hardware.elmo.decoder import ElmoDecoder
 from jointid.hardware.elmo.echoes import CommandEchoes
 from jointid.hardware.elmo.errors import Emergency
 from jointid.hardware.elmo.foreign import ForeignWatch, gives_back
+from jointid.hardware.elmo.lone_node import LoneNode
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.timing import SyncWatch
 from jointid.hardware.session.clock import Clock, MonotonicClock
@@ -54,7 +55,7 @@ class ElmoLink:
         own: Any = bus if hasattr(bus, "sleep_until") else MonotonicClock()
         self.clock: Clock = own if clock is None else clock
         self.tap: Tap | None = None
-        self.booted = False
+        self.alone = LoneNode(options.node)
         self.up = False  # from then on a boot-up message or another state is a fault
         self.heard = 0.0  # [s], when the drive's heartbeat came last
         # SocketCAN's frames bear the time at which the kernel got them.
@@ -81,6 +82,8 @@ class ElmoLink:
         message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
         begun = self.clock.now()
         self.foreign.sent(begun, identifier, payload)
+        if identifier == 0x600 + self._options.node:
+            self.alone.asked()
         try:
             self._bus.send(message, timeout=0.01)
         except (can.CanError, OSError) as error:  # some interfaces let the system's errors through
@@ -326,6 +329,7 @@ class ElmoLink:
             self._take_reply(payload)
         elif identifier == 0x580 + node:
             self._answers.append(payload)
+            self._note_second(self.alone.answered())
         elif identifier == canopen.emergency_id(node):
             self._take_emergency(payload)
         elif identifier == canopen.heartbeat_id(node) and len(payload) == 1:
@@ -373,12 +377,17 @@ class ElmoLink:
     def _take_heartbeat(self, state: int) -> None:
         self.heard = self.clock.now()
         if state == 0:
-            self.booted = True
             if self.up:
                 self._note("drive_fault", "the drive has restarted")
+            self._note_second(self.alone.boots())
         elif self.up and canopen.STATES.get(state) != "operational":
             name = canopen.STATES.get(state, f"0x{state:02X}")
             self._note("drive_fault", f"the drive has left the state operational: it is {name}")
+
+    def _note_second(self, meaning: str) -> None:
+        """While the drive is brought up."""
+        if meaning and not self.up:
+            self._note("drive_fault", meaning)
 
     def _note(self, kind: str, message: str) -> None:
         """Keep the first fault: what follows is often its consequence."""
