@@ -139,7 +139,7 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "scipy"},
     ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
-    "hardware/can": Folder(may_use={"base"}, packages={"can"}),
+    "hardware/can": Folder(may_use={"base", "joint"}, packages={"can"}),
     "hardware/live": Folder(may_use={"base", "hardware/session"}, packages={"numpy", "matplotlib"}),
     "hardware/emulated": Folder(may_use={"base", "hardware/can"}, packages={"numpy", "can"}),
     "hardware/bench": Folder(

@@ -2,11 +2,14 @@
 
 import sys
 from pathlib import Path
+from typing import Any
+from unittest.mock import MagicMock
 
 import can
 import pytest
 
 from jointid.base.errors import InputError
+from jointid.hardware.bench.bench import BusOptions
 from jointid.hardware.can import bus as bus_module
 from jointid.hardware.can.bus import open_bus
 from jointid.hardware.elmo.options import ElmoOptions
@@ -106,6 +109,76 @@ def test_socketcan_gets_a_filter_for_each_identifier(
     }
 
 
+def test_long_identifiers_and_can_fd_are_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    network(tmp_path, "0x1")
+    monkeypatch.setattr(bus_module, "_NETWORKS", tmp_path)
+    opened: list[dict[str, Any]] = []
+
+    def open_it(_channel: str, **settings: Any) -> MagicMock:
+        opened.append(settings)
+        return MagicMock()
+
+    monkeypatch.setattr(can, "Bus", open_it)
+    rates = {"fd": True, "bitrate": 1_000_000, "data_bitrate": 5_000_000}
+    for interface in ("socketcan", "virtual", "udp_multicast", "pcan", "vector"):
+        with open_bus(interface=interface, identifiers=(0x101, 0x8001), **rates):  # type: ignore[arg-type]
+            pass
+    with open_bus(identifiers=(0x101,), extended=True):
+        pass
+    every = 0x1FFFFFFF
+    assert opened[0]["can_filters"] == [
+        {"can_id": 0x101, "can_mask": 0x7FF, "extended": False},
+        {"can_id": 0x8001, "can_mask": every, "extended": True},
+    ]
+    assert opened[-1]["can_filters"] == [{"can_id": 0x101, "can_mask": every, "extended": True}]
+    assert [settings.get("fd") for settings in opened] == [True, None, True, None, True, None]
+    assert opened[1]["protocol"] == can.CanProtocol.CAN_FD
+    assert opened[3]["timing"].data_bitrate == opened[4]["data_bitrate"] == 5_000_000
+    assert opened[3]["timing"].nom_bitrate == 1_000_000
+
+
+def test_a_network_without_can_fd_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    network(tmp_path, "0x1")
+    (tmp_path / "can0" / "mtu").write_text("16\n")
+    monkeypatch.setattr(bus_module, "_NETWORKS", tmp_path)
+    rates = {"fd": True, "bitrate": 1_000_000, "data_bitrate": 5_000_000}
+    with pytest.raises(InputError, match=r"no frames of CAN FD; .*`sudo ip link set can0 mtu 72`"):
+        open_bus(**rates).__enter__()  # type: ignore[arg-type]
+    (tmp_path / "can0" / "device").mkdir()
+    up = "can0 down && sudo ip link set can0 up type can bitrate 1000000 dbitrate 5000000 fd on`"
+    with pytest.raises(InputError, match=up):
+        open_bus(**rates).__enter__()  # type: ignore[arg-type]
+
+
+def test_frames_of_can_fd_pass_between_two_buses() -> None:
+    places = {"interface": "virtual", "channel": "fd", "fd": True}
+    sent = can.Message(arbitration_id=0x8001, data=bytes(24), is_fd=True)
+    with open_bus(**places) as here, open_bus(**places) as there:  # type: ignore[arg-type]
+        here.send(sent)
+        found = there.recv(5.0)
+    assert found is not None
+    assert found.equals(sent, timestamp_delta=None, check_channel=False, check_direction=False)
+
+
+def test_a_misspelt_interface_is_refused_without_a_bus() -> None:
+    with pytest.raises(InputError, match="interface is 'sockercan': did you mean 'socketcan'"):
+        BusOptions(interface="sockercan")
+    assert BusOptions(interface="pcan", fd=True, data_bitrate=2_000_000).fd
+
+
+def test_without_msgpack_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("can.interfaces.udp_multicast.utils.msgpack", None)
+    with (
+        pytest.raises(InputError, match="needs msgpack for this interface; pip install msgpack"),
+        open_bus(interface="udp_multicast", channel="239.74.163.2"),
+    ):
+        pass
+
+
 @pytest.mark.parametrize(
     ("settings", "wording"),
     [
@@ -115,7 +188,15 @@ def test_socketcan_gets_a_filter_for_each_identifier(
         ),
         (
             {"interface": "sockercan"},
-            "interface is 'sockercan': known are .*socketcan",
+            "interface is 'sockercan': did you mean 'socketcan'",
+        ),
+        (
+            {"interface": "virtual", "data_bitrate": 5_000_000},
+            "data_bitrate is 5000000: classic CAN has no .*; fd = true opens the bus for CAN FD",
+        ),
+        (
+            {"interface": "virtual", "fd": True, "data_bitrate": 250_000},
+            "data_bitrate is 250000: bitrate, 500000, to 8000000 bit/s is expected",
         ),
         ({"interface": "virtual", "channel": ""}, "channel is '': missing"),
         ({"interface": "virtual", "channel": None}, "channel is None: missing"),

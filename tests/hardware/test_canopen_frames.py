@@ -5,7 +5,6 @@ import pytest
 from jointid.hardware.can.canopen_frames import (
     SdoAbortError,
     SdoRequest,
-    bits_on_wire,
     emergency_id,
     heartbeat_id,
     sdo_abort,
@@ -64,9 +63,3 @@ def test_a_refusal_says_why() -> None:
     with pytest.raises(SdoAbortError, match="the object does not exist") as caught:
         sdo_result(sdo_abort(READ, 0x06020000), READ)
     assert caught.value.code == 0x06020000
-
-
-@pytest.mark.parametrize(("length", "bits"), [(0, 55), (1, 65), (8, 135)])
-def test_bits_with_the_most_stuffing(length: int, bits: int) -> None:
-    """44 plain bits and the gap of 3, and a stuffed bit behind each four of the first 34 + 8 n, less one."""
-    assert bits_on_wire(length) == bits

@@ -13,7 +13,7 @@ from session_bench import devices, joint, session
 
 import jointid as jid
 from jointid.base.errors import InputError
-from jointid.hardware.can.canopen_frames import bits_on_wire
+from jointid.hardware.can.wire_time import bits_on_wire, fd_bits_on_wire
 from jointid.hardware.elmo.emulated_converter import EmulatedConverter
 from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.emulated import wire as wire_module
@@ -54,6 +54,12 @@ def received(bus: EmulatedBus, timeout: float = 0.1) -> list[tuple[int, float]]:
     return found
 
 
+@pytest.mark.parametrize(("length", "bits"), [(0, 55), (1, 65), (8, 135)])
+def test_bits_with_the_most_stuffing(length: int, bits: int) -> None:
+    """44 plain bits and the gap of 3, and a stuffed bit behind each four of the first 34 + 8 n, less one."""
+    assert bits_on_wire(length) == bits
+
+
 def test_the_lowest_identifier_goes_first_and_a_sender_keeps_its_order() -> None:
     talkers = Talker(0x700, 0x100), Talker(0x300), Talker(0x200)
     with EmulatedBus(*talkers, bitrate=BITRATE) as bus:
@@ -66,6 +72,29 @@ def test_the_lowest_identifier_goes_first_and_a_sender_keeps_its_order() -> None
     bit = bits_on_wire(0) / BITRATE
     assert [when for _, when in found] == pytest.approx([2 * bit, 3 * bit, 5 * bit, 6 * bit])
     assert [it for it, _ in talkers[1].heard] == [0x80, 0x200, 0x400, 0x700, 0x100]
+
+
+def test_a_frame_of_can_fd_takes_both_bit_rates_and_a_longer_identifier_its_bits() -> None:
+    """Of 8 and 64 bytes: 17 bits up to the switch, 13 behind the data, and all stuff bits."""
+    assert fd_bits_on_wire(8) == (17 + 4 + 13, 5 + 64 + 17 + 4 + 23)
+    assert fd_bits_on_wire(64) == fd_bits_on_wire(49) == (17 + 4 + 13, 5 + 512 + 129 + 4 + 28)
+    assert fd_bits_on_wire(8, extended=True)[0] == 36 + 8 + 13
+    assert bits_on_wire(8, extended=True) == 160  # 54 + 64, 29 stuff bits, 13
+
+    def took(**kind: bool) -> float:
+        sent = can.Message(arbitration_id=0x8001, data=bytes(8), **kind)
+        with EmulatedBus(bitrate=1e6, data_bitrate=5e6) as bus:
+            bus.transmit(sent)
+            found = bus.recv(0.1)
+        assert found is not None
+        assert found.equals(sent, timestamp_delta=None)
+        return found.timestamp
+
+    slow, fast = fd_bits_on_wire(8, extended=True)
+    assert took() == pytest.approx(160e-6)
+    assert took(is_fd=True, bitrate_switch=True) == pytest.approx(1e-6 * slow + 0.2e-6 * fast)
+    assert took(is_fd=True) == pytest.approx(1e-6 * (slow + fast))
+    assert took(is_remote_frame=True) == pytest.approx(1e-6 * bits_on_wire(0, extended=True))
 
 
 def test_what_another_node_sends_reaches_host_and_drive() -> None:

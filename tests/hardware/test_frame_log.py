@@ -15,7 +15,7 @@ from fuzz.seeds import seed_of
 
 import jointid as jid
 from jointid.hardware.can.blf_file import unpacked
-from jointid.hardware.can.frame_log import logged_frames
+from jointid.hardware.can.frame_log import LoggedFrame, logged_frames
 
 _SOUND = "(1700000000.000000) can0 080#\n"
 
@@ -43,15 +43,42 @@ def test_a_frame_that_no_bus_carries(line: str, reason: str, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     "line",
     [
-        "(1.0) can0 12345678#00\n",  # an extended identifier
-        "(1.0) can0 181##100112233445566778899\n",  # CAN FD
         "(1.0) can0 181#R\n",  # a request without bytes
     ],
 )
 def test_frames_that_are_not_looked_at(line: str, tmp_path: Path) -> None:
     path = tmp_path / "run.log"
     path.write_text(_SOUND + line + _SOUND, encoding="ascii")
-    assert [identifier for _, identifier, _ in logged_frames(path)] == [0x080, 0x080]
+    assert [frame.identifier for frame in logged_frames(path)] == [0x080, 0x080]
+
+
+@pytest.mark.parametrize("ending", [".log", ".asc", ".blf"])
+def test_frames_of_29_bits_and_of_can_fd_are_kept(ending: str, tmp_path: Path) -> None:
+    frames = [
+        LoggedFrame(1.0, 0x181, b"\x01", sent=True),
+        LoggedFrame(1.25, 0x8001, b"\x02", extended=True),
+        LoggedFrame(1.5, 0x181, b"\x03", extended=True),  # no foreign frame: another identifier
+        LoggedFrame(1.75, 0x8001, bytes(range(24)), extended=True, fd=True, sent=True),
+        LoggedFrame(2.0, 0x101, bytes(12), fd=True),
+    ]
+    log = tmp_path / "run.log"
+    log.write_text(
+        "(1.0) can0 181#01 T\n"
+        "(1.25) can0 00008001#02 R\n"
+        "(1.5) can0 00000181#03 R\n"
+        f"(1.75) can0 00008001##1{bytes(range(24)).hex()} T\n"
+        f"(2.0) can0 101##0{'00' * 12}\n",
+        encoding="ascii",
+    )
+    other = tmp_path / f"run{ending}"
+    if other != log:
+        with can.LogReader(str(log)) as read, can.Logger(str(other)) as written:
+            for frame in read:
+                frame.channel = 0
+                written(frame)
+    found = list(logged_frames(other))
+    first = found[0].time - 1.0
+    assert [each._replace(time=round(each.time - first, 6)) for each in found] == frames
 
 
 def test_a_small_blf_file_that_holds_much_is_refused(tmp_path: Path) -> None:

@@ -135,8 +135,10 @@ def test_a_slow_disk_does_not_delay_the_session(
         assert stuck.wait(PATIENCE)
         recorder.sample((0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0))
         recorder.frame(0.25, 0x80, b"\x01", True)
+        recorder.frame(0.5, 0x8001, b"\x02", False, fd=True, extended=True)
+        lines = "(0.250000000) can0 080#01 T\n(0.500000000) can0 00008001##102 R\n"
         until(lambda: path.read_text().endswith("4.0,5.0,0.0\n"))
-        until(lambda: path.with_suffix(".log").read_text() == "(0.250000000) can0 080#01 T\n")
+        until(lambda: path.with_suffix(".log").read_text() == lines)
     finally:
         released.set()
         recorder.close({"stop": None})

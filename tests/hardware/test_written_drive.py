@@ -136,6 +136,25 @@ def test_a_whole_session() -> None:
     assert np.std((recording.torque - balance)[inside]) < 0.02 * np.std(recording.torque[inside])
 
 
+def test_its_frames_of_can_fd_are_in_the_log_from_the_first(tmp_path: Path) -> None:
+    @dataclass
+    class Tapped(Flywheel):
+        tap: Any = None
+
+        def connect(self, period: float) -> None:
+            self.tap(0.0, 0x8001, b"\x01", True, fd=True, extended=True)
+            super().connect(period)
+
+        def read(self, timeout: float) -> DriveSample:
+            self.tap(self.clock.now(), 0x101, b"\x02", False, fd=True)
+            return super().read(timeout)
+
+    Session(Tapped(), LAW, SWING, LIMITS, options=OPTIONS, output=tmp_path / "run.csv").run()
+    lines = (tmp_path / "run.log").read_text().splitlines()
+    assert lines[0] == "(0.000000000) can0 00008001##101 T"
+    assert lines[-1].endswith(" can0 101##102 R")
+
+
 def test_what_it_says_against_a_start_is_heard() -> None:
     wheel = Flywheel(strongest=30.0)
     with pytest.raises(

@@ -174,7 +174,8 @@ class AcmeType(DriveType):
     ) -> Sequence[LoggedCycle]:
         del joint, identity  # positions and torques are at the output, and nothing else is needed
         cycles, taken, counts = list[LoggedCycle](), math.nan, 0
-        for when, identifier, payload in frames:
+        for frame in frames:
+            when, identifier, payload = frame.time, frame.identifier, frame.payload
             if identifier == STATE + 1:
                 taken, counts = when, _STATE_REPLY.unpack(payload)[0]
             elif identifier == TORQUE + 1:

@@ -12,6 +12,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
+from jointid.hardware.can.bus import check_bitrates, check_interface
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -33,17 +34,22 @@ class BusOptions:
         Default "can0".
     bitrate : int
         [bit/s]; with socketcan it is set with the interface, not here. Default 500 000.
+    fd : bool
+        Frames of CAN FD may be sent and received. Default False.
+    data_bitrate : int, optional
+        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
     """
 
     interface: str = "socketcan"
     channel: str = "can0"
     bitrate: int = 500_000
+    fd: bool = False
+    data_bitrate: int | None = None
 
     def __post_init__(self) -> None:
-        if not 10_000 <= self.bitrate <= 1_000_000:
-            raise InputError(
-                "10 000 to 1 000 000 bit/s is expected", argument="bitrate", value=self.bitrate
-            )
+        check_bitrates(self.bitrate, fd=self.fd, data_bitrate=self.data_bitrate)
+        if self.interface != "socketcan":  # a bench without a CAN bus needs no python-can
+            check_interface(self.interface)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

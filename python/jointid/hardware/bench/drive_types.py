@@ -161,7 +161,7 @@ class DriveType:
         Parameters
         ----------
         frames : iterable of LoggedFrame
-            What the drive gave to its `tap`: time [s], identifier, payload.
+            What the drive gave to its `tap`, and other nodes' frames in logs of other programs.
         joint : Joint
         options : object
         identity : mapping

@@ -9,12 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
+from jointid.joint.checks import suggestion
 
 if TYPE_CHECKING:
     import can
 
 _NETWORKS = Path("/sys/class/net")
 _IS_UP = 0x1  # IFF_UP
+_FD_SIZE = 72  # bytes of a frame of CAN FD as Linux has it
+_FASTEST = 8_000_000  # [bit/s], of the data of CAN FD
+_HIGHEST, _ALL_BITS = 0x7FF, 0x1FFFFFFF  # of an identifier of 11 and of 29 bits
 
 
 @contextmanager
@@ -24,6 +28,9 @@ def open_bus(
     channel: str | None = "can0",
     bitrate: int = 500_000,
     identifiers: Iterable[int] | None = None,
+    extended: bool = False,
+    fd: bool = False,
+    data_bitrate: int | None = None,
 ) -> Iterator[can.BusABC]:
     """Open a CAN bus; it is shut down at the end.
 
@@ -38,7 +45,13 @@ def open_bus(
     bitrate : int
         [bit/s]. SocketCAN's is set with the interface (`ip link`). Default 500 000.
     identifiers : iterable of int, optional
-        COB-IDs of the frames to receive. Default: all frames.
+        Of the frames to receive. Default: all frames.
+    extended : bool
+        All of these identifiers have 29 bits. Default False: those up to 7FFh have 11.
+    fd : bool
+        Frames of CAN FD may be sent and received. Default False.
+    data_bitrate : int, optional
+        Of the data of CAN FD frames [bit/s]; SocketCAN's is set with the interface. Default: the same as `bitrate`.
 
     Yields
     ------
@@ -55,23 +68,81 @@ def open_bus(
     ...     print(bus.recv(0.01))
     None
     """
-    bus = _opened(interface, channel, bitrate, identifiers)
+    check_bitrates(bitrate, fd=fd, data_bitrate=data_bitrate)
+    filters = None
+    if identifiers is not None:
+        filters = [_filter(identifier, extended) for identifier in identifiers]
+    bus = _opened(interface, channel, bitrate, filters, (data_bitrate or bitrate) if fd else None)
     try:
         yield bus
     finally:
         bus.shutdown()
 
 
-def _opened(
-    interface: str, channel: str | None, bitrate: int, identifiers: Iterable[int] | None
-) -> can.BusABC:
+def check_interface(interface: str) -> None:
+    """See that python-can knows an interface, as far as it is installed.
+
+    Raises
+    ------
+    InputError
+        It does not.
+    """
     if interface == "emulated":
-        raise InputError(
+        reason = (
             "python-can has no such interface: an emulated bench is an EmulatedBus, or an EmulatorThread "
-            "on the interface 'virtual'",
-            argument="interface",
-            value=interface,
+            "on the interface 'virtual'"
         )
+        raise InputError(reason, argument="interface", value=interface)
+    try:
+        import can
+    except ModuleNotFoundError:
+        return
+    if interface not in can.VALID_INTERFACES:
+        reason = suggestion(interface, sorted(can.VALID_INTERFACES))
+        raise InputError(reason, argument="interface", value=interface)
+
+
+def check_bitrates(bitrate: int, *, fd: bool, data_bitrate: int | None) -> None:
+    """See that a bus can have these bit rates.
+
+    Raises
+    ------
+    InputError
+        It cannot.
+    """
+    if not 10_000 <= bitrate <= 1_000_000:
+        raise InputError("10 000 to 1 000 000 bit/s is expected", argument="bitrate", value=bitrate)
+    if data_bitrate is None:
+        return
+    if not fd:
+        raise InputError(
+            "classic CAN has no bit rate of the data of its own",
+            argument="data_bitrate",
+            value=data_bitrate,
+            remedy="fd = true opens the bus for CAN FD",
+        )
+    if not bitrate <= data_bitrate <= _FASTEST:
+        raise InputError(
+            f"bitrate, {bitrate}, to {_FASTEST} bit/s is expected",
+            argument="data_bitrate",
+            value=data_bitrate,
+        )
+
+
+def _filter(identifier: int, extended: bool) -> dict[str, Any]:
+    """Pass one identifier on; one above 7FFh has 29 bits in any case."""
+    long = extended or identifier > _HIGHEST
+    return {"can_id": identifier, "can_mask": _ALL_BITS if long else _HIGHEST, "extended": long}
+
+
+def _opened(
+    interface: str,
+    channel: str | None,
+    bitrate: int,
+    filters: list[dict[str, Any]] | None,
+    data_bitrate: int | None,
+) -> can.BusABC:
+    check_interface(interface)
     try:
         import can
     except ModuleNotFoundError as error:
@@ -84,24 +155,15 @@ def _opened(
         raise InputError(
             "missing; a name such as 'can0' is expected", argument="channel", value=channel
         )
-    if not 10_000 <= bitrate <= 1_000_000:
-        raise InputError("10 000 to 1 000 000 bit/s is expected", argument="bitrate", value=bitrate)
-    if interface not in can.VALID_INTERFACES:
-        raise InputError(
-            f"known are {', '.join(sorted(can.VALID_INTERFACES))}",
-            argument="interface",
-            value=interface,
-        )
     settings: dict[str, Any] = {}
     if interface == "socketcan":
-        _check_network(channel, bitrate)
-        if identifiers is not None:
-            settings["can_filters"] = [
-                {"can_id": identifier, "can_mask": 0x7FF, "extended": False}
-                for identifier in identifiers
-            ]
+        _check_network(channel, bitrate, data_bitrate)
+        if filters is not None:
+            settings["can_filters"] = filters
     elif interface not in ("virtual", "udp_multicast", "socketcand"):
         settings["bitrate"] = bitrate
+    if data_bitrate is not None:
+        settings |= _fd_settings(interface, bitrate, data_bitrate)
     try:
         return can.Bus(channel, interface=interface, **settings)
     except (can.CanError, OSError, ImportError, ValueError, RuntimeError) as error:
@@ -111,8 +173,31 @@ def _opened(
         ) from error
 
 
-def _check_network(channel: str, bitrate: int) -> None:
+def _fd_settings(interface: str, bitrate: int, data_bitrate: int) -> dict[str, Any]:
+    """What python-can's interfaces call CAN FD."""
+    import can
+
+    if interface in ("socketcan", "udp_multicast"):
+        return {"fd": True}
+    if interface == "virtual":
+        return {"protocol": can.CanProtocol.CAN_FD}
+    if interface == "pcan":  # it takes no bit rates
+        timing = can.BitTimingFd.from_sample_point(
+            f_clock=80_000_000,
+            nom_bitrate=bitrate,
+            nom_sample_point=80.0,
+            data_bitrate=data_bitrate,
+            data_sample_point=80.0,
+        )
+        return {"timing": timing}
+    return {"fd": True, "data_bitrate": data_bitrate}
+
+
+def _check_network(channel: str, bitrate: int, data_bitrate: int | None) -> None:
     """Linux opens a network that is down without an error, and fails at the first frame."""
+    up = f"sudo ip link set {channel} up type can bitrate {bitrate}"
+    if data_bitrate is not None:
+        up += f" dbitrate {data_bitrate} fd on"
     flags = _NETWORKS / channel / "flags"
     if not _NETWORKS.is_dir():
         return
@@ -124,15 +209,28 @@ def _check_network(channel: str, bitrate: int) -> None:
         )
     if not int(flags.read_text(), 16) & _IS_UP:
         raise InputError(
-            "the network is down; bring it up with "
-            f"`sudo ip link set {channel} up type can bitrate {bitrate}`",
+            "the network is down",
             argument="channel",
             value=channel,
+            remedy=f"bring it up with `{up}`",
+        )
+    size = _NETWORKS / channel / "mtu"
+    if data_bitrate is not None and size.is_file() and int(size.read_text()) < _FD_SIZE:
+        down = f"sudo ip link set {channel} down"
+        controller = (_NETWORKS / channel / "device").exists()
+        other = f"{down} && {up}" if controller else f"sudo ip link set {channel} mtu {_FD_SIZE}"
+        raise InputError(
+            "the network carries no frames of CAN FD",
+            argument="channel",
+            value=channel,
+            remedy=f"let it do so with `{other}`",
         )
 
 
 def _reason(error: Exception) -> str:
     code = getattr(error, "errno", None)
+    if "msgpack" in str(error):
+        return "python-can needs msgpack for this interface; pip install msgpack"
     if code == errno.EAFNOSUPPORT:
         return "the kernel has no CAN (`sudo modprobe can_raw` loads it where it is available)"
     if code == errno.ENODEV:

@@ -136,9 +136,3 @@ def sdo_result(payload: bytes, request: SdoRequest) -> int | None:
         size = 4 - (payload[0] >> 2 & 0x3)
         return int.from_bytes(payload[4 : 4 + size], "little")
     return int.from_bytes(payload[4:8], "little") if payload[0] == 0x42 else None
-
-
-def bits_on_wire(length: int) -> int:
-    """Bits of a frame with an 11-bit identifier and this many bytes, with the most stuffing and the gap."""
-    plain = 34 + 8 * length
-    return plain + (plain - 1) // 4 + 13

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import can
 
@@ -15,19 +15,42 @@ from jointid.base.errors import InputError
 from jointid.base.unpacking import TooLargeError
 from jointid.hardware.can.blf_file import unpacked
 
-_HIGHEST = 0x7FF  # identifier of 11 bits
+_HIGHEST, _HIGHEST_EXTENDED = 0x7FF, 0x1FFFFFFF  # identifiers of 11 and 29 bits
 _LONGEST = 64  # bytes: a drive of another make may use long frames
 ENDINGS = (".log", ".asc", ".blf")
 
-LoggedFrame = tuple[float, int, bytes]  # time [s], identifier, payload
+
+class LoggedFrame(NamedTuple):
+    """A frame of a frame log.
+
+    Attributes
+    ----------
+    time : float
+        [s], on the clock of the log.
+    identifier : int
+    payload : bytes
+    extended : bool
+        The identifier has 29 bits. Default False: 11 bits.
+    fd : bool
+        A frame of CAN FD. Default False.
+    sent : bool
+        By the host, as far as the log says so. Default False.
+    """
+
+    time: float
+    identifier: int
+    payload: bytes
+    extended: bool = False
+    fd: bool = False
+    sent: bool = False
 
 
 def logged_frames(path: Path) -> Iterator[LoggedFrame]:
-    """Yield the frames with 11-bit identifiers, in the file's order; error frames are left out.
+    """Yield the frames, in the file's order; error frames and requests without bytes are left out.
 
     Frames that were received although the host sends frames with their identifier are another master's,
     and are left out too, where the file says which were sent. A last line that is cut off is no frame.
-    Frames of CAN FD are left out, too. Errors do not name the file: the caller does.
+    Errors do not name the file: the caller does.
 
     Parameters
     ----------
@@ -37,8 +60,8 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     Raises
     ------
     InputError
-        The file cannot be read, or a frame is none that a bus can carry: an identifier above 7FFh, more than 64 bytes,
-        a stamp that is not finite; or it is much larger when it is unpacked.
+        The file cannot be read, or a frame is none that a bus can carry: an identifier above 7FFh (of 29 bits above
+        1FFFFFFFh), more than 64 bytes, a stamp that is not finite; or it is much larger when it is unpacked.
     """
     if path.suffix.lower() not in ENDINGS:
         raise InputError(
@@ -46,21 +69,27 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
             argument="log",
             value=path.name,
         )
-    number, sent = 0, set[int]()
+    number, sent = 0, set[tuple[int, bool]]()
     try:
         for message in _messages(path):
             number += 1
-            if message.is_error_frame or message.is_remote_frame or message.is_extended_id:
-                continue
-            if message.is_fd:  # no drive's: CANopen sends classic frames
+            if message.is_error_frame or message.is_remote_frame:
                 continue
             problem = _problem(message)
             if problem:
                 raise InputError(f"frame {number} {problem}")
+            key = message.arbitration_id, message.is_extended_id
             if not message.is_rx:
-                sent.add(message.arbitration_id)
-            if not message.is_rx or message.arbitration_id not in sent:
-                yield message.timestamp, message.arbitration_id, bytes(message.data)
+                sent.add(key)
+            if not message.is_rx or key not in sent:
+                yield LoggedFrame(
+                    message.timestamp,
+                    message.arbitration_id,
+                    bytes(message.data),
+                    extended=message.is_extended_id,
+                    fd=message.is_fd,
+                    sent=not message.is_rx,
+                )
     except TooLargeError as error:  # its remedy is one of `load`, and it names the file
         raise InputError(error.reason) from None
     except InputError:
@@ -74,11 +103,12 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
 
 
 def _problem(message: can.Message) -> str:
-    """What no frame with an 11-bit identifier has; python-can's readers do not look."""
+    """What no frame has; python-can's readers do not look."""
     if not math.isfinite(message.timestamp):
         return "has a stamp that is no number"
-    if not 0 <= message.arbitration_id <= _HIGHEST:
-        return f"has the identifier {message.arbitration_id:X}h, above {_HIGHEST:X}h"
+    highest = _HIGHEST_EXTENDED if message.is_extended_id else _HIGHEST
+    if not 0 <= message.arbitration_id <= highest:
+        return f"has the identifier {message.arbitration_id:X}h, above {highest:X}h"
     if len(message.data) > _LONGEST:
         return f"has {len(message.data)} bytes, more than {_LONGEST}"
     return ""

@@ -10,6 +10,7 @@ import can
 
 from jointid.base.errors import InputError
 from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.can.wire_time import bits_on_wire
 from jointid.hardware.elmo import registers
 from jointid.hardware.elmo import setup as elmo_setup
 from jointid.hardware.elmo.codec import Command
@@ -319,7 +320,7 @@ class ElmoDrive:
 
     def bus_load(self, period: float) -> float:
         """Share of the bus: SYNC, position, command with echo, both heartbeats, sensor."""
-        bits = canopen.bits_on_wire
+        bits = bits_on_wire
         total = bits(0) + 3 * bits(8) + bits(1) * (1.0 + period / self.options.drive_heartbeat)
         if isinstance(self.options.torque, SyncedConverter):
             total += bits(4)

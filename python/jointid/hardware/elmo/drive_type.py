@@ -56,6 +56,8 @@ class ElmoType(DriveType):
             channel=bus.channel,
             bitrate=bus.bitrate,
             identifiers=bench.drive.received,
+            fd=bus.fd,
+            data_bitrate=bus.data_bitrate,
         ) as opened:
             yield ElmoDrive(opened, bench.joint, bench.drive)
 

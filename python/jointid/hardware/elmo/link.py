@@ -299,7 +299,7 @@ class ElmoLink:
             if meaning:
                 self._note("bus", f"an error frame of the CAN controller: {meaning}")
             return True
-        if message.is_extended_id or message.is_remote_frame:
+        if message.is_extended_id or message.is_remote_frame or message.is_fd:
             return True  # none of the drive's
         payload, when = bytes(message.data), self._arrival(message)
         if self.foreign.concerns(message.arbitration_id):

@@ -55,7 +55,9 @@ class CycleReader:
         InputError
             Frames are missing.
         """
-        for when, identifier, payload in frames:
+        for when, identifier, payload, extended, fd, _ in frames:
+            if extended or fd:  # another node's: CANopen's are classic frames of 11 bits
+                continue
             if identifier == canopen.SYNC:
                 self._begin(when)
                 continue

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from jointid.hardware.can.canopen_frames import bits_on_wire
+from jointid.hardware.can.wire_time import bits_on_wire
 from jointid.hardware.elmo.options import ElmoOptions
 
 _TIE = 1e-6  # [s]; of frames that begin together the SYNC goes first, and a log rounds its stamps

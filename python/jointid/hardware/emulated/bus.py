@@ -35,6 +35,8 @@ class EmulatedBus(can.BusABC):
         Default 0.
     seed : int
         Of the jitter. Default 0.
+    data_bitrate : float, optional
+        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
 
     Raises
     ------
@@ -52,6 +54,7 @@ class EmulatedBus(can.BusABC):
         clock_drift: float = 0.0,
         jitter: float = 0.0,
         seed: int = 0,
+        data_bitrate: float | None = None,
     ) -> None:
         if not -0.01 <= clock_drift <= 0.01:
             raise InputError("-0.01 to 0.01 is expected", argument="clock_drift", value=clock_drift)
@@ -65,7 +68,7 @@ class EmulatedBus(can.BusABC):
         self._faults = faults
         self._time = 0.0  # of the devices and the joint
         self._agenda = Agenda()
-        self._wire = Wire(self._true_time, self._at, bitrate, faults)
+        self._wire = Wire(self._true_time, self._at, bitrate, faults, data_bitrate)
         self._inbox: deque[can.Message] = deque()
         self.sent = 0
         self.host_work = 0.0  # [s] that passes with each frame of the host's: its own computing

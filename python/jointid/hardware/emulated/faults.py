@@ -121,5 +121,8 @@ def _copy(message: can.Message) -> can.Message:
         data=bytes(message.data),
         is_extended_id=message.is_extended_id,
         is_remote_frame=message.is_remote_frame,
+        is_fd=message.is_fd,
+        bitrate_switch=message.bitrate_switch,
+        error_state_indicator=message.error_state_indicator,
         dlc=message.dlc,
     )

@@ -46,6 +46,8 @@ class EmulatorThread:
         Shortest time between two looks at what is due [s], unless a frame comes. It is done at its time by the
         devices' clock all the same: a machine that wakes slowly has less to do, and frames are so much
         later. Default 0.
+    data_bitrate : float, optional
+        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
 
     Attributes
     ----------
@@ -70,9 +72,10 @@ class EmulatorThread:
         faults: Sequence[BusFault] = (),
         watch: Callable[[float], object] | None = None,
         rest: float = 0.0,
+        data_bitrate: float | None = None,
     ) -> None:
         self._bus, self._devices, self._watch, self._rest = bus, devices, watch, rest
-        self._wire = Wire(self.now, self.at, bitrate, faults)
+        self._wire = Wire(self.now, self.at, bitrate, faults, data_bitrate)
         self._agenda = Agenda()
         self._failure: BaseException | None = None
         self._ending = threading.Event()

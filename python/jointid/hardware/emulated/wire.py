@@ -9,7 +9,7 @@ from pathlib import Path
 
 import can
 
-from jointid.hardware.can.canopen_frames import bits_on_wire
+from jointid.hardware.can.wire_time import frame_time
 from jointid.hardware.emulated.device import Event
 from jointid.hardware.emulated.faults import BusFault, mangled
 
@@ -41,6 +41,8 @@ class Wire:
         [bit/s]; None: frames take no time.
     faults : sequence of BusFault
         What goes wrong, and when.
+    data_bitrate : float, optional
+        Of the data of CAN FD frames [bit/s]. Default: the same.
     """
 
     def __init__(
@@ -49,9 +51,10 @@ class Wire:
         at: Callable[[float, Event], None],
         bitrate: float | None,
         faults: Sequence[BusFault] = (),
+        data_bitrate: float | None = None,
     ) -> None:
         self._now, self._at = now, at
-        self._bitrate, self._faults = bitrate, faults
+        self._bitrate, self._data_bitrate, self._faults = bitrate, data_bitrate, faults
         self._queues: dict[int, deque[_Frame]] = {}
         self._busy = False
         self._free = 0.0  # [s], when the last frame was over
@@ -80,7 +83,9 @@ class Wire:
         if self._busy or not waiting:
             return
         frame = min(waiting, key=lambda queue: _priority(queue[0].message)).popleft()
-        took = 0.0 if self._bitrate is None else bits_on_wire(frame.message.dlc) / self._bitrate
+        took = 0.0
+        if self._bitrate is not None:
+            took = frame_time(frame.message, self._bitrate, self._data_bitrate)
         end = max(frame.put, self._free) + took
         self._busy = True
         self._at(end, lambda: self._finish(frame, end))

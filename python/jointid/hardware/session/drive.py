@@ -130,7 +130,8 @@ class Drive(Protocol):
     All of them may raise DriveFaultError. Torque and position are positive in the same direction.
     A drive may have an attribute `tap`, None at first: if so, the session sets it to a callable
     (time [s], identifier, payload, whether sent) for the time of the run, to be called with each frame,
-    for the frame log. It may have an attribute `resolution`, the output angle of an encoder count [rad],
+    for the frame log; with fd=True for a frame of CAN FD, extended=True for an identifier of 29 bits. It may
+    have an attribute `resolution`, the output angle of an encoder count [rad],
     which `SessionOptions` must give otherwise; an attribute `joint`, a `Joint`; and a method `metadata`,
     which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
     recording, so that a replay of the frame log finds them. It may have a method `report`, which returns a

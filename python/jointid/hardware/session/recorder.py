@@ -29,7 +29,7 @@ COLUMNS = (
 _FLUSH = 0.02  # [s]: not much more is lost when the program is killed
 _SYNC = 0.25  # [s]: with what a slow disk takes, less than a second is lost with the power
 
-Frame = tuple[float, int, bytes, bool]
+Frame = tuple[float, int, bytes, bool, bool, bool]  # and whether sent, of CAN FD, of 29 bits
 
 
 def check_output(path: Path) -> None:
@@ -106,9 +106,18 @@ class Recorder:
         """Keep a row of `COLUMNS`."""
         self._queue.put(row)
 
-    def frame(self, when: float, identifier: int, payload: bytes, sent: bool) -> None:
-        """Keep a frame."""
-        self._queue.put((when, identifier, payload, sent))
+    def frame(
+        self,
+        when: float,
+        identifier: int,
+        payload: bytes,
+        sent: bool,
+        *,
+        fd: bool = False,
+        extended: bool = False,
+    ) -> None:
+        """Keep a frame: what a drive's `tap` is given."""
+        self._queue.put((when, identifier, payload, sent, fd, extended))
 
     def close(self, ending: Mapping[str, Any] | None = None) -> None:
         """Write what is left; everything is on disk then.
@@ -204,6 +213,9 @@ def _created(path: Path, log: Path, header: bytes) -> tuple[AppendedFile, Append
 
 
 def _line(frame: Frame) -> bytes:
-    when, identifier, payload, sent = frame
+    """Return candump's line: 3 digits of an identifier or, of 29 bits, 8; ## and the flags of CAN FD."""
+    when, identifier, payload, sent, fd, extended = frame
     side = "T" if sent else "R"
-    return f"({when:.9f}) can0 {identifier:03X}#{payload.hex().upper()} {side}\n".encode()
+    digits = f"{identifier:08X}" if extended else f"{identifier:03X}"
+    mark = "##1" if fd else "#"  # 1: the data have a bit rate of their own
+    return f"({when:.9f}) can0 {digits}{mark}{payload.hex().upper()} {side}\n".encode()

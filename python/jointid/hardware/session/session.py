@@ -25,7 +25,7 @@ from jointid.hardware.session.moving_joint import MovingJoint, breakaway
 from jointid.hardware.session.options import SessionOptions, check_cycles, with_resolution
 from jointid.hardware.session.outcome import ending_of, recording_of, stop_of
 from jointid.hardware.session.realtime import RealTime, RealTimeOptions
-from jointid.hardware.session.recorder import Frame, Recorder, check_output
+from jointid.hardware.session.recorder import Recorder, check_output
 from jointid.hardware.session.start_checks import (
     approach_time,
     check_approach,
@@ -198,10 +198,10 @@ class Session:
         cause: Exception | KeyboardInterrupt | None = None
         self._follower, self._end, self._bug, self.recording = None, None, None, None
         self._braked = None
-        early: list[Frame] = []  # frames of bringing the drive up, before there is a recorder
+        early: list[tuple[Any, dict[str, Any]]] = []  # frames before there is a recorder
         if self._output is not None and not dry_run:
             check_output(self._output)
-            self._tap(lambda *frame: early.append(frame))
+            self._tap(lambda *frame, **kind: early.append((frame, kind)))
         try:
             with Interruptions() as interruptions:
                 try:
@@ -212,8 +212,8 @@ class Session:
                     else:
                         if self._output is not None:
                             recorder = self._recorder(self._output)
-                            for frame in early:
-                                recorder.frame(*frame)
+                            for frame, kind in early:
+                                recorder.frame(*frame, **kind)
                             self._tap(recorder.frame)
                         with self._real_time:
                             cause, moment = self._guarded(recorder, interruptions)
