@@ -41,7 +41,7 @@ CALLS: dict[str, list[str]] = {
     "check": ["check", BENCH, "--emulate"],
     "first-motion": ["first-motion", BENCH, "--emulate", "--yes"],
     "run": ["run", BENCH, "--emulate", "--cycles", "1", "--output", "runs"],
-    "emulate": ["emulate", BENCH, "--interface", "virtual", "--channel", "none", "--duration", "0.2"],
+    "emulate": ["emulate", BENCH, "--interface", "virtual"],
     "report": ["report", "estimate.json", "--output", "page.html"],
     "export": ["export", "estimate.json", "--to", "joint.h"],
     "info": ["info", WELL],

@@ -57,8 +57,8 @@ _TABLE = {
     ),
     "emulate": (
         "an emulated drive and joint on a CAN bus, for other programs to move",
-        "jointid.cli.session:add_emulate",
-        "jointid.cli.session:emulate",
+        "jointid.cli.emulation:add_emulate",
+        "jointid.cli.emulation:emulate",
     ),
     "report": (
         "write the HTML report of a saved estimate",
