@@ -31,6 +31,13 @@ def test_a_joint_at_rest_is_refused(model: Any, velocity: np.ndarray | None) -> 
     )
 
 
+def test_the_thesis_joint_with_a_closed_brake_is_refused() -> None:
+    """Its bounds are computed from the motion, which is none."""
+    run = jid.Recording(time=TIME, position=0.0 * REST, torque=PUSHED)
+    with pytest.raises(jid.InputError, match="the joint never moves: its position is 0 rad"):
+        jid.identify(run, jid.thesis_joint())
+
+
 def test_one_of_several_joints_at_rest_is_left_out() -> None:
     still = jid.Recording(time=TIME, position=REST, torque=PUSHED, name="parked")
     with pytest.raises(jid.InputError, match=r"recording 1 \(parked\).*leave this recording out"):
