@@ -42,7 +42,13 @@ def pushed(
             ElmoDrive(bus, changes.pop("joint", JOINT)),
             jid.OpenLoop(),
             jid.Trajectory.step(torque, duration=3.0),
-            limits(position=(-1.0, EDGE), saturated_samples=10**6, velocity=10.0, **changes),
+            limits(
+                position=(-1.0, EDGE),
+                saturated_samples=10**6,
+                velocity=10.0,
+                watchdog_travel=10.0,
+                **changes,
+            ),
             options=SessionOptions(settle=0.05),
         )
         with pytest.raises(SessionStoppedError) as caught:

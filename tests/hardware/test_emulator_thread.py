@@ -24,7 +24,11 @@ PATIENT: dict[str, Any] = {
     "answer_timeout": 5.0,
     "drive": ElmoOptions(heartbeat=10.0),
     "limits": limits(
-        missed_deadlines=10**6, saturated_samples=10**6, late_samples=10**6, late_share=1.0
+        missed_deadlines=10**6,
+        saturated_samples=10**6,
+        late_samples=10**6,
+        late_share=1.0,
+        watchdog_travel=1e6,  # of a heartbeat that a busy machine keeps
     ),
     "law": law().replace(bandwidth=15.0, robust_term=False),
 }

@@ -288,7 +288,7 @@ def test_window_of_a_wrong_kind_is_refused(window: Any) -> None:
         SessionLimits(position=window)
 
 
-@pytest.mark.parametrize("name", [f.name for f in fields(SessionOptions)])
+@pytest.mark.parametrize("name", [f.name for f in fields(SessionOptions) if f.type != "bool"])
 @pytest.mark.parametrize("value", ["x", True, [1.0]])
 def test_option_of_a_wrong_kind_is_refused(name: str, value: Any) -> None:
     with pytest.raises(jid.InputError, match=r"a (whole )?number is expected") as refused:

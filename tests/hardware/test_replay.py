@@ -221,7 +221,11 @@ def test_a_session_in_real_time(tmp_path: Path) -> None:
             answer_timeout=5.0,
             drive=drive,
             limits=limits(
-                missed_deadlines=10**6, saturated_samples=10**6, late_samples=10**6, late_share=1.0
+                missed_deadlines=10**6,
+                saturated_samples=10**6,
+                late_samples=10**6,
+                late_share=1.0,
+                watchdog_travel=1e6,
             ),
             law=law().replace(bandwidth=15.0, robust_term=False),
             output=path,

@@ -29,6 +29,7 @@ from jointid.hardware.session.clock import Clock
 from jointid.hardware.session.drive import DriveEnd, DriveFaultError, DriveSample
 from jointid.hardware.session.drive_report import DriveReport, Reported
 from jointid.hardware.session.silence import DriveSilence
+from jointid.hardware.session.watchdog import Watchdog
 from jointid.joint.joint import Joint
 
 _BOOT = 2.0  # [s] to wait for its message
@@ -115,6 +116,11 @@ class ElmoDrive:
     def resolution(self) -> float:
         """Output angle of an encoder count [rad]."""
         return self.options.resolution(self.joint)
+
+    @property
+    def watchdog(self) -> Watchdog:
+        """What the drive does without our heartbeat; `connect` reads it back, and refuses another one."""
+        return Watchdog(time=self.options.heartbeat, fed_by="heartbeat", then="off", read_back=True)
 
     def identity(self) -> dict[str, Any]:
         """What the drive reported about itself, and what was wrong with the frames on its bus."""

@@ -68,7 +68,11 @@ def fall_silent(link: ElmoLink, options: ElmoOptions, switch: MotorSwitch) -> Dr
     meaning = "" if failure is None else failure_meaning(int(failure))
     return DriveSilence(
         allowed=options.heartbeat,
-        motor_off=None if register is None else not DriveStatus.of(int(register)).motor_on,
+        state=None
+        if register is None
+        else "on"
+        if DriveStatus.of(int(register)).motor_on
+        else "off",
         told=told[0] - last if told else None,
         asked=asked - last,
         missed_host=bool(told) or _MISSED in meaning,

@@ -77,7 +77,7 @@ class MotorSwitch:
         link = self._link
         link.echoes.end()
         if self.seen_off:
-            return DriveEnd(motor_off=True, failure=self._failure)
+            return DriveEnd(state="off", failure=self._failure)
         end = link.clock.now() + _SEEN_OFF
         tries, pause = 0, period
         register: int | None = None
@@ -94,10 +94,10 @@ class MotorSwitch:
             if tries > _SOON:  # a slow drive is not to be flooded
                 pause = min(2.0 * pause, 0.02)
         if not self.seen_off:
-            return DriveEnd(motor_off=False)
+            return DriveEnd(state="on")
         if register is None or DriveStatus.of(register).failure:
             self._failure = failure_meaning(self._register("MF", 10.0 * period) or 0)
-        return DriveEnd(motor_off=True, failure=self._failure)
+        return DriveEnd(state="off", failure=self._failure)
 
     def _otherwise(self, pause: float, *, last: bool) -> None:
         """Switch off without the interpreter: "disable voltage" by SDO, at last the network's stop."""

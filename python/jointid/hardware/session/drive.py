@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from jointid.base.errors import InputError
 from jointid.hardware.session.clock import Clock
+from jointid.hardware.session.motor_state import MotorState, is_off, state_of
 
 FAULT_KINDS = (
     "stale_position",
@@ -100,20 +101,37 @@ class DriveSample:
     velocity: float = float("nan")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class DriveEnd:
     """State of a drive after the command to switch its motor off.
 
     Attributes
     ----------
-    motor_off : bool or None
-        Whether it confirmed so when asked; None: it cannot be asked.
+    state : {"off", "damped", "held", "braked", "on"} or None
+        What it said of its motor when asked; None: it cannot be asked.
     failure : str
         Why it had shut the motor down by itself; empty when it had not.
+    motor_off : bool or None
+        Whether `state` is "off"; as an argument the older name of it, True for "off" and False for "on".
     """
 
-    motor_off: bool | None = None
-    failure: str = ""
+    state: MotorState | None
+    failure: str
+
+    def __init__(
+        self,
+        *,
+        state: MotorState | None = None,
+        failure: str = "",
+        motor_off: bool | None = None,
+    ) -> None:
+        object.__setattr__(self, "state", state_of(state, motor_off))
+        object.__setattr__(self, "failure", failure)
+
+    @property
+    def motor_off(self) -> bool | None:
+        """Whether it confirmed that its motor is off; None: it cannot be asked."""
+        return is_off(self.state)
 
 
 class Drive(Protocol):
@@ -136,7 +154,8 @@ class Drive(Protocol):
     which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
     recording, so that a replay of the frame log finds them. It may have a method `report`, which returns a
     `DriveReport` once it is connected, its motor off; and a method `fall_silent`, which returns a
-    `DriveSilence`, for `first_motion(watchdog=True)`.
+    `DriveSilence`, for `first_motion(watchdog=True)`. It should have an attribute `watchdog`, a `Watchdog`:
+    without it a bench gets no certificate.
     """
 
     @property

@@ -13,6 +13,9 @@ from jointid.simulation.peaks import Peaks
 from jointid.simulation.plant import torque_limit
 
 _MEASURED_TORQUE, _TORQUE_DIFFERENCE = 1.2, 0.25  # of the commanded limit
+_WATCHDOG_SHARE, _LEAST_SHARE = 0.1, math.radians(2.0)  # of the window; at least
+_WITHOUT_WINDOW = math.radians(10.0)
+_NO_WINDOW = (-math.pi, math.pi)
 _ROUNDED = 1e-9  # a torque that is cut at the limit may be so much above it
 
 
@@ -56,6 +59,9 @@ class SessionLimits:
         How many times the torque that the reference needs by the joint's values (friction, inertia, weight)
         may be commanded for longer than 50 ms; a twentieth of `torque` is added. Default: not watched;
         `commission` takes 2 for runs with an identified joint.
+    watchdog_travel : float, optional
+        Farthest that the joint may go when the host dies, until the drive's watchdog has stopped it [rad]. Default:
+        as far as if the motor went off at once, and `watchdog_share`.
 
     Raises
     ------
@@ -63,7 +69,7 @@ class SessionLimits:
         A value is of a wrong kind, or not above 0; the window is empty.
     """
 
-    position: tuple[float, float] = (-math.pi, math.pi)
+    position: tuple[float, float] = _NO_WINDOW
     velocity: float = 10.0
     torque: float = math.inf
     torque_rate: float = math.inf
@@ -77,6 +83,7 @@ class SessionLimits:
     late_samples: int = 4
     late_share: float = 0.01
     torque_envelope: float | None = None
+    watchdog_travel: float | None = None
 
     def __post_init__(self) -> None:
         window = tuple(self.position) if isinstance(self.position, Iterable) else ()
@@ -107,6 +114,17 @@ class SessionLimits:
         """Largest lasting difference between commanded and measured torque [N·m]."""
         given = self.torque_difference
         return _TORQUE_DIFFERENCE * self.torque if given is None else given
+
+    @property
+    def watchdog_share(self) -> float:
+        """How much farther the joint may go because the drive's watchdog takes its time, by default [rad].
+
+        A tenth of the window, at least 2°; 10° where there is no window.
+        """
+        low, high = self.position
+        if (low, high) == _NO_WINDOW:
+            return _WITHOUT_WINDOW
+        return max(_WATCHDOG_SHARE * (high - low), _LEAST_SHARE)
 
     def passed_by(self, peaks: Peaks) -> str:
         """Return which of position, velocity and torque some joints go beyond in a motion; empty: none.

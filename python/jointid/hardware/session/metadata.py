@@ -15,6 +15,7 @@ from jointid import _core
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.watchdog import watchdog_of
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document
 from jointid.simulation.arguments import Controller
@@ -48,6 +49,7 @@ def session_metadata(
         "limits": plain(limits),
         "options": plain(options),
         "drive": plain(drive.identity()),
+        "watchdog": plain(watchdog_of(drive)),
         **(plain(described()) if callable(described) else {}),
         "versions": {
             "jointid": _core.__version__,

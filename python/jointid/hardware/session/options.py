@@ -37,6 +37,8 @@ class SessionOptions:
     answer_timeout : float, optional
         For the drive's state in a cycle [s]; beyond, the position is stale. Default: three quarters of a
         period: after a late cycle the bus carries more frames.
+    acknowledge_damped : bool
+        Start with a drive that does not switch its motor off when the host is gone, but damps, holds or brakes it.
 
     Raises
     ------
@@ -51,12 +53,19 @@ class SessionOptions:
     velocity_time: float = 0.01
     resolution: float | None = None
     answer_timeout: float | None = None
+    acknowledge_damped: bool = False
 
     def __post_init__(self) -> None:
         whole_number("velocity_counts", self.velocity_counts, 1, _MOST_COUNTS)
+        if not isinstance(self.acknowledge_damped, bool):
+            raise InputError(
+                "true or false is expected",
+                argument="acknowledge_damped",
+                value=self.acknowledge_damped,
+            )
         for item in fields(self):
             value = getattr(self, item.name)
-            if value is None and item.default is None:
+            if item.name == "acknowledge_damped" or (value is None and item.default is None):
                 continue
             if not is_number(value):
                 raise InputError("a number is expected", argument=item.name, value=value)

@@ -28,6 +28,7 @@ from jointid.hardware.session.realtime import RealTime, RealTimeOptions
 from jointid.hardware.session.recorder import Recorder, check_output
 from jointid.hardware.session.start_checks import (
     approach_time,
+    approach_to,
     check_approach,
     problems_at_rest,
     problems_on_paper,
@@ -40,6 +41,8 @@ from jointid.hardware.session.stop import (
     is_bug,
     noted,
 )
+from jointid.hardware.session.watchdog import watchdog_of
+from jointid.hardware.session.watchdog_check import watchdog_problems, watchdog_travel
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
@@ -113,6 +116,7 @@ class Session:
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
         moved = getattr(drive, "joint", None) if joint is None else joint
+        self._joint = moved if isinstance(moved, Joint) else None
         self._moved, self._breakaway = MovingJoint.of(moved), breakaway(moved)
         self._options = with_resolution(options if options is not None else SessionOptions(), drive)
         self._designed = motion_metadata(
@@ -162,6 +166,20 @@ class Session:
         reasons += problems_at_rest(sample, limits)
         if not isinstance(self._controller, _core.OpenLoop):
             check_approach(self._start() - sample.position, options)
+        watchdog = watchdog_of(self._drive)
+        if watchdog is not None:
+            reasons += watchdog_problems(
+                watchdog_travel(
+                    watchdog,
+                    joint=self._joint,
+                    controller=self._controller,
+                    trajectory=self._trajectory,
+                    limits=limits,
+                    options=options,
+                    position=sample.position,
+                ),
+                options,
+            )
         return reasons
 
     def run(self, *, dry_run: bool = False) -> Recording | None:
@@ -329,10 +347,9 @@ class Session:
         options = self._options
         here = self._drive.read(10.0 * options.period).position
         distance = self._start() - here
-        rise = approach_time(distance, options)
-        approach = Trajectory.sigmoid(distance, rise=rise, duration=rise + options.settle)
+        course = Course.of(approach_to(distance, options), options.period)
         follower.enter("move")
-        follower.follow(Course.of(approach, options.period), None, offset=here, settled=rise)
+        follower.follow(course, None, offset=here, settled=approach_time(distance, options))
 
     def _start(self) -> float:
         """Where the trajectory begins [rad]."""
@@ -357,7 +374,7 @@ class Session:
             self._end = self._drive.disable()
         except (Exception, KeyboardInterrupt) as error:
             self._note_bug(error)
-            self._end = DriveEnd(motor_off=False, failure=f"{type(error).__name__}: {error}")
+            self._end = DriveEnd(state="on", failure=f"{type(error).__name__}: {error}")
 
     def _leave(self) -> None:
         """Motor off, drive left."""

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from jointid.hardware.session.motor_state import MotorState, is_off, state_of
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class DriveSilence:
     """What a drive did when nothing was sent to it, its motor on at no torque.
 
@@ -16,8 +18,8 @@ class DriveSilence:
     ----------
     allowed : float
         Time that the drive was told to wait for the host [s].
-    motor_off : bool or None
-        Whether it says that its motor is off; None: it does not answer.
+    state : {"off", "damped", "held", "braked", "on"} or None
+        What it says of its motor; None: it does not answer.
     told : float or None
         From the host's last sign of life until the drive reported that it is missing [s]; None: it did not.
     asked : float
@@ -26,11 +28,34 @@ class DriveSilence:
         It names the missing host as the reason.
     failure : str
         What it names. Default: nothing.
+    motor_off : bool or None
+        Whether `state` is "off"; as an argument the older name of it, True for "off" and False for "on".
     """
 
     allowed: float
-    motor_off: bool | None
+    state: MotorState | None
     told: float | None
     asked: float
     missed_host: bool
-    failure: str = ""
+    failure: str
+
+    def __init__(
+        self,
+        *,
+        allowed: float,
+        told: float | None,
+        asked: float,
+        missed_host: bool,
+        state: MotorState | None = None,
+        failure: str = "",
+        motor_off: bool | None = None,
+    ) -> None:
+        given = {"allowed": allowed, "told": told, "asked": asked, "missed_host": missed_host}
+        given |= {"state": state_of(state, motor_off), "failure": failure}
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def motor_off(self) -> bool | None:
+        """Whether it says that its motor is off; None: it does not answer."""
+        return is_off(self.state)

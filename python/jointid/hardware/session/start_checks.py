@@ -98,6 +98,12 @@ def approach_time(distance: float, options: SessionOptions) -> float:
     return max(SHORTEST_APPROACH, 0.5 * math.pi * abs(distance) / options.approach_velocity)
 
 
+def approach_to(distance: float, options: SessionOptions) -> Trajectory:
+    """Return the way to the start, and the rest there, over a distance [rad]."""
+    rise = approach_time(distance, options)
+    return Trajectory.sigmoid(distance, rise=rise, duration=rise + options.settle)
+
+
 def problems_at_rest(sample: DriveSample, limits: SessionLimits) -> Iterator[str]:
     """Problems with the state of a drive that is up, its motor off."""
     low, high = limits.position

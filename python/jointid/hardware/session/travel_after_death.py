@@ -1,0 +1,215 @@
+"""How far a joint goes when its host dies: its torque held until the drive's time-out, then none, simulated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.base.values import dataclass
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.moving_joint import MovingJoint
+from jointid.joint.joint import Joint
+from jointid.simulation.plant import Values, simulated_joint
+from jointid.simulation.trajectory import FloatArray, Trajectory
+
+_MOMENTS = 400  # of a motion, of which only the worst are simulated on
+_PLACES = 4  # parts of its range, where torque depends on the angle: the worst of each
+_STEP = 2e-3  # [s] of the simulation, at most; a shorter hold has as many as 20 of its own
+_STEPS = 20
+_FIRST, _LONGEST = 0.25, 64.0  # [s] of coasting: at first, then twice as long until it stands
+_STANDS = 1e-3  # [rad/s]
+_HELD = _core.Trajectory.step(distance=1.0, time=0.0, duration=1e9)
+
+
+@dataclass(frozen=True, slots=True)
+class Moments:
+    """Instants of a motion at which the host may die.
+
+    Parameters
+    ----------
+    position, velocity, torque : ndarray
+        [rad], [rad/s]; that the drive holds from then on [N·m].
+    """
+
+    position: FloatArray
+    velocity: FloatArray
+    torque: FloatArray
+
+
+class DeadHost:
+    """Simulates a joint after the death of its host.
+
+    Parameters
+    ----------
+    joint : Joint or None
+        What it states is believed. Where it states no friction, the torque of friction is taken to remain what
+        it is; where it states no inertia, the acceleration.
+    largest_torque : float
+        To which commands are cut [N·m].
+
+    Attributes
+    ----------
+    coasts : bool
+        No friction is stated: nothing is known of the way after the time-out, and only the way until then counts.
+    """
+
+    def __init__(self, joint: Joint | None, largest_torque: float) -> None:
+        self._joint, self.coasts = _believed(joint)
+        self._limit = min(largest_torque, self._joint.torque_limit)
+        self._turns = bool(self._joint.weights or self._joint.harmonics)
+
+    def worst_moments(self, *motions: Moments) -> Moments:
+        """Return the moments of some motions from which others cannot go farther.
+
+        From a larger velocity and a larger torque a joint goes farther in that direction, whatever its friction.
+        """
+        position, velocity, torque = (
+            np.concatenate([getattr(motion, name) for motion in motions])
+            for name in ("position", "velocity", "torque")
+        )
+        place = np.zeros(len(position))
+        if self._turns and np.ptp(position) > 0.0:
+            place = np.floor(_PLACES * (position - position.min()) / np.ptp(position))
+        kept = np.zeros(len(position), dtype=np.bool_)
+        for direction in (1.0, -1.0):
+            for each in np.unique(place):
+                here = np.flatnonzero(place == each)
+                speed, push = direction * velocity[here], direction * torque[here]
+                order = here[np.lexsort((-push, -speed))]
+                strongest = np.maximum.accumulate(direction * torque[order])
+                kept[order[np.diff(strongest, prepend=-np.inf) > 0.0]] = True
+        return Moments(position[kept], velocity[kept], torque[kept])
+
+    def moments(self, trajectory: Trajectory, period: float, *, offset: float = 0.0) -> Moments:
+        """Return the moments of a motion that is followed exactly, with the torque that the joint needs there.
+
+        Parameters
+        ----------
+        trajectory : Trajectory
+        period : float
+            Of the commands [s].
+        offset : float
+            Added to the trajectory's positions [rad].
+        """
+        apart = max(period, trajectory.duration / _MOMENTS)
+        position, velocity, wanted = trajectory.sample(np.arange(0.0, trajectory.duration, apart))
+        position = position + offset
+        free = self._run(Moments(position, velocity, np.zeros_like(position)), 1, _STEP)
+        mass = self._joint.inertia + self._joint.link_inertia
+        torque = mass * (wanted - free["true_acceleration"][:, 0])
+        return Moments(position, velocity, np.clip(torque, -self._limit, self._limit))
+
+    def commanded(
+        self, trajectory: Trajectory, period: float, position: float, limits: SessionLimits
+    ) -> Moments:
+        """Return the moments of a motion by torques, from rest at an angle [rad], until a limit ends it."""
+        steps = max(1, round(trajectory.duration / period))
+        begin = Moments(np.full(1, position), np.zeros(1), np.ones(1))
+        found = self._run(begin, steps, period, trajectory.core)
+        names = ("true_position", "true_velocity", "torque")
+        places, speeds, torques = (found[name][0, :: max(1, steps // _MOMENTS)] for name in names)
+        low, high = limits.position
+        beyond = (places < low) | (places > high) | (np.abs(speeds) > limits.velocity)
+        kept = slice(None, int(np.argmax(beyond)) if beyond.any() else None)
+        return Moments(places[kept], speeds[kept], torques[kept])
+
+    def travel(self, moments: Moments, time: float) -> float:
+        """Return the farthest that a joint goes from where it was when its host died [rad].
+
+        Parameters
+        ----------
+        moments : Moments
+        time : float
+            After which the drive cuts the torque [s]. What a drive does besides (damped, held, braked) only shortens
+            the way, by how much nobody declares.
+        """
+        start = moments.position[:, np.newaxis]
+        farthest = 0.0
+        if time > 0.0:
+            steps = max(_STEPS, math.ceil(time / _STEP))
+            held = self._run(moments, steps + 1, time / steps)
+            farthest = float(np.abs(held["true_position"] - start).max())
+            moments = _last(held, moments)
+        duration = _FIRST
+        while not self.coasts and duration <= _LONGEST:
+            if not (np.abs(moments.velocity) > _STANDS).any():
+                break
+            freed = self._run(
+                replace(moments, torque=np.zeros_like(moments.torque)),
+                round(duration / _STEP),
+                _STEP,
+            )
+            farthest = max(farthest, float(np.abs(freed["true_position"] - start).max()))
+            moments = _last(freed, moments)
+            duration *= 2.0
+        return farthest
+
+    def _run(
+        self,
+        begin: Moments,
+        steps: int,
+        step: float,
+        torque: _core.Trajectory = _HELD,
+    ) -> dict[str, FloatArray]:
+        """Signals of a joint from each moment on, a row each."""
+        scenario = _core.Scenario(
+            duration=steps * step,
+            control_period=step,
+            integration_step=step,
+            sample_every=1,
+            settling=0.0,
+            sensors=_core.Sensors(),
+        )
+        setups = [
+            _core.Setup(
+                joint=self._joint,
+                controller=_core.OpenLoop(gain=gain),
+                gear_ratio=1.0,
+                sensor_gain=1.0,
+                sensor_offset=0.0,
+                position=position,
+                velocity=velocity,
+                seed=0,
+            )
+            for position, velocity, gain in zip(
+                begin.position.tolist(), begin.velocity.tolist(), begin.torque.tolist(), strict=True
+            )
+        ]
+        outcomes = _core.simulate_runs(scenario, torque, setups, signals=True, threads=1)
+        names = ("true_position", "true_velocity", "true_acceleration", "torque")
+        return {name: np.array([each.signals[name] for each in outcomes]) for name in names}
+
+
+def _last(found: dict[str, FloatArray], before: Moments) -> Moments:
+    """The state in which each run ended."""
+    return Moments(found["true_position"][:, -1], found["true_velocity"][:, -1], before.torque)
+
+
+def _believed(joint: Joint | None) -> tuple[_core.SimulatedJoint, bool]:
+    """What is simulated of a joint, and whether its friction is left out because it is not stated."""
+    moving = MovingJoint.of(joint)
+    if joint is not None and moving is not None:
+        known = {name for name, each in joint.parameters.items() if each.value is not None}
+        model = joint.model.resolved
+        stated = joint.model.replace(
+            ripple=_both(known, "ripple", model.ripple),
+            harmonics=_both(known, "position", model.harmonics),
+            terms={},
+        )
+        try:
+            whole = joint.replace(model=stated)
+            return simulated_joint(whole, Values(whole), 0.0, None), False
+        except InputError:
+            pass  # a value that a simulation needs is not stated
+    return _core.SimulatedJoint(inertia=1.0 if moving is None else moving.inertia), True
+
+
+def _both(known: set[str], name: str, orders: tuple[float, ...]) -> tuple[float, ...]:
+    """Those orders of which sine and cosine are stated."""
+    return tuple(
+        order for order in orders if {f"{name}_sin_{order:g}", f"{name}_cos_{order:g}"} <= known
+    )

@@ -1,0 +1,196 @@
+"""Whether a drive's watchdog is quick enough for a motion: the way of a joint after its host's death, judged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from jointid import _core
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.start_checks import approach_to
+from jointid.hardware.session.travel_after_death import DeadHost
+from jointid.hardware.session.watchdog import Watchdog
+from jointid.joint.joint import Joint
+from jointid.simulation.arguments import Controller
+from jointid.simulation.trajectory import Trajectory
+
+_PERIODS = 2.5  # in the watchdog's time, at least: a command may come late, or be lost
+_ROUNDED = 1e-6  # of a millisecond
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WatchdogTravel:
+    """How far a joint goes when its host dies in a motion, and how far it may.
+
+    Attributes
+    ----------
+    watchdog : Watchdog
+    travel : float
+        The farthest, from the worst moment of the motion [rad].
+    at_once : float
+        The same, if the motor went off at once [rad].
+    allowed : float
+        [rad]
+    stated : bool
+        The allowance is the joint file's; else it is `at_once` and a share of the window.
+    longest : float or None
+        Longest time that passes, in whole milliseconds [s]; None: `watchdog.time` passes, or no time does.
+    coasts : bool
+        The joint states no friction: `travel` ends with the watchdog's time, and then it coasts.
+    revolute : bool
+        Else [m].
+    """
+
+    watchdog: Watchdog
+    travel: float
+    at_once: float
+    allowed: float
+    stated: bool
+    longest: float | None
+    coasts: bool
+    revolute: bool
+
+    @property
+    def passed(self) -> bool:
+        """Whether the joint stays within its allowance."""
+        return self.travel <= self.allowed
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields, of JSON's types."""
+        watchdog = self.watchdog
+        return {
+            "time": watchdog.time,
+            "fed_by": watchdog.fed_by,
+            "then": watchdog.then,
+            "read_back": watchdog.read_back,
+            "travel": self.travel,
+            "at_once": self.at_once,
+            "allowed": self.allowed,
+            "longest": self.longest,
+            "coasts": self.coasts,
+        }
+
+    def __str__(self) -> str:
+        return f"{self.watchdog}; {self._way()}"
+
+    def problem(self) -> str:
+        """Return why the watchdog is too slow, with the longest time that passes."""
+        if self.longest is None:
+            remedy = "no time passes; move more slowly, or state another"
+        else:
+            remedy = (
+                f"the longest time that passes is {self.longest:g} s; give the drive no more than that, or state "
+                "another"
+            )
+        return (
+            f"the drive's watchdog is too slow for this motion: {self}; {remedy} watchdog_travel under "
+            "[session.limits]"
+        )
+
+    def _way(self) -> str:
+        until = "until then, and coasts on (no friction is stated)" if self.coasts else ""
+        source = (
+            "as watchdog_travel states"
+            if self.stated
+            else f"{self._angle(self.at_once)} if the motor went off at once, and a share of the window"
+        )
+        return (
+            f"when the host dies, the joint goes up to {self._angle(self.travel)} {until}".rstrip()
+            + f"; {self._angle(self.allowed)} are allowed ({source})"
+        )
+
+    def _angle(self, value: float) -> str:
+        return f"{math.degrees(value):.4g}°" if self.revolute else f"{value:.4g} m"
+
+
+def watchdog_travel(
+    watchdog: Watchdog,
+    *,
+    joint: Joint | None,
+    controller: Controller,
+    trajectory: Trajectory,
+    limits: SessionLimits,
+    options: SessionOptions,
+    position: float,
+) -> WatchdogTravel:
+    """Return how far a joint goes when its host dies in a session.
+
+    Parameters
+    ----------
+    watchdog : Watchdog
+        Of the drive.
+    joint : Joint or None
+        What it states of inertia, friction and weight is believed.
+    controller, trajectory, limits, options
+        Of the session.
+    position : float
+        Where the joint stands before it [rad].
+    """
+    dead = DeadHost(joint, limits.torque)
+    if isinstance(controller, _core.OpenLoop):
+        worst = dead.worst_moments(dead.commanded(trajectory, options.period, position, limits))
+    else:
+        start = float(trajectory.sample(np.zeros(1))[0][0])
+        approach = approach_to(start - position, options)
+        worst = dead.worst_moments(
+            dead.moments(trajectory, options.period),
+            dead.moments(approach, options.period, offset=position),
+        )
+    at_once = dead.travel(worst, 0.0)
+    stated = limits.watchdog_travel
+    allowed = at_once + limits.watchdog_share if stated is None else stated
+    milliseconds = math.ceil(1e3 * watchdog.time - _ROUNDED)
+    travel = dead.travel(worst, 1e-3 * milliseconds)
+    longest = None
+    if travel > allowed >= at_once:
+        passes = 0
+        while milliseconds - passes > 1:
+            between = (passes + milliseconds) // 2
+            if dead.travel(worst, 1e-3 * between) > allowed:
+                milliseconds = between
+            else:
+                passes = between
+        longest = 1e-3 * passes if passes else None
+    return WatchdogTravel(
+        watchdog=watchdog,
+        travel=travel,
+        at_once=at_once,
+        allowed=allowed,
+        stated=stated is not None,
+        longest=longest,
+        coasts=dead.coasts,
+        revolute=joint is None or joint.kind == "revolute",
+    )
+
+
+def watchdog_problems(travel: WatchdogTravel, options: SessionOptions) -> Iterator[str]:
+    """Say why a session must not start with the watchdog that a drive declares.
+
+    Parameters
+    ----------
+    travel : WatchdogTravel
+    options : SessionOptions
+    """
+    watchdog = travel.watchdog
+    if watchdog.then == "nothing":
+        yield (
+            f"the drive does nothing when the host is gone ({watchdog}): a motor whose program has died would go on; "
+            "let it switch the motor off"
+        )
+    elif watchdog.then != "off" and not options.acknowledge_damped:
+        yield (
+            f"the drive does not switch its motor off when the host is gone, the motor is {watchdog.then} then; if "
+            "that is meant, state acknowledge_damped = true under [session]"
+        )
+    if options.period * _PERIODS > watchdog.time * (1.0 + 1e-9):
+        yield (
+            f"a period of {options.period:g} s is too long for a watchdog of {watchdog.time:g} s: at most "
+            f"{watchdog.time / _PERIODS:g} s is expected"
+        )
+    if not travel.passed:
+        yield travel.problem()
