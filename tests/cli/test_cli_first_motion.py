@@ -207,8 +207,8 @@ def test_check_remarks_a_speed_limit_of_the_drive_that_protects_nothing(
 ) -> None:
     assert main(["check", str(joint), "--emulate", "--json"]) == 0
     high, low = json.loads(capsys.readouterr().out)["remarks"]
-    assert "HL[2] is 1000000000 counts/s, 1944 times" in high
-    assert "LL[2] a little beyond -514389 counts/s" in low
+    assert "HL[2] is 1000000000 count/s, 1944 times" in high
+    assert "LL[2] a little beyond -514389 count/s" in low
     settings = ElmoSettings.__init__
 
     def narrow(self: ElmoSettings, **given: Any) -> None:

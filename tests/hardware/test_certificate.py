@@ -12,6 +12,7 @@ from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.proof.certificate import Certificate, certificate_path
 from jointid.hardware.proof.result import FirstMotion
+from jointid.hardware.session.watchdog import Watchdog
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 IDENTITY = {
@@ -22,6 +23,7 @@ IDENTITY = {
     "stamped_frames": True,
     "peak_current": 8.0,
 }
+WATCHDOG = Watchdog(time=0.05, fed_by="heartbeat", then="off", read_back=True)
 NOW = datetime(2026, 11, 22, 12, 0, tzinfo=UTC)
 
 
@@ -37,6 +39,7 @@ def certificate(bench: Bench) -> Certificate:
         breakaway=(45.7, 44.9),
         inertia=2.8,
         identity=IDENTITY,
+        drive_watchdog=WATCHDOG,
         unchecked=("homing",),
     )
     return Certificate.of(bench, passed, NOW)
@@ -181,3 +184,47 @@ def test_a_file_that_is_none_is_refused_by_its_name(tmp_path: Path, text: str) -
     with pytest.raises(InputError) as error:
         Certificate.load(path)
     assert str(path) in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "objection"),
+    [
+        ({"time": 0.05}, None),
+        ({"time": 0.02}, None),
+        ({"time": 0.051}, "the watchdog's time was 0.05 and is 0.051"),
+        ({"time": 10.0}, "the watchdog's time was 0.05 and is 10.0"),
+        ({"fed_by": "any frame to the node"}, "the watchdog's fed_by was heartbeat"),
+        ({"then": "damped"}, "the watchdog's then was off and is damped"),
+        ({"read_back": False}, "the watchdog's read_back was True and is False"),
+    ],
+)
+def test_a_slower_watchdog_voids_it(
+    bench: Bench, changes: dict[str, Any], objection: str | None, tmp_path: Path
+) -> None:
+    certificate(bench).save(tmp_path / "joint.certificate.toml")
+    read = Certificate.load(tmp_path / "joint.certificate.toml")
+    found = read.objections(bench, IDENTITY, NOW, watchdog=replace(WATCHDOG, **changes))
+    assert len(found) == (objection is not None)
+    assert objection is None or objection in found[0]
+
+
+def test_one_from_before_the_watchdog_was_known_is_void(bench: Bench, tmp_path: Path) -> None:
+    path = tmp_path / "joint.certificate.toml"
+    certificate(bench).save(path)
+    begin, _, rest = path.read_text(encoding="utf-8").partition("[watchdog]")
+    path.write_text(begin + rest[rest.index("[versions]") :], encoding="utf-8")
+    read = Certificate.load(path)
+    assert read.objections(bench, IDENTITY, NOW) == []
+    (objection,) = read.objections(bench, IDENTITY, NOW, watchdog=WATCHDOG)
+    assert objection == "the certificate lacks what [watchdog] states"
+
+
+def test_no_certificate_without_a_watchdog_that_is_known(bench: Bench) -> None:
+    passed = FirstMotion(passed=True, identity=IDENTITY)
+    with pytest.raises(InputError, match="the drive declares no watchdog"):
+        Certificate.of(bench, passed, NOW)
+    unread = replace(passed, drive_watchdog=replace(WATCHDOG, read_back=False))
+    with pytest.raises(InputError, match="--watchdog tries it"):
+        Certificate.of(bench, unread, NOW)
+    seen = Certificate.of(bench, replace(unread, watchdog=0.0505), NOW)
+    assert seen.watchdog["read_back"] is False

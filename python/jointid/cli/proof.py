@@ -14,6 +14,7 @@ from jointid.cli.arguments import decimal, whole_seed
 
 if TYPE_CHECKING:
     from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.session.watchdog import Watchdog
 
 REFUSED = 3
 """Exit code when a bench is refused."""
@@ -56,7 +57,7 @@ def add_first_motion(first: argparse.ArgumentParser) -> None:
     first.add_argument(
         "--watchdog",
         action="store_true",
-        help="at the end also stop the heartbeat, at no torque: the drive must switch its motor off by itself",
+        help="at the end also fall silent, at no torque: the drive must stop its motor by itself",
     )
     first.add_argument("--quiet", action="store_true", help="no line for each step")
 
@@ -81,7 +82,11 @@ def check(arguments: argparse.Namespace) -> int:
     bench = Bench.load(arguments.joint)
     settings = in_force(arguments.joint, bench)
     found = check_bench(bench, emulate=arguments.emulate, seed=arguments.seed)
-    certified = None if arguments.emulate else _objections(arguments.joint, bench, found.identity)
+    certified = (
+        None
+        if arguments.emulate
+        else _objections(arguments.joint, bench, found.identity, found.declared)
+    )
     if arguments.json:
         document = {**found.to_dict(), "certificate": certified, "in_force": settings.to_dict()}
         print(json.dumps(document, indent=1, ensure_ascii=False))
@@ -135,6 +140,9 @@ def first_motion(arguments: argparse.Namespace) -> int:
     if not result.passed:
         return REFUSED
     if not arguments.emulate:
+        if result.uncertified:
+            print(f"jointid first-motion: no certificate: {result.uncertified}", file=sys.stderr)
+            return REFUSED
         path = certificate_path(arguments.joint)
         Certificate.of(bench, result).save(path)
         print(f"certificate: {path}", file=sys.stderr)
@@ -160,15 +168,18 @@ def missing_certificate(joint_file: Path, bench: Bench) -> str:
     """
     from jointid.hardware.bench.opened_drive import open_drive
     from jointid.hardware.session.drive import DriveFaultError
+    from jointid.hardware.session.watchdog import watchdog_of
 
-    objections = _objections(joint_file, bench, None)
+    objections = _objections(joint_file, bench, None, None)
     notes: list[str] = []
     if not objections:
         try:
             with open_drive(bench) as drive:
                 try:
                     drive.connect(bench.options.period)
-                    objections = _objections(joint_file, bench, drive.identity())
+                    objections = _objections(
+                        joint_file, bench, drive.identity(), watchdog_of(drive)
+                    )
                     notes = _notes(joint_file, bench, drive.identity())
                 finally:
                     drive.disable()
@@ -186,7 +197,9 @@ def missing_certificate(joint_file: Path, bench: Bench) -> str:
     )
 
 
-def _objections(joint_file: Path, bench: Bench, identity: Any) -> list[str]:
+def _objections(
+    joint_file: Path, bench: Bench, identity: Any, watchdog: Watchdog | None
+) -> list[str]:
     """What speaks against the certificate of a joint file."""
     from jointid.hardware.proof.certificate import Certificate, certificate_path
 
@@ -194,7 +207,7 @@ def _objections(joint_file: Path, bench: Bench, identity: Any) -> list[str]:
     if not path.exists():
         return [f"there is no {path.name}"]
     try:
-        return Certificate.load(path).objections(bench, identity)
+        return Certificate.load(path).objections(bench, identity, watchdog=watchdog)
     except InputError as error:
         return [str(error)]
 

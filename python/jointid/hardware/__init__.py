@@ -39,6 +39,7 @@ from jointid.hardware.session.session import (
 )
 from jointid.hardware.session.silence import DriveSilence
 from jointid.hardware.session.stop import Stop
+from jointid.hardware.session.watchdog import Watchdog
 
 __all__ = [
     "Bench",
@@ -73,6 +74,7 @@ __all__ = [
     "SessionStoppedError",
     "Stop",
     "Table",
+    "Watchdog",
     "certificate_path",
     "check_bench",
     "drive_type",

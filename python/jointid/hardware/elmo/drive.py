@@ -203,7 +203,7 @@ class ElmoDrive:
         self._peak = float(link.ask(Command(letters="PL", index=1)).value)
         rated = float(link.ask(Command(letters="CL", index=1)).value)
         self._seen.rated_current = rated
-        self._limits = registers.limits(link)
+        self._limits = registers.limits(link, self.resolution)
         self._identity |= {
             "peak_current": self._peak,
             "continuous_current": rated,

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from jointid.base.errors import InputError
 from jointid.hardware.can.canopen_frames import SdoAbortError, SdoRequest
 from jointid.hardware.elmo.link import ElmoLink
 from jointid.hardware.session.drive import DriveFaultError
-from jointid.hardware.session.drive_report import Reported, Value
+from jointid.hardware.session.drive_report import Reported
 
 _ANSWER = 0.05  # [s] for a register; a drive that does not have one refuses it at once
 
@@ -28,6 +30,7 @@ _LIMITS = (
     ("XM", 2, "end of the counter's range", "count"),
     ("BV", 0, "highest supply", "V"),
 )
+_SPEEDS = ("HL[2]", "LL[2]")
 _COUNTS = ("CA", 18)
 _SUPPLY, _TEMPERATURE = ("AN", 6), ("TI", 1)
 
@@ -47,13 +50,23 @@ def identity(link: ElmoLink) -> tuple[Reported, ...]:
     return tuple(found)
 
 
-def limits(link: ElmoLink) -> tuple[Reported, ...]:
-    """Return the drive's own limits, by its registers, and rated current and torque (6075h, 6076h)."""
+def limits(link: ElmoLink, resolution: float) -> tuple[Reported, ...]:
+    """Return the drive's own limits, by its registers, and rated current and torque (6075h, 6076h).
+
+    Parameters
+    ----------
+    link : ElmoLink
+    resolution : float
+        Output angle of an encoder count [rad].
+    """
     found = []
     for letters, index, meaning, unit in _LIMITS:
         name = f"{letters}[{index}]" if index else letters
-        value: Value | None = link.number(letters, _ANSWER, index)
-        found.append(Reported(name=name, meaning=meaning, value=value, unit=unit))
+        value = link.number(letters, _ANSWER, index)
+        entry = Reported(name=name, meaning=meaning, value=value, unit=unit)
+        if name in _SPEEDS and value is not None:
+            entry = replace(entry, kind="speed_limit", output=value * resolution)
+        found.append(entry)
     continuous, rated = found[2].value, read_object(link, 0x6075, 0)
     found += [
         Reported(

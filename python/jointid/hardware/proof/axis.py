@@ -145,7 +145,7 @@ class Axis:
                 self._lost, self.lost = self._lost + 1, self.lost + 1
                 if error.kind != "stale_position" or self._lost >= _LOST:
                     raise
-                if self.on:  # nobody sees the joint: no torque, and our heartbeat with it
+                if self.on:  # nobody sees the joint: no torque, and a sign of life with it
                     self._drive.command(0.0)
                     self._torque = 0.0
                 continue

@@ -6,7 +6,7 @@ import json
 import math
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.drive_types import drive_type
 from jointid.hardware.proof.certified_limits import limits_facts, notes, widened
 from jointid.hardware.proof.result import FirstMotion
+from jointid.hardware.session.watchdog import Watchdog
 
 SCHEMA = 1
 VALID = timedelta(days=30)
@@ -33,14 +34,16 @@ _LIMITS = Record(
     },
     other=Plain(),
 )
-_TABLES = ("joint", "wiring", "drive", "found", "limits", "versions")
+_TABLES = ("joint", "wiring", "drive", "found", "limits", "watchdog", "versions")
+_SAME = 1e-9  # of the watchdog's time, which is written with all its digits
 _SCHEMA = Record(
     {
         "schema": Number(low=SCHEMA, high=SCHEMA, whole=True),
         "date": Text(longest=100),
-        **{name: TableOf(Plain()) for name in _TABLES},
+        **{name: TableOf(Plain()) for name in _TABLES if name != "watchdog"},
         "limits": _LIMITS,
-    }
+    },
+    {"watchdog": TableOf(Plain())},
 )
 
 
@@ -60,9 +63,11 @@ class Certificate:
         Identity of the drive, its serial number with it.
     found : mapping
         Signs, breakaway in both directions, travel, largest torque, inertia, and what was not checked; after how
-        long the drive's watchdog switched the motor off [s], if that was tried.
+        long the drive's watchdog stopped the motor [s], if that was tried.
     limits : mapping
         Of the session, then, with the joint's largest current and the encoder's offset.
+    watchdog : mapping
+        What the drive declared of its watchdog: "time" [s], "fed_by", "then", "read_back".
     versions : mapping
         Of jointid and Python.
     """
@@ -73,6 +78,7 @@ class Certificate:
     drive: Mapping[str, Any]
     found: Mapping[str, Any] = field(default_factory=dict)
     limits: Mapping[str, Any] = field(default_factory=dict)
+    watchdog: Mapping[str, Any] = field(default_factory=dict)
     versions: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -89,10 +95,12 @@ class Certificate:
         Raises
         ------
         InputError
-            It was not passed.
+            It was not passed, or the drive's watchdog is not known.
         """
         if not result.passed:
             raise InputError("only one that was passed is certified", argument="first motion")
+        if result.drive_watchdog is None or result.uncertified:
+            raise InputError(result.uncertified, argument="first motion")
         found = {
             **result.to_dict(),
             "watchdog": result.watchdog,
@@ -107,6 +115,7 @@ class Certificate:
             drive=_plain(identity_facts(result.identity)),
             found=_plain({name: value for name, value in found.items() if name != "passed"}),
             limits=_plain(limits_facts(bench)),
+            watchdog=asdict(result.drive_watchdog),
             versions={"jointid": _core.__version__, "python": platform.python_version()},
         )
 
@@ -146,13 +155,15 @@ class Certificate:
             raise _no_date(table["date"], source) from None
         if date.tzinfo is None:
             raise _no_date(table["date"], source)
-        return cls(date=date, **{name: table[name] for name in _TABLES})
+        return cls(date=date, **{name: table.get(name, {}) for name in _TABLES})
 
     def objections(
         self,
         bench: Bench,
         identity: Mapping[str, Any] | None = None,
         now: datetime | None = None,
+        *,
+        watchdog: Watchdog | None = None,
     ) -> list[str]:
         """Return why it does not hold for a bench; empty when it does.
 
@@ -163,6 +174,8 @@ class Certificate:
             What the drive that is connected reports. Default: not looked at.
         now : datetime, optional
             Default: now.
+        watchdog : Watchdog, optional
+            What the drive that is connected declares. Default: not looked at.
         """
         age = (now or datetime.now(UTC)) - self.date
         found = []
@@ -174,6 +187,8 @@ class Certificate:
         wiring = _plain(drive_type(bench.drive_type).wiring(bench.drive))
         found += _changes("wiring", "the joint file's", self.wiring, wiring)
         found += widened(self.limits, bench)
+        if watchdog is not None:
+            found += _slower(self.watchdog, watchdog)
         if identity is not None:
             facts = _plain(identity_facts(identity))
             found += _changes("drive", "the drive's", self.drive, facts)
@@ -228,6 +243,15 @@ def _no_date(text: str, source: Path) -> InputError:
         value=text,
         place=str(source),
     )
+
+
+def _slower(before: Mapping[str, Any], now: Watchdog) -> list[str]:
+    """In what a watchdog is another one than was certified; a shorter time is no objection."""
+    after = asdict(now)
+    time = before.get("time")
+    if isinstance(time, int | float) and now.time <= time * (1.0 + _SAME):
+        after["time"] = time
+    return _changes("watchdog", "the watchdog's", before, after)
 
 
 def _changes(

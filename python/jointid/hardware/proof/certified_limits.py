@@ -92,7 +92,7 @@ def notes(
 
 
 def has_serial(identity: Mapping[str, Any]) -> bool:
-    """Whether a drive says which one of its type it is; 0 is CANopen's word for "none"."""
+    """Whether a drive says which one of its type it is; some protocols have 0 for "none"."""
     return str(identity.get("serial") or "").strip() not in ("", "0")
 
 

@@ -13,15 +13,17 @@ from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.opened_drive import open_drive
+from jointid.hardware.proof.watchdog import NO_WATCHDOG, watchdog_of_bench
 from jointid.hardware.session.drive import Drive, DriveFaultError
 from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.start_checks import problems_at_rest
+from jointid.hardware.session.watchdog import Watchdog
+from jointid.hardware.session.watchdog_check import WatchdogTravel, watchdog_problems
 
 _DRIFT = 5.0  # counts within the time that the joint is watched
 _LITTLE_ABOVE = (
     2.0  # times the joint's velocity: a drive's own speed limit beyond that protects nothing
 )
-_SPEEDS = ("HL[2]", "LL[2]")  # names of a drive's own speed limits, in counts a second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,6 +46,8 @@ class BenchCheck:
         Between the drive's settings and what the joint file needs.
     problems : tuple of str
         Reasons not to move the joint.
+    watchdog : WatchdogTravel or None
+        How far the joint goes in its motion when the host dies; None: the drive declares no watchdog.
     remarks : tuple of str
         Worth a change, but no reason not to move the joint.
     """
@@ -57,12 +61,18 @@ class BenchCheck:
     noise: float = math.nan
     differences: tuple[str, ...] = ()
     problems: tuple[str, ...] = ()
+    watchdog: WatchdogTravel | None = None
     remarks: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
         """Whether nothing was found against moving the joint."""
         return not (self.differences or self.problems)
+
+    @property
+    def declared(self) -> Watchdog | None:
+        """What the drive declares of its watchdog."""
+        return None if self.watchdog is None else self.watchdog.watchdog
 
     def to_dict(self) -> dict[str, Any]:
         """The fields, of JSON's types: a number that is not known is None."""
@@ -79,6 +89,7 @@ class BenchCheck:
             **numbers,
             "differences": list(self.differences),
             "problems": list(self.problems),
+            "watchdog": None if self.watchdog is None else self.watchdog.to_dict(),
             "remarks": list(self.remarks),
         }
 
@@ -107,6 +118,8 @@ class BenchCheck:
         lines.append(f"position: {self.position:+.5f} rad, speed {self.velocity:+.5f} rad/s")
         if math.isfinite(self.reading):
             lines.append(f"torque sensor: reads {self.reading:+.3f} ± {self.noise:.3f}")
+        if self.watchdog is not None:
+            lines.append(f"if the host dies: {self.watchdog}")
         lines += [f"REMARK: {each}" for each in self.remarks]
         lines += [f"DIFFERENT: {each}" for each in self.differences]
         lines += [f"PROBLEM: {each}" for each in self.problems]
@@ -192,7 +205,7 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
     if resolution is None:
         raise InputError("missing; this drive has none", argument="resolution")
     if found["report"] is not None:
-        found["remarks"] = tuple(_wide_speeds(found["report"], bench.limits.velocity, resolution))
+        found["remarks"] = tuple(_wide_speeds(found["report"], bench.limits.velocity))
     positions = np.array([each.position for each in samples])
     duration = max(last.time - samples[0].time, period)
     found["position"] = last.position
@@ -201,6 +214,12 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
         readings = np.array([each.reading for each in samples])
         found["reading"], found["noise"] = float(readings.mean()), float(readings.std())
     problems += problems_at_rest(last, bench.limits)
+    travel = watchdog_of_bench(bench, drive, last.position)
+    if travel is None:
+        found["remarks"] = (*found.get("remarks", ()), NO_WATCHDOG)
+    else:
+        found["watchdog"] = travel
+        problems += watchdog_problems(travel, bench.options)
     moved = float(np.ptp(positions)) / resolution
     if not moved <= _DRIFT:
         problems.append(
@@ -210,14 +229,19 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
     found["problems"] = tuple(problems)
 
 
-def _wide_speeds(report: DriveReport, velocity: float, resolution: float) -> Iterator[str]:
+def _wide_speeds(report: DriveReport, velocity: float) -> Iterator[str]:
     """Say which of the drive's own speed limits would let a joint run away that nobody commands any more."""
-    counts = velocity / resolution
-    for name in _SPEEDS:
-        value = report.value(name)
-        if isinstance(value, int | float) and abs(value) > _LITTLE_ABOVE * counts:
-            own = math.copysign(counts, value)
+    for each in report.settings:
+        if (
+            each.kind != "speed_limit"
+            or each.output is None
+            or not isinstance(each.value, int | float)
+        ):
+            continue
+        times = abs(each.output) / velocity
+        if times > _LITTLE_ABOVE:
             yield (
-                f"the drive's own speed limit {name} is {value:.0f} counts/s, {abs(value) / counts:.0f} times the "
-                f"joint's velocity limit of {velocity:g} rad/s; set {name} a little beyond {own:.0f} counts/s"
+                f"the drive's own speed limit {each.name} is {each.value:.0f} {each.unit}, {times:.0f} times the "
+                f"joint's velocity limit of {velocity:g} rad/s; set {each.name} a little beyond "
+                f"{each.value / times:.0f} {each.unit}"
             )

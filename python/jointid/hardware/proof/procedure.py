@@ -47,8 +47,8 @@ def first_motion(
     callback : callable, optional
         Called with each line as it is known.
     watchdog : bool
-        When all else is right, stop the heartbeat with the motor on at no torque, and see that the drive
-        switches it off by itself. Default False.
+        When all else is right, fall silent with the motor on at no torque, and see that the drive stops the motor by
+        itself, as it declares. Default False.
 
     Returns
     -------
@@ -124,6 +124,7 @@ def _moved(
         unchecked=tuple(steps.unchecked),
         motor_off=end.motor_off,
         identity=identity,
+        drive_watchdog=steps.watchdog,
         steps=tuple(steps.lines),
         **steps.found,
     )

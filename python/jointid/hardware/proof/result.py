@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from jointid.hardware.session.watchdog import Watchdog
+
 UNCHECKED = {
     "positive_direction": "torque and encoder inverted together look like a right bench: see which way the link goes",
     "encoder": "that the encoder counts: no sensor shows a joint that moves behind one that hangs, and nobody turned "
@@ -49,8 +51,10 @@ class FirstMotion:
     inertia, stated_breakaway, stated_inertia : float or None
         Measured; by the joint file [kg·m²], [N·m].
     watchdog : float or None
-        From our last heartbeat until the drive had switched its motor off by itself [s]; None: not tried, or it
+        From our last sign of life until the drive had stopped its motor by itself [s]; None: not tried, or it
         did not.
+    drive_watchdog : Watchdog or None
+        What the drive declares of its watchdog; None: nothing, and there is no certificate.
     sensor_zero : float or None
         Mean reading of the torque sensor at rest.
     duration : float
@@ -77,11 +81,21 @@ class FirstMotion:
     stated_breakaway: float | None = None
     stated_inertia: float | None = None
     watchdog: float | None = None
+    drive_watchdog: Watchdog | None = None
     sensor_zero: float | None = None
     duration: float = 0.0
     motor_off: bool | None = None
     identity: Mapping[str, Any] = field(default_factory=dict)
     steps: tuple[str, ...] = ()
+
+    @property
+    def uncertified(self) -> str:
+        """Why there is no certificate although it is passed; empty when there is one."""
+        if self.drive_watchdog is None:
+            return "the drive declares no watchdog"
+        if not self.drive_watchdog.read_back and self.watchdog is None:
+            return "the drive does not confirm its watchdog, and nobody has seen it work: --watchdog tries it"
+        return ""
 
     def to_dict(self) -> dict[str, Any]:
         """What `jointid first-motion --json` prints, of JSON's types."""

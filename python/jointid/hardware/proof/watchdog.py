@@ -1,4 +1,4 @@
-"""The drive's own watchdog, tried without a plug: the host falls silent, and the motor must go off by itself."""
+"""The drive's own watchdog: judged by how far it lets the joint go, and tried without a plug, by a silent host."""
 
 from __future__ import annotations
 
@@ -6,15 +6,49 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
 
 from jointid.base.errors import InputError
+from jointid.hardware.bench.bench import Bench
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.silence import DriveSilence
+from jointid.hardware.session.watchdog import watchdog_of
+from jointid.hardware.session.watchdog_check import WatchdogTravel, watchdog_travel
 
 if TYPE_CHECKING:
     from jointid.hardware.proof.steps import Steps
 
 _BEATEN = 1.0  # [s] at no torque: a drive that only begins to watch has begun by then
 _LATE = 3.0  # times the time allowed: the drive is asked after twice that, and the host may be late
+
+
+NO_WATCHDOG = (
+    "the drive declares no watchdog: nobody knows whether it stops when this program has died, and the bench gets no "
+    "certificate"
+)
+
+
+def watchdog_of_bench(bench: Bench, drive: Drive, position: float) -> WatchdogTravel | None:
+    """Return how far a bench's joint goes when the host dies in its motion; None: its drive declares no watchdog.
+
+    Parameters
+    ----------
+    bench : Bench
+    drive : Drive
+        Connected.
+    position : float
+        Where the joint stands [rad].
+    """
+    watchdog = watchdog_of(drive)
+    if watchdog is None:
+        return None
+    return watchdog_travel(
+        watchdog,
+        joint=bench.joint,
+        controller=bench.controller,
+        trajectory=bench.trajectory,
+        limits=bench.limits,
+        options=bench.options,
+        position=position,
+    )
 
 
 def silence_of(drive: Drive) -> Callable[[], DriveSilence]:
@@ -40,7 +74,7 @@ def prove_watchdog(
     fall_silent: Callable[[], DriveSilence],
     callback: Callable[[str], object] | None = None,
 ) -> None:
-    """See that the drive switches its motor off by itself, and enter when.
+    """See that the drive does by itself what it declares (or switches its motor off), and enter when.
 
     The joint stands at no torque, so that a drive which goes on moves nothing. Afterwards the motor is switched
     on once more, which takes the failure out of the drive: a session would not start with it.
@@ -68,38 +102,41 @@ def prove_watchdog(
         axis.read()
         axis.command(0.0)
     silence = fall_silent()
-    after = _judged(silence)
+    declared = steps.watchdog
+    wanted = "off" if declared is None else declared.then
+    after = _judged(silence, wanted)
     steps.found["watchdog"] = after
     steps.unchecked.remove("watchdog")
-    line = f"watchdog: motor off by itself {'' if silence.told is not None else 'at most '}{1e3 * after:.1f} ms "
-    line += f"after the last heartbeat; allowed are {1e3 * silence.allowed:g} ms"
+    line = f"watchdog: motor {wanted} by itself {'' if silence.told is not None else 'at most '}{1e3 * after:.1f} ms "
+    line += f"after our last sign of life; allowed are {1e3 * silence.allowed:g} ms"
     steps.lines.append(line)
     if callback is not None:
         callback(line)
     axis.enable()
 
 
-def _judged(silence: DriveSilence) -> float:
-    """After how long the motor went off [s]."""
+def _judged(silence: DriveSilence, wanted: str) -> float:
+    """After how long the motor came into the wanted state [s]."""
     allowed = f"{1e3 * silence.allowed:g} ms without a sign of the host"
-    if silence.motor_off is None:
+    if silence.state is None:
         raise RefusedBenchError("watchdog", f"the drive does not answer after {allowed}")
-    if not silence.motor_off:
+    if silence.state != wanted:
+        still = "still on" if silence.state == "on" else silence.state
         raise RefusedBenchError(
             "watchdog",
-            f"the motor is still on after {1e3 * silence.asked:.0f} ms without a heartbeat; the drive was told to "
-            f"switch it off after {allowed}. It would go on when this program has died or the cable is pulled",
+            f"the motor is {still} after {1e3 * silence.asked:.0f} ms without a sign of the host; the drive was told "
+            f"that it be {wanted} after {allowed}. It would go on when this program has died or the cable is pulled",
         )
     if not silence.missed_host:
         raise RefusedBenchError(
             "watchdog",
-            f"the motor went off after {allowed}, but for another reason: {silence.failure or 'none is named'}",
+            f"the motor was {wanted} after {allowed}, but for another reason: {silence.failure or 'none is named'}",
         )
     after = silence.asked if silence.told is None else silence.told
     if after > _LATE * silence.allowed:
         raise RefusedBenchError(
             "watchdog",
-            f"the motor went off only {1e3 * after:.0f} ms after the last heartbeat; allowed are "
+            f"the motor was {wanted} only {1e3 * after:.0f} ms after our last sign of life; allowed are "
             f"{1e3 * silence.allowed:g} ms",
         )
     return after

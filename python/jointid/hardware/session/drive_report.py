@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 Value = float | int | str
 
@@ -24,6 +24,10 @@ class Reported:
         Empty for a bare number or a text.
     expected : float, int, str or None
         What a session needs; None: any value will do.
+    kind : str
+        "speed_limit": the drive's own. Default: nothing that a session looks at.
+    output : float or None
+        Of a number with a kind: what it is at the joint's output [rad/s]. Default: not known.
     """
 
     name: str
@@ -31,6 +35,8 @@ class Reported:
     value: Value | None
     unit: str = ""
     expected: Value | None = None
+    kind: Literal["", "speed_limit"] = ""
+    output: float | None = None
 
     @property
     def differs(self) -> bool:

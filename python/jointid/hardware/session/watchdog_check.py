@@ -93,15 +93,15 @@ class WatchdogTravel:
         )
 
     def _way(self) -> str:
-        until = "until then, and coasts on (no friction is stated)" if self.coasts else ""
+        until = " until then, and coasts on (no friction is stated)" if self.coasts else ""
         source = (
             "as watchdog_travel states"
             if self.stated
             else f"{self._angle(self.at_once)} if the motor went off at once, and a share of the window"
         )
         return (
-            f"when the host dies, the joint goes up to {self._angle(self.travel)} {until}".rstrip()
-            + f"; {self._angle(self.allowed)} are allowed ({source})"
+            f"the joint goes up to {self._angle(self.travel)} after the host's death{until}; "
+            f"{self._angle(self.allowed)} are allowed ({source})"
         )
 
     def _angle(self, value: float) -> str:
