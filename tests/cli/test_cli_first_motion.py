@@ -13,8 +13,10 @@ import jointid.commissioning  # before `wired` replaces what it imports  # noqa:
 from jointid.cli import main
 from jointid.hardware.bench import opened_drive
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_settings import ElmoSettings
 from jointid.hardware.proof import check, procedure
+from jointid.hardware.proof.steps import Steps
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 KEYS = {
@@ -165,10 +167,36 @@ def test_a_real_joint_is_not_run_without_a_certificate(
     edited(other, "torque_constant = 0.198 ", "torque_constant = 0.2 ")
     assert main(["run", str(other), "--yes", "--quiet"]) == 3
     assert "torque_constant was 0.198 and is 0.2" in capsys.readouterr().err
+    # Nor for a watchdog that waits longer than the one that was certified, although the joint may go so far.
+    edited(joint, "heartbeat = 0.05 ", "heartbeat = 0.06 ")
+    assert main(["run", str(joint), "--yes", "--quiet"]) == 3
+    assert "the watchdog's time was 0.05 and is 0.06" in capsys.readouterr().err
+    edited(joint, "heartbeat = 0.06 ", "heartbeat = 0.05 ")
     serial = next(line for line in path.read_text().splitlines() if '"serial"' in line)
     edited(path, serial, '"serial" = "another"')
     assert main(["run", str(joint), "--yes", "--quiet"]) == 3
     assert "serial was another" in capsys.readouterr().err
+
+
+def test_a_drive_that_declares_no_watchdog_gets_none(
+    joint: Path, capsys: Any, wired: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    del wired
+    monkeypatch.setattr(ElmoDrive, "watchdog", None)
+    monkeypatch.setattr(Steps, "run", Steps._ready)
+    assert main(["first-motion", str(joint), "--yes", "--quiet"]) == 3
+    assert "no certificate: the drive declares no watchdog" in capsys.readouterr().err
+    assert not joint.with_suffix(".certificate.toml").exists()
+    assert main(["check", str(joint), "--emulate"]) == 0
+    assert "REMARK: the drive declares no watchdog" in capsys.readouterr().out
+
+
+def test_a_watchdog_that_is_too_slow_is_refused_by_each_command(joint: Path, capsys: Any) -> None:
+    edited(joint, "heartbeat = 0.05 ", "heartbeat = 10.0 ")
+    for command in ("check", "first-motion", "run"):
+        assert main([command, str(joint), "--emulate"]) == 3
+        shown = capsys.readouterr()
+        assert "the longest time that passes is 0.082 s" in shown.out + shown.err
 
 
 def test_force_goes_on_without_one(joint: Path, capsys: Any) -> None:

@@ -1,5 +1,6 @@
 """The drive's watchdog tried by a host that falls silent: proven, or the bench is refused."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -9,13 +10,22 @@ import pytest
 
 import jointid as jid
 from jointid.base.errors import InputError
-from jointid.hardware import Bench, DriveFaultError, EmulatedBus, FirstMotion
+from jointid.hardware import (
+    Bench,
+    DriveEnd,
+    DriveFaultError,
+    DriveSilence,
+    EmulatedBus,
+    FirstMotion,
+    Watchdog,
+)
 from jointid.hardware.elmo import report, setup
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_bench import elmo_devices
 from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 from jointid.hardware.proof.certificate import Certificate
 from jointid.hardware.proof.steps import Steps
+from jointid.hardware.session.motor_state import MotorState
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 AWAITED = 0.05  # [s], the default
@@ -180,3 +190,42 @@ def test_a_drive_without_a_serial_number_is_named() -> None:
     assert result.passed
     assert "serial_number" in result.unchecked
     assert "no serial number" in result.report()
+
+
+@pytest.mark.usefixtures("only_the_end")
+@pytest.mark.parametrize(("state", "reason"), [("damped", None), ("held", "watchdog")])
+def test_a_drive_must_do_what_it_declares(
+    state: MotorState, reason: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    silence = DriveSilence(allowed=0.05, state=state, told=0.0505, asked=0.1, missed_host=True)
+    declared = Watchdog(time=0.05, fed_by="heartbeat", then="damped", read_back=True)
+    monkeypatch.setattr(ElmoDrive, "fall_silent", lambda _: silence)
+    monkeypatch.setattr(ElmoDrive, "watchdog", declared)
+    bench = Bench.load(EXAMPLE)
+    bench = replace(bench, options=replace(bench.options, acknowledge_damped=True))
+    with EmulatedBus(*elmo_devices(bench, 0)) as bus:
+        result = jid.hardware.first_motion(
+            bench, drive=ElmoDrive(bus, bench.joint, bench.drive), watchdog=True
+        )
+    assert result.reason == reason
+    assert result.drive_watchdog == declared
+    said = "motor damped by itself 50.5 ms" if reason is None else "the motor is held after 100 ms"
+    assert said in result.report()
+
+
+def test_the_older_name_of_a_motors_state_is_understood() -> None:
+    known = {"allowed": 0.05, "told": None, "asked": 0.1, "missed_host": False}
+    for off, state in ((True, "off"), (False, "on"), (None, None)):
+        end, silence = DriveEnd(motor_off=off), DriveSilence(motor_off=off, **known)  # type: ignore[arg-type]
+        assert (end.state, end.motor_off) == (silence.state, silence.motor_off) == (state, off)
+    end = replace(DriveEnd(state="damped"), failure="it says so")
+    assert (end.state, end.motor_off, end.failure) == ("damped", False, "it says so")
+    with pytest.raises(InputError, match="state is 'of'"):
+        DriveEnd(state="of")  # type: ignore[arg-type]
+
+
+def test_a_proof_speaks_of_no_maker() -> None:
+    folder = Path(jid.hardware.proof.__file__).parent
+    names = r"heartbeat|elmo|canopen|\bSYNC\b|\b(HL|LL|PL|CL|MO|TC|SR)\b|[0-9A-F]{4}h\b"
+    for path in sorted(folder.glob("*.py")):
+        assert not re.findall(names, path.read_text(encoding="utf-8"), re.IGNORECASE), path.name

@@ -21,12 +21,13 @@ from jointid.hardware import (
     LoggedCycle,
     LoggedFrame,
     Table,
+    Watchdog,
     emulated_joint,
 )
 
 STATE, TORQUE, POWER = 0x10, 0x20, 0x30  # requests; the identifier of a reply is one higher
 _STATE_REPLY = struct.Struct("<if?")  # counts, velocity [rad/s], whether the motor is on
-_WATCHDOG = 0.1  # [s] without a torque, after which the drive stops by itself
+_WATCHDOG = 0.05  # [s] without a torque, after which the drive stops by itself
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +55,7 @@ class AcmeDrive:
     """A drive at the end of a line."""
 
     command_latency = 0.0
+    watchdog = Watchdog(time=_WATCHDOG, fed_by="command", then="off", read_back=False)
 
     def __init__(self, line: Line, joint: Joint, options: AcmeOptions) -> None:
         self.joint, self.options, self._line = joint, options, line
@@ -62,9 +64,8 @@ class AcmeDrive:
         self.tap: Callable[[float, int, bytes, bool], object] | None = None
 
     def connect(self, period: float) -> None:
+        del period  # it is watched from the first torque on
         self._ask(POWER, b"\x00")
-        if period > 0.5 * _WATCHDOG:
-            raise DriveFaultError("drive_fault", f"a period of {period:g} s is too long")
 
     def problems(self, torque_limit: float) -> list[str]:
         if self.options.largest_torque > torque_limit:
@@ -89,7 +90,7 @@ class AcmeDrive:
 
     def disable(self) -> DriveEnd:
         self._ask(POWER, b"\x00")
-        return DriveEnd(motor_off=not _STATE_REPLY.unpack(self._ask(STATE, b""))[2])
+        return DriveEnd(state="on" if _STATE_REPLY.unpack(self._ask(STATE, b""))[2] else "off")
 
     def close(self) -> None:
         self._ask(POWER, b"\x00")

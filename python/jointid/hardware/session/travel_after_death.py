@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from jointid import _core
 from jointid.base.errors import InputError
@@ -16,12 +17,14 @@ from jointid.joint.joint import Joint
 from jointid.simulation.plant import Values, simulated_joint
 from jointid.simulation.trajectory import FloatArray, Trajectory
 
-_MOMENTS = 400  # of a motion, of which only the worst are simulated on
+_MOMENTS = 20_000  # of a motion, of which only the worst are simulated
+_ALIKE = 0.01  # of the largest torque: moments that differ by less are one
 _PLACES = 4  # parts of its range, where torque depends on the angle: the worst of each
 _STEP = 2e-3  # [s] of the simulation, at most; a shorter hold has as many as 20 of its own
 _STEPS = 20
 _FIRST, _LONGEST = 0.25, 64.0  # [s] of coasting: at first, then twice as long until it stands
 _STANDS = 1e-3  # [rad/s]
+IndexArray = npt.NDArray[np.intp]
 _HELD = _core.Trajectory.step(distance=1.0, time=0.0, duration=1e9)
 
 
@@ -63,29 +66,35 @@ class DeadHost:
         self._turns = bool(self._joint.weights or self._joint.harmonics)
 
     def worst_moments(self, *motions: Moments) -> Moments:
-        """Return the moments of some motions from which others cannot go farther.
-
-        From a larger velocity and a larger torque a joint goes farther in that direction, whatever its friction.
-        """
+        """Return the moments of some motions from which others cannot go farther."""
         position, velocity, torque = (
             np.concatenate([getattr(motion, name) for motion in motions])
             for name in ("position", "velocity", "torque")
         )
+        kept = self._worst(position, velocity, torque)
+        return Moments(position[kept], velocity[kept], torque[kept])
+
+    def _worst(self, position: FloatArray, velocity: FloatArray, push: FloatArray) -> IndexArray:
+        """Where no other moment is as fast and is pushed as hard, to a hundredth, in either direction.
+
+        From a larger velocity and under a larger torque a joint goes farther, whatever its friction.
+        """
         place = np.zeros(len(position))
         if self._turns and np.ptp(position) > 0.0:
             place = np.floor(_PLACES * (position - position.min()) / np.ptp(position))
-        kept = np.zeros(len(position), dtype=np.bool_)
+        steps = np.round(push / (_ALIKE * np.abs(push).max() or 1.0))
+        kept = []
         for direction in (1.0, -1.0):
             for each in np.unique(place):
                 here = np.flatnonzero(place == each)
-                speed, push = direction * velocity[here], direction * torque[here]
-                order = here[np.lexsort((-push, -speed))]
-                strongest = np.maximum.accumulate(direction * torque[order])
-                kept[order[np.diff(strongest, prepend=-np.inf) > 0.0]] = True
-        return Moments(position[kept], velocity[kept], torque[kept])
+                speed, pushed = direction * velocity[here], direction * steps[here]
+                order = np.lexsort((-pushed, -speed))
+                strongest = np.maximum.accumulate(pushed[order])
+                kept.append(here[order[np.diff(strongest, prepend=-np.inf) > 0.0]])
+        return np.unique(np.concatenate(kept))
 
     def moments(self, trajectory: Trajectory, period: float, *, offset: float = 0.0) -> Moments:
-        """Return the moments of a motion that is followed exactly, with the torque that the joint needs there.
+        """Return the worst moments of a motion that is followed exactly, with the torque that the joint needs there.
 
         Parameters
         ----------
@@ -96,7 +105,10 @@ class DeadHost:
             Added to the trajectory's positions [rad].
         """
         apart = max(period, trajectory.duration / _MOMENTS)
-        position, velocity, wanted = trajectory.sample(np.arange(0.0, trajectory.duration, apart))
+        motion = trajectory.sample(np.arange(0.0, trajectory.duration, apart))
+        # Where friction falls with speed, one that is left out here may need a little more torque.
+        kept = self._worst(*motion)
+        position, velocity, wanted = (each[kept] for each in motion)
         position = position + offset
         free = self._run(Moments(position, velocity, np.zeros_like(position)), 1, _STEP)
         mass = self._joint.inertia + self._joint.link_inertia
@@ -181,7 +193,8 @@ class DeadHost:
         ]
         outcomes = _core.simulate_runs(scenario, torque, setups, signals=True, threads=1)
         names = ("true_position", "true_velocity", "true_acceleration", "torque")
-        return {name: np.array([each.signals[name] for each in outcomes]) for name in names}
+        signals = [each.signals for each in outcomes]  # made anew whenever they are asked for
+        return {name: np.array([each[name] for each in signals]) for name in names}
 
 
 def _last(found: dict[str, FloatArray], before: Moments) -> Moments:
