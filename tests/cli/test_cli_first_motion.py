@@ -13,8 +13,8 @@ import jointid.commissioning  # before `wired` replaces what it imports  # noqa:
 from jointid.cli import main
 from jointid.hardware.bench import opened_drive
 from jointid.hardware.bench.bench import Bench
-from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_settings import ElmoSettings
+from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.proof import check, procedure
 from jointid.hardware.proof.steps import Steps
 
@@ -182,7 +182,7 @@ def test_a_drive_that_declares_no_watchdog_gets_none(
     joint: Path, capsys: Any, wired: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     del wired
-    monkeypatch.setattr(ElmoDrive, "watchdog", None)
+    monkeypatch.setattr(ElmoOptions, "watchdog", None)
     monkeypatch.setattr(Steps, "run", Steps._ready)
     assert main(["first-motion", str(joint), "--yes", "--quiet"]) == 3
     assert "no certificate: the drive declares no watchdog" in capsys.readouterr().err

@@ -23,6 +23,8 @@ from jointid.hardware.elmo import report, setup
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_bench import elmo_devices
 from jointid.hardware.elmo.emulated_drive import EmulatedElmo
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.proof import procedure
 from jointid.hardware.proof.certificate import Certificate
 from jointid.hardware.proof.steps import Steps
 from jointid.hardware.session.motor_state import MotorState
@@ -200,7 +202,7 @@ def test_a_drive_must_do_what_it_declares(
     silence = DriveSilence(allowed=0.05, state=state, told=0.0505, asked=0.1, missed_host=True)
     declared = Watchdog(time=0.05, fed_by="heartbeat", then="damped", read_back=True)
     monkeypatch.setattr(ElmoDrive, "fall_silent", lambda _: silence)
-    monkeypatch.setattr(ElmoDrive, "watchdog", declared)
+    monkeypatch.setattr(ElmoOptions, "watchdog", declared)
     bench = Bench.load(EXAMPLE)
     bench = replace(bench, options=replace(bench.options, acknowledge_damped=True))
     with EmulatedBus(*elmo_devices(bench, 0)) as bus:
@@ -225,7 +227,7 @@ def test_the_older_name_of_a_motors_state_is_understood() -> None:
 
 
 def test_a_proof_speaks_of_no_maker() -> None:
-    folder = Path(jid.hardware.proof.__file__).parent
+    folder = Path(procedure.__file__).parent
     names = r"heartbeat|elmo|canopen|\bSYNC\b|\b(HL|LL|PL|CL|MO|TC|SR)\b|[0-9A-F]{4}h\b"
     for path in sorted(folder.glob("*.py")):
         assert not re.findall(names, path.read_text(encoding="utf-8"), re.IGNORECASE), path.name

@@ -39,11 +39,8 @@ def truthful(bench: Bench) -> Bench:
 
 def judged(bench: Bench, time: float, **more: Any) -> WatchdogTravel:
     """The way in a bench's session, with a watchdog of this time [s]."""
-    given = {"fed_by": "heartbeat", "then": "off", "read_back": True} | {
-        name: more.pop(name) for name in ("fed_by", "then") if name in more
-    }
     return watchdog_travel(
-        Watchdog(time=time, **given),
+        Watchdog(time=time, fed_by="heartbeat", then=more.pop("then", "off"), read_back=True),
         **{
             "joint": bench.joint,
             "controller": bench.controller,
@@ -106,9 +103,8 @@ def test_the_worst_moments_are_enough(bench: Bench, monkeypatch: pytest.MonkeyPa
 
 
 def test_the_way_is_that_of_a_joint_computed_by_hand() -> None:
-    known = jid.Joint(
-        inertia=2.0, model="coulomb_viscous", parameters={"coulomb": 10.0, "viscous": 0.0}
-    )
+    known = jid.Joint(inertia=2.0, model=jid.Model("coulomb_viscous"))
+    known = known.with_parameters({"coulomb": 10.0, "viscous": 0.0})
     joint = DeadHost(known, 1e3)
     # 30 N·m held for 0.2 s from 1 rad/s on, then 10 N·m of friction alone.
     begin = Moments(np.zeros(1), np.ones(1), np.full(1, 30.0))

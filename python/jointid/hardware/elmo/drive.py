@@ -29,7 +29,6 @@ from jointid.hardware.session.clock import Clock
 from jointid.hardware.session.drive import DriveEnd, DriveFaultError, DriveSample
 from jointid.hardware.session.drive_report import DriveReport, Reported
 from jointid.hardware.session.silence import DriveSilence
-from jointid.hardware.session.watchdog import Watchdog
 from jointid.joint.joint import Joint
 
 _BOOT = 2.0  # [s] to wait for its message
@@ -76,6 +75,7 @@ class ElmoDrive:
             )
         self.joint = joint
         self.options = options if options is not None else ElmoOptions()
+        self.watchdog = self.options.watchdog
         self._seen = ElmoDecoder(joint, self.options)
         self._link = ElmoLink(bus, self.options, self._seen, clock)
         self._per_ampere = joint.torque_constant * joint.gear_ratio
@@ -116,11 +116,6 @@ class ElmoDrive:
     def resolution(self) -> float:
         """Output angle of an encoder count [rad]."""
         return self.options.resolution(self.joint)
-
-    @property
-    def watchdog(self) -> Watchdog:
-        """What the drive does without our heartbeat; `connect` reads it back, and refuses another one."""
-        return Watchdog(time=self.options.heartbeat, fed_by="heartbeat", then="off", read_back=True)
 
     def identity(self) -> dict[str, Any]:
         """What the drive reported about itself, and what was wrong with the frames on its bus."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from jointid.base.errors import InputError
 from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
+from jointid.hardware.session.watchdog import Watchdog
 from jointid.joint.joint import Joint
 
 
@@ -129,6 +130,11 @@ class ElmoOptions:
                     f"{name} and {others[0]} are both 0x{identifier:X}; frames need identifiers of their own",
                     argument=name,
                 )
+
+    @property
+    def watchdog(self) -> Watchdog:
+        """What the drive does without our heartbeat: `connect` reads it back, and refuses a drive that differs."""
+        return Watchdog(time=self.heartbeat, fed_by="heartbeat", then="off", read_back=True)
 
     @property
     def command_id(self) -> int:

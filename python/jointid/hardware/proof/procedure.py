@@ -18,6 +18,7 @@ from jointid.hardware.proof.watchdog import prove_watchdog, silence_of
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.realtime import RealTime
+from jointid.hardware.session.watchdog import watchdog_of
 
 
 def first_motion(
@@ -91,7 +92,7 @@ def _moved(
             try:
                 steps.run(interruptions)
                 if fall_silent is not None:
-                    prove_watchdog(steps, fall_silent, callback)
+                    prove_watchdog(steps, fall_silent, watchdog_of(drive), callback)
             except RefusedBenchError as refusal:
                 reason, message = refusal.reason, str(refusal)
             except DriveFaultError as error:
@@ -124,7 +125,7 @@ def _moved(
         unchecked=tuple(steps.unchecked),
         motor_off=end.motor_off,
         identity=identity,
-        drive_watchdog=steps.watchdog,
+        drive_watchdog=watchdog_of(drive),
         steps=tuple(steps.lines),
         **steps.found,
     )

@@ -27,13 +27,11 @@ from jointid.hardware.proof.pushes import (
     sensor_response,
 )
 from jointid.hardware.proof.refusal import RefusedBenchError
-from jointid.hardware.proof.watchdog import watchdog_of_bench
+from jointid.hardware.proof.watchdog import slow_on_bench
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.start_checks import FULLEST_BUS, problems_at_rest
-from jointid.hardware.session.watchdog import Watchdog
-from jointid.hardware.session.watchdog_check import watchdog_problems
 
 # Times the stated breakaway. With 5, a torque constant wrong by 3 is still found where friction is stated within
 # 1.5; without a sensor to watch, nothing sees a joint that moves behind an encoder that hangs.
@@ -69,8 +67,6 @@ class Steps:
     ----------
     axis : Axis or None
         None until the drive is connected.
-    watchdog : Watchdog or None
-        What the connected drive declares of its watchdog.
     lines : list of str
         What was tried and measured.
     found : dict
@@ -90,7 +86,6 @@ class Steps:
         self._watched = self._expected.sensor and self._options.watch_sensor
         self._sure = (math.inf, math.inf)  # torques under which the joint slides [N·m]
         self._deviation = math.nan  # of the torque sensor's readings at rest
-        self.watchdog: Watchdog | None = None
         self.axis: Axis | None = None
         self.lines: list[str] = []
         self.found: dict[str, Any] = {
@@ -188,11 +183,7 @@ class Steps:
             self._say(f"turn the joint by hand, and leave it: {self._options.hand_turn:g} s")
             turned = await_hand_turn(axis, self._options.hand_turn)
             self._say(f"the encoder counts: turned by {turned:.5f} rad")
-        reasons = list(problems_at_rest(axis.sample, bench.limits))
-        travel = watchdog_of_bench(bench, drive, axis.sample.position)
-        if travel is not None:
-            self.watchdog = travel.watchdog
-            reasons += watchdog_problems(travel, bench.options)
+        reasons = [*problems_at_rest(axis.sample, bench.limits), *slow_on_bench(bench, drive, axis)]
         low, high = bench.limits.position
         if not low + self._options.travel <= axis.sample.position <= high - self._options.travel:
             reasons.append(

@@ -10,10 +10,15 @@ from jointid.hardware.bench.bench import Bench
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.silence import DriveSilence
-from jointid.hardware.session.watchdog import watchdog_of
-from jointid.hardware.session.watchdog_check import WatchdogTravel, watchdog_travel
+from jointid.hardware.session.watchdog import Watchdog, watchdog_of
+from jointid.hardware.session.watchdog_check import (
+    WatchdogTravel,
+    watchdog_problems,
+    watchdog_travel,
+)
 
 if TYPE_CHECKING:
+    from jointid.hardware.proof.axis import Axis
     from jointid.hardware.proof.steps import Steps
 
 _BEATEN = 1.0  # [s] at no torque: a drive that only begins to watch has begun by then
@@ -41,14 +46,15 @@ def watchdog_of_bench(bench: Bench, drive: Drive, position: float) -> WatchdogTr
     if watchdog is None:
         return None
     return watchdog_travel(
-        watchdog,
-        joint=bench.joint,
-        controller=bench.controller,
-        trajectory=bench.trajectory,
-        limits=bench.limits,
-        options=bench.options,
+        *(watchdog, bench.joint, bench.controller, bench.trajectory, bench.limits, bench.options),
         position=position,
     )
+
+
+def slow_on_bench(bench: Bench, drive: Drive, axis: Axis) -> list[str]:
+    """Return why a bench's joint must not be moved with the watchdog that its drive declares; empty: it may."""
+    travel = watchdog_of_bench(bench, drive, axis.sample.position)
+    return [] if travel is None else [*watchdog_problems(travel, bench.options)]
 
 
 def silence_of(drive: Drive) -> Callable[[], DriveSilence]:
@@ -72,6 +78,7 @@ def silence_of(drive: Drive) -> Callable[[], DriveSilence]:
 def prove_watchdog(
     steps: Steps,
     fall_silent: Callable[[], DriveSilence],
+    declared: Watchdog | None,
     callback: Callable[[str], object] | None = None,
 ) -> None:
     """See that the drive does by itself what it declares (or switches its motor off), and enter when.
@@ -85,6 +92,8 @@ def prove_watchdog(
         That have passed, the motor on; `found`, `unchecked` and `lines` are added to.
     fall_silent : callable
         Of the drive.
+    declared : Watchdog or None
+        What the drive declares.
     callback : callable, optional
         Called with the line.
 
@@ -102,7 +111,6 @@ def prove_watchdog(
         axis.read()
         axis.command(0.0)
     silence = fall_silent()
-    declared = steps.watchdog
     wanted = "off" if declared is None else declared.then
     after = _judged(silence, wanted)
     steps.found["watchdog"] = after

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
-from jointid.base.errors import InputError
 from jointid.hardware.session.braking import Braked, brake_after
 from jointid.hardware.session.control_loop import Course, Follower, Observer, unwritten
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, check_drive
@@ -31,6 +30,7 @@ from jointid.hardware.session.start_checks import (
     approach_to,
     check_approach,
     problems_at_rest,
+    problems_of_drive,
     problems_on_paper,
 )
 from jointid.hardware.session.stop import (
@@ -41,8 +41,7 @@ from jointid.hardware.session.stop import (
     is_bug,
     noted,
 )
-from jointid.hardware.session.watchdog import watchdog_of
-from jointid.hardware.session.watchdog_check import watchdog_problems, watchdog_travel
+from jointid.hardware.session.watchdog_check import slow_watchdog
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
@@ -154,33 +153,13 @@ class Session:
         if reasons:
             return reasons
         self._drive.connect(options.period)
-        problems: object = self._drive.problems(limits.torque)
-        if not isinstance(problems, list):
-            raise InputError(
-                "a list of sentences is expected from a drive",
-                argument="problems()",
-                value=problems,
-            )
-        reasons += problems
+        reasons += problems_of_drive(self._drive, limits)
         sample = self._drive.read(10.0 * options.period)
         reasons += problems_at_rest(sample, limits)
         if not isinstance(self._controller, _core.OpenLoop):
             check_approach(self._start() - sample.position, options)
-        watchdog = watchdog_of(self._drive)
-        if watchdog is not None:
-            reasons += watchdog_problems(
-                watchdog_travel(
-                    watchdog,
-                    joint=self._joint,
-                    controller=self._controller,
-                    trajectory=self._trajectory,
-                    limits=limits,
-                    options=options,
-                    position=sample.position,
-                ),
-                options,
-            )
-        return reasons
+        watched = (self._joint, self._controller, self._trajectory, limits, options)
+        return reasons + slow_watchdog(self._drive, *watched, position=sample.position)
 
     def run(self, *, dry_run: bool = False) -> Recording | None:
         """Run the session.

@@ -50,8 +50,8 @@ class DriveSilence:
         failure: str = "",
         motor_off: bool | None = None,
     ) -> None:
-        given = {"allowed": allowed, "told": told, "asked": asked, "missed_host": missed_host}
-        given |= {"state": state_of(state, motor_off), "failure": failure}
+        known = {"allowed": allowed, "told": told, "asked": asked, "missed_host": missed_host}
+        given = {**known, "state": state_of(state, motor_off), "failure": failure}
         for name, value in given.items():
             object.__setattr__(self, name, value)
 

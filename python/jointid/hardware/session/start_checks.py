@@ -67,6 +67,22 @@ def problems_on_paper(
             yield f"the trajectory comes too fast to the edge: {error}"
 
 
+def problems_of_drive(drive: Drive, limits: SessionLimits) -> list[str]:
+    """Problems that a connected drive reports.
+
+    Raises
+    ------
+    InputError
+        It returns no list.
+    """
+    problems: object = drive.problems(limits.torque)
+    if not isinstance(problems, list):
+        raise InputError(
+            "a list of sentences is expected from a drive", argument="problems()", value=problems
+        )
+    return problems
+
+
 def check_approach(distance: float, options: SessionOptions) -> None:
     """Check that the way to the start has no more cycles than a session can keep.
 

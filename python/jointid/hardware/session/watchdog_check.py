@@ -14,7 +14,7 @@ from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.start_checks import approach_to
 from jointid.hardware.session.travel_after_death import DeadHost
-from jointid.hardware.session.watchdog import Watchdog
+from jointid.hardware.session.watchdog import Watchdog, watchdog_of
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
@@ -110,12 +110,12 @@ class WatchdogTravel:
 
 def watchdog_travel(
     watchdog: Watchdog,
-    *,
     joint: Joint | None,
     controller: Controller,
     trajectory: Trajectory,
     limits: SessionLimits,
     options: SessionOptions,
+    *,
     position: float,
 ) -> WatchdogTravel:
     """Return how far a joint goes when its host dies in a session.
@@ -194,3 +194,23 @@ def watchdog_problems(travel: WatchdogTravel, options: SessionOptions) -> Iterat
         )
     if not travel.passed:
         yield travel.problem()
+
+
+def slow_watchdog(
+    drive: object,
+    joint: Joint | None,
+    controller: Controller,
+    trajectory: Trajectory,
+    limits: SessionLimits,
+    options: SessionOptions,
+    *,
+    position: float,
+) -> list[str]:
+    """Return why a session must not start with the watchdog that its drive declares, if it declares one."""
+    watchdog = watchdog_of(drive)
+    if watchdog is None:
+        return []
+    travel = watchdog_travel(
+        watchdog, joint, controller, trajectory, limits, options, position=position
+    )
+    return [*watchdog_problems(travel, options)]
