@@ -24,6 +24,16 @@ WEAK = ({"coulomb": 3.0, "static": 0.0, "viscous": 1.0}, {"coulomb": 3.0, "stati
 STRONG = ({"coulomb": 25.0, "static": 0.0}, {"coulomb": 25.0, "static": 0.0})
 THESIS = ({"coulomb": 25.0, "static": 20.0}, {"coulomb": 10.0, "static": 20.0})
 FRICTIONS = {"weak": WEAK, "strong": STRONG, "thesis": THESIS}
+BOTH = "torque_constant_or_gear_ratio"
+WRONG: list[tuple[dict[str, float], tuple[str, ...]]] = [
+    ({"torque_sign": -1}, ("torque_and_encoder_disagree",)),
+    ({"encoder_sign": -1}, ("torque_and_encoder_disagree",)),
+    ({"torque_scale": 0.0}, ("no_motion_up_to_torque_cap",)),
+    ({"torque_scale": 3.0}, ("torque_constant", BOTH)),
+    ({"torque_scale": 1.0 / 3.0}, ("torque_constant", BOTH)),
+    ({"gear_ratio": 1010.0}, ("gear_ratio", BOTH)),
+    ({"sensor_sign": -1}, ("sensor_sign",)),
+]
 
 
 def quick_and_slow(quick: Any, *slow: Any) -> list[Any]:

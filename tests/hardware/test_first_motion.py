@@ -7,11 +7,13 @@ from typing import Any
 
 import pytest
 from first_motion_benches import (
+    BOTH,
     FARTHEST,
     FRICTIONS,
     STRONG,
     THESIS,
     WEAK,
+    WRONG,
     bench_with,
     breakaway,
     moved,
@@ -50,18 +52,6 @@ def test_a_right_bench_passes(friction: str, quick: bool) -> None:
         *("positive_direction", "homing", "backlash", "watchdog", "emergency_stop"),
     )
     assert "passed" in result.report()
-
-
-BOTH = "torque_constant_or_gear_ratio"
-WRONG: list[tuple[dict[str, float], tuple[str, ...]]] = [
-    ({"torque_sign": -1}, ("torque_and_encoder_disagree",)),
-    ({"encoder_sign": -1}, ("torque_and_encoder_disagree",)),
-    ({"torque_scale": 0.0}, ("no_motion_up_to_torque_cap",)),
-    ({"torque_scale": 3.0}, ("torque_constant", BOTH)),
-    ({"torque_scale": 1.0 / 3.0}, ("torque_constant", BOTH)),
-    ({"gear_ratio": 1010.0}, ("gear_ratio", BOTH)),
-    ({"sensor_sign": -1}, ("sensor_sign",)),
-]
 
 
 @pytest.mark.parametrize(("friction", "quick"), quick_and_slow("weak", "weak", "strong"))
@@ -304,7 +294,7 @@ def test_breakaway_is_stated_by_the_models_own_terms() -> None:
 
 
 def test_options_are_checked() -> None:
-    for wrong in ({"counts": 1}, {"growth_time": 0.0}, {"moves": (1.0,)}, {"watch_sensor": 1}):
+    for wrong in ({"counts": 1}, {"growth_time": 0.0}, {"moves": (-1.0,)}, {"watch_sensor": 1}):
         values: dict[str, Any] = wrong
         with pytest.raises(jid.InputError, match=next(iter(wrong))):
             jid.hardware.FirstMotionOptions(**values)

@@ -11,6 +11,7 @@ from first_motion_benches import (
     FRICTIONS,
     STRONG,
     WEAK,
+    WRONG,
     bench_with,
     breakaway,
     moved,
@@ -18,8 +19,11 @@ from first_motion_benches import (
     without_sensor,
 )
 
+import jointid as jid
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.elmo.emulated_drive import EmulatedElmo
+from jointid.hardware.proof.sizes import sizes_of
 
 
 def with_options(bench: Bench, **options: Any) -> Bench:
@@ -109,3 +113,38 @@ def test_an_encoder_that_hangs_later_is_seen(
     assert result.reason == "encoder_stands", result.report()
     assert spy.way < FARTHEST
     assert spy.torque < 1.3 * breakaway(bench)
+
+
+def coarse(counts: int, **wrong: Any) -> Bench:
+    """A strong joint with so many counts per turn of the output, at half the example's rate."""
+    bench = bench_with(STRONG, **wrong)
+    motor = round(counts / bench.joint.gear_ratio)
+    return replace(bench, drive=replace(bench.drive, counts_per_turn=motor))
+
+
+@pytest.mark.parametrize(("counts", "degrees"), [(16_471, 0.87), (65_536, 0.4)])
+def test_a_right_bench_with_a_coarse_encoder_passes(counts: int, degrees: float) -> None:
+    bench = coarse(counts)
+    result, spy = moved(bench)
+    assert result.passed, result.report()
+    assert spy.way < math.radians(degrees)
+    assert spy.torque < 1.3 * breakaway(bench)
+    assert result.inertia == pytest.approx(2.77, rel=0.4)
+
+
+@pytest.mark.parametrize("number", range(len(WRONG)))
+def test_a_wrong_bench_with_a_coarse_encoder_is_refused(number: int) -> None:
+    wrong, reasons = WRONG[number]
+    result, spy = moved(coarse(16_471, **wrong), seed=number)
+    assert result.reason in reasons, result.report()
+    assert spy.way < math.radians(0.9)
+
+
+def test_a_fine_encoder_keeps_the_travel_and_a_coarse_one_has_forty_counts() -> None:
+    count = 2.0 * math.pi / 16_471
+    assert sizes_of(FirstMotionOptions(), 1e-6).travel == math.radians(0.4)
+    assert sizes_of(FirstMotionOptions(), count).travel == pytest.approx(40.0 * count)
+    assert "0.87°" in str(sizes_of(FirstMotionOptions(), count))
+    assert sizes_of(FirstMotionOptions(travel=0.01, counts=7), count).few == 7.0 * count
+    with pytest.raises(jid.InputError, match="moves"):
+        sizes_of(FirstMotionOptions(travel=0.01, moves=(0.02,)), count)

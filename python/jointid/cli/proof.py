@@ -14,6 +14,7 @@ from jointid.cli.arguments import decimal, whole_seed
 
 if TYPE_CHECKING:
     from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.proof.sizes import Sizes
     from jointid.hardware.session.watchdog import Watchdog
 
 REFUSED = 3
@@ -39,7 +40,8 @@ def add_first_motion(first: argparse.ArgumentParser) -> None:
         "  jointid first-motion joint.toml\n"
         "  jointid first-motion joint.toml --unknown-friction --largest-torque 20\n"
         "a real bench that passes gets the certificate that `jointid run` asks for, beside the joint\n"
-        "file. Before: docs/hardware.md and `jointid check`. Exit code 3: the bench is refused."
+        "file. Before: docs/hardware.md and `jointid check`, which says how far the joint will move with\n"
+        "its encoder: 0.4°, or 40 counts of a coarse one. Exit code 3: the bench is refused."
     )
     _add_common(first, "print passed, reason, travel, torques, signs and what is unchecked as JSON")
     first.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
@@ -109,6 +111,7 @@ def first_motion(arguments: argparse.Namespace) -> int:
     from jointid.hardware.proof.certified_limits import NO_SERIAL
     from jointid.hardware.proof.procedure import first_motion as move
     from jointid.hardware.proof.result import UNCHECKED
+    from jointid.hardware.proof.sizes import resolution_of, sizes_of
 
     bench = Bench.load(arguments.joint)
     options = bench.first_motion
@@ -118,9 +121,9 @@ def first_motion(arguments: argparse.Namespace) -> int:
         options = replace(options, compare_friction=False)
     bench = replace(bench, first_motion=options)
     if not (arguments.emulate or arguments.yes):
-        with open_drive(bench):  # a bus that is not there is said before anybody is asked
-            pass
-    if not (arguments.emulate or arguments.yes or _agreed(bench)):
+        with open_drive(bench) as drive:  # a bus that is not there is said before anybody is asked
+            sizes = sizes_of(options, resolution_of(bench, drive))
+    if not (arguments.emulate or arguments.yes or _agreed(bench, sizes)):
         print("jointid first-motion: not started", file=sys.stderr)
         return REFUSED
     show = not (arguments.quiet or arguments.json)
@@ -226,12 +229,10 @@ def _show(line: str) -> None:
     print(line, flush=True)
 
 
-def _agreed(bench: Bench) -> bool:
+def _agreed(bench: Bench, sizes: Sizes) -> bool:
     """Whether the user agrees that the real joint moves."""
-    travel = bench.first_motion.travel
     print(
-        f"'{bench.joint.name}' will move by up to {travel:.4f} rad, over {bench.address}. With a wrong gear ratio it "
-        "is more.",
+        f"'{bench.joint.name}' will move by {sizes}, over {bench.address}. With a wrong gear ratio it is more.",
         file=sys.stderr,
     )
     if not sys.stdin.isatty():

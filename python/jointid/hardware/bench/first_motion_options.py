@@ -30,22 +30,25 @@ class FirstMotionOptions:
     hand_turn : float, optional
         Time to wait, motor off, until somebody has turned the joint by hand and the encoder has counted [s]. Default:
         nobody is awaited; without a sensor to watch, an encoder that hangs then shows only at the cap.
-    counts : int
-        Encoder counts that are a motion, beside `more_counts`. Default 5.
-    more_counts : int
-        Counts that must follow while the torque is held; else it was the gear winding up. Default 10.
+    counts : int, optional
+        Encoder counts that are a motion, beside `more_counts`. Default: 5; fewer where both together would be
+        more than 0.1°, but 2 at least.
+    more_counts : int, optional
+        Counts that must follow while the torque is held; without them it was the gear winding up. Default: 10; fewer
+        as of `counts`.
     growth_time : float
         In which the torque grows by a factor of e [s]: a constant share of the torque in each cycle, so that a
         weak joint is approached as carefully as a strong one. Default 2.
-    travel : float
-        Farthest from the start, by the joint file's gear ratio [rad]; beyond, the motor goes off. Default 0.4°.
+    travel : float, optional
+        Farthest from the start, by the joint file's gear ratio [rad]; beyond, the motor goes off. Default: 0.4°, or 40
+        encoder counts where that is more.
     velocity : float
         Highest speed [rad/s]; beyond, the motor goes off. Default 0.5.
     still_time : float
         That the joint must stand before it is moved, motor off and on [s]. Default 0.5.
-    moves : tuple of float
+    moves : tuple of float, optional
         Amplitudes of the small motions under control, each after the one before has succeeded [rad].
-        Default 0.1°, 0.2° and 0.3°.
+        Default: 0.1°, 0.2° and 0.3°, or a third, two thirds and all of 20 encoder counts where that is more.
     longest : float
         Time that the motor may be on [s]. Default 55.
 
@@ -59,13 +62,13 @@ class FirstMotionOptions:
     compare_friction: bool = True
     watch_sensor: bool = True
     hand_turn: float | None = None
-    counts: int = 5
-    more_counts: int = 10
+    counts: int | None = None
+    more_counts: int | None = None
     growth_time: float = 2.0
-    travel: float = math.radians(0.4)
+    travel: float | None = None
     velocity: float = 0.5
     still_time: float = 0.5
-    moves: tuple[float, ...] = (math.radians(0.1), math.radians(0.2), math.radians(0.3))
+    moves: tuple[float, ...] | None = None
     longest: float = 55.0
 
     def __post_init__(self) -> None:
@@ -83,15 +86,12 @@ class FirstMotionOptions:
                     "true or false is expected", argument=name, value=getattr(self, name)
                 )
         for name in ("counts", "more_counts"):
-            if not (
-                isinstance(getattr(self, name), int) and 2 <= getattr(self, name) <= _MOST_COUNTS
-            ):
-                raise InputError(
-                    f"2 to {_MOST_COUNTS} is expected", argument=name, value=getattr(self, name)
-                )
-        if not all(is_number(move) and 0.0 < move <= self.travel for move in self.moves):
+            value = getattr(self, name)
+            if value is not None and not (isinstance(value, int) and 2 <= value <= _MOST_COUNTS):
+                raise InputError(f"2 to {_MOST_COUNTS} is expected", argument=name, value=value)
+        if not all(is_number(move) and 0.0 < move < math.inf for move in self.moves or ()):
             raise InputError(
-                f"amplitudes of more than 0 and at most travel, {self.travel:.4g} rad, are expected",
+                "amplitudes of more than 0 are expected",
                 argument="moves",
                 value=self.moves,
             )

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.proof.encoder_watch import EncoderWatch
 from jointid.hardware.proof.refusal import RefusedBenchError
+from jointid.hardware.proof.sizes import Sizes
 from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
@@ -50,8 +51,7 @@ class Axis:
     options : FirstMotionOptions
     period : float
         [s]
-    resolution : float
-        Output angle of an encoder count [rad].
+    sizes : Sizes
     interruptions : Interruptions
 
     Attributes
@@ -75,12 +75,12 @@ class Axis:
         options: FirstMotionOptions,
         *,
         period: float,
-        resolution: float,
+        sizes: Sizes,
         interruptions: Interruptions,
     ) -> None:
         self._drive, self._limits, self._options = drive, limits, options
         self._interruptions = interruptions
-        self.period, self.resolution = period, resolution
+        self.period, self.sizes, self.resolution = period, sizes, sizes.resolution
         self.travel = self.largest_torque = 0.0
         self.on = self._free = False
         self.encoder_watch: EncoderWatch | None = None
@@ -197,13 +197,16 @@ class Axis:
         if self._free:
             return
         self.travel = max(self.travel, abs(position - self._start))
-        if self.travel > options.travel:
+        if self.travel > self.sizes.travel:
             raise RefusedBenchError(
                 "too_far",
-                f"the joint is {self.travel:.5f} rad from its start, more than {options.travel:.5f} rad",
+                f"the joint is {self.travel:.5f} rad from its start, more than {self.sizes.travel:.5f} rad",
             )
-        speed = (position - before.position) / max(sample.time - before.time, 0.5 * self.period)
-        if abs(speed) > options.velocity:
+        certain = (
+            abs(position - before.position) - self.resolution
+        )  # a count is as much as rounding adds
+        speed = certain / max(sample.time - before.time, 0.5 * self.period)
+        if speed > options.velocity:
             raise RefusedBenchError(
                 "too_fast",
                 f"the joint moves at {speed:.3f} rad/s, more than {options.velocity:g} rad/s",

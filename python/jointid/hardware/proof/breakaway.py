@@ -67,7 +67,7 @@ def find_breakaway(
     watch = _watch(axis, deviation)
     start = place = axis.sample.position
     torque, held, swing = 0.0, -1.0, 0.0  # held: since when, if not negative
-    few, more = options.counts * axis.resolution, options.more_counts * axis.resolution
+    few, more = axis.sizes.few, axis.sizes.more
     quiet, since = place, axis.now
     while True:
         sample = axis.read()
@@ -88,7 +88,8 @@ def find_breakaway(
             if abs(position - place) > (1.0 - 1e-6) * more + swing:
                 moved = position - start
                 axis.rest()
-                return Breakaway(torque, (moved > 0.0) == (direction > 0.0), abs(place - start))
+                yielded = max(0.0, abs(place - start) - few)
+                return Breakaway(torque, (moved > 0.0) == (direction > 0.0), yielded)
             if abs(position - quiet) > 1.5 * axis.resolution:
                 quiet, held = position, axis.now
             elif axis.now - held > _WIND_UP:

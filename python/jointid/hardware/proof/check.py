@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from jointid.base.argument_checks import require_kind
-from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.opened_drive import open_drive
+from jointid.hardware.proof.sizes import resolution_of, sizes_of
 from jointid.hardware.proof.watchdog import NO_WATCHDOG, watchdog_of_bench
 from jointid.hardware.session.drive import Drive, DriveFaultError
 from jointid.hardware.session.drive_report import DriveReport
@@ -50,6 +50,8 @@ class BenchCheck:
         How far the joint goes in its motion when the host dies; None: the drive declares no watchdog.
     remarks : tuple of str
         Worth a change, but no reason not to move the joint.
+    first_motion : str
+        How far it will go with this encoder.
     """
 
     address: str
@@ -63,6 +65,7 @@ class BenchCheck:
     problems: tuple[str, ...] = ()
     watchdog: WatchdogTravel | None = None
     remarks: tuple[str, ...] = ()
+    first_motion: str = ""
 
     @property
     def passed(self) -> bool:
@@ -91,6 +94,7 @@ class BenchCheck:
             "problems": list(self.problems),
             "watchdog": None if self.watchdog is None else self.watchdog.to_dict(),
             "remarks": list(self.remarks),
+            "first_motion": self.first_motion,
         }
 
     def text(self) -> str:
@@ -124,7 +128,7 @@ class BenchCheck:
         lines += [f"DIFFERENT: {each}" for each in self.differences]
         lines += [f"PROBLEM: {each}" for each in self.problems]
         if self.passed:
-            lines.append("nothing speaks against a first motion")
+            lines.append(f"nothing speaks against a first motion: {self.first_motion}")
         return "\n".join(lines)
 
 
@@ -201,9 +205,8 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
             if error.kind != "stale_position" or len(samples) < 2:
                 raise
     last = samples[-1]
-    resolution = bench.options.resolution or getattr(drive, "resolution", None)
-    if resolution is None:
-        raise InputError("missing; this drive has none", argument="resolution")
+    resolution = resolution_of(bench, drive)
+    found["first_motion"] = str(sizes_of(bench.first_motion, resolution))
     if found["report"] is not None:
         found["remarks"] = tuple(_wide_speeds(found["report"], bench.limits.velocity))
     positions = np.array([each.position for each in samples])

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
-_COUNTS = 20.0  # that the joint must have moved by, of which the encoder showed one at most
+# That the joint must have moved by, of which the encoder showed one at most: 20 counts of a fine encoder, as many as
+# this angle has of a coarser one, 4 at least.
+_COUNTS, _ANGLE, _FEWEST = 20.0, math.radians(0.01), 4.0
 _SEEN = 1.5  # counts: a count of jitter is none
 _COARSE = 3.0  # counts a cycle, above which a speed is known
 
@@ -27,6 +29,7 @@ class EncoderWatch:
 
     def __init__(self, breakaway: tuple[float, float], inertia: float, resolution: float) -> None:
         self._breakaway, self._inertia, self._resolution = breakaway, inertia, resolution
+        self._unseen = max(_FEWEST * resolution, min(_COUNTS * resolution, _ANGLE))
         self._place, self._time = math.nan, math.nan
         self._direction = self._speed = self._way = 0.0
 
@@ -46,4 +49,4 @@ class EncoderWatch:
         before = self._speed
         self._speed = max(0.0, before + excess / self._inertia * step)
         self._way += 0.5 * (before + self._speed) * step
-        return self._way > _COUNTS * self._resolution
+        return self._way > self._unseen

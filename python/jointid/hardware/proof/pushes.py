@@ -49,10 +49,15 @@ class Push:
         return float(np.ptp(self.trace.position))
 
     @property
+    def counts(self) -> float:
+        """Encoder counts that it took."""
+        return self.width / self.resolution
+
+    @property
     def fastest(self) -> float:
-        """Highest speed between two samples [rad/s]."""
-        steps = np.abs(np.diff(self.trace.position)) / np.diff(self.trace.time)
-        return float(steps.max(initial=0.0))
+        """Highest speed between two samples, less the count that rounding adds [rad/s]."""
+        steps = np.abs(np.diff(self.trace.position)) - self.resolution
+        return float((steps / np.diff(self.trace.time)).max(initial=0.0))
 
     @cached_property
     def times(self) -> Array:
@@ -73,7 +78,11 @@ class Push:
 
     @cached_property
     def balance(self) -> tuple[Array, Array]:
-        """Matrix and right side of the balance integrated twice, while the joint moved."""
+        """Matrix and right side of the balance integrated twice, while the joint moved.
+
+        The counts are on the right side: on the left one they would make the inertia too small. The mean is taken
+        away: nobody knows where within a count the joint stood.
+        """
         inner, times, way = slice(1, self.moving + 1), self.times, self.way
         # The torque of a row acts from its own time plus the latency: a few steps, most rows have none.
         steps = np.diff(self.direction * self.trace.torque, prepend=0.0)
@@ -82,7 +91,8 @@ class Push:
         twice = 0.5 * np.clip(late, 0.0, None) ** 2 @ steps[some]
         area = np.concatenate(((0.0,), np.cumsum(0.5 * (way[1:] + way[:-1]) * np.diff(times))))
         held = 0.5 * (times[inner] - times[0]) ** 2
-        return np.stack((way[inner], held, area[inner], self.direction * held), axis=1), twice
+        matrix = np.stack((twice, held, area[inner], self.direction * held), axis=1)
+        return matrix - matrix.mean(axis=0), way[inner] - way[inner].mean()
 
     def acceleration(self, motion: Motion) -> Array:
         """Of the fitted motion, 0 at rest [rad/s²], in the joint's positive direction."""
@@ -140,7 +150,7 @@ class Motion:
 def motion_of(pushes: list[Push]) -> Motion:
     """Fit inertia and sliding friction to some pushes, by the torque balance integrated twice.
 
-    inertia · x = ∬ torque - (friction ± load) · ∬ 1 - viscous · ∫ x, from the first cycle of each push, in which
+    x = (∬ torque - (friction ± load) · ∬ 1 - viscous · ∫ x) / inertia, from the first cycle of each push, in which
     the torque steps from 0, until the last count.
     """
     moved = [each.balance for each in pushes if each.moving > 2]
@@ -152,8 +162,10 @@ def motion_of(pushes: list[Push]) -> Motion:
         return Motion(math.nan, math.nan, math.nan)
     scale = np.abs(matrix).max(axis=0)
     found, *_ = np.linalg.lstsq(matrix / np.where(scale > 0.0, scale, 1.0), target, rcond=1e-9)
-    inertia, friction, viscous, load = (float(value) for value in found / scale)
-    return Motion(inertia if inertia > 0.0 else math.nan, friction, viscous, load)
+    mobility, friction, viscous, load = (float(value) for value in found / scale)
+    if mobility <= 0.0:
+        return Motion(math.nan, math.nan, math.nan)
+    return Motion(1.0 / mobility, *(-each / mobility for each in (friction, viscous, load)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.proof.axis import Axis
 from jointid.hardware.proof.breakaway import Breakaway, find_breakaway
@@ -27,6 +26,7 @@ from jointid.hardware.proof.pushes import (
     sensor_response,
 )
 from jointid.hardware.proof.refusal import RefusedBenchError
+from jointid.hardware.proof.sizes import resolution_of, sizes_of
 from jointid.hardware.proof.watchdog import slow_on_bench
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.drive_report import DriveReport
@@ -38,9 +38,10 @@ from jointid.hardware.session.start_checks import FULLEST_BUS, problems_at_rest
 _CAP, _CAP_UNWATCHED = 5.0, 2.0
 _SLOWEST = 0.005  # [s] of a period; at twice that, benches that are right went too far
 _FEWEST, _MOST = 5, 25  # pairs of pushes
+_INFORMED = 4000.0  # squared counts of all pushes together, which tell the inertia
 _CLEAR = 6.0  # standard errors of a sign
-_REACH, _FARTHEST = math.radians(0.02), math.radians(0.12)  # of the first push and of the last
-_WIDE = math.radians(0.2)  # pushes that went so far are not made longer
+_REACH, _FARTHEST = 0.05, 0.3  # of the span, by the first push and by the last
+_WIDE = 0.5  # of the span: pushes that went so far are not made longer
 _QUICK = 0.3  # of the velocity allowed: nor those that were so fast
 _PUSHED = 0.6  # of the time allowed, after which no more pushes begin
 _FEW_PUSHES = 4  # pairs that only tell a wrong torque constant from a wrong gear ratio
@@ -126,7 +127,10 @@ class Steps:
         sure = tuple((_SURE_WOUND if wound else _SURE) * each for each in breakaway)
         self._sure = (sure[0], sure[1])
         if self._expected.inertia is not None:
-            axis.encoder_watch = EncoderWatch(self._sure, self._expected.inertia, axis.resolution)
+            stated = self._expected.breakaway or math.inf
+            # A torque constant that is too large in the joint file makes both larger.
+            inertia = self._expected.inertia * max(1.0, 0.5 * sum(breakaway) / stated)
+            axis.encoder_watch = EncoderWatch(self._sure, inertia, axis.resolution)
         self._judge_scales(axis, breakaway)
         motion = self._judge_sensor(axis, breakaway)
         self._under_control(axis, breakaway, motion, max(each.wind_up for each in found))
@@ -167,15 +171,13 @@ class Steps:
             problems += [str(each) for each in report.differences]
         if problems:
             raise RefusedBenchError("not_ready", "; ".join(problems))
-        resolution = bench.options.resolution or getattr(drive, "resolution", None)
-        if resolution is None:
-            raise InputError("missing; this drive has none", argument="resolution")
+        sizes = sizes_of(self._options, resolution_of(bench, drive))
         axis = Axis(
             drive,
             bench.limits,
             self._options,
             period=period,
-            resolution=resolution,
+            sizes=sizes,
             interruptions=interruptions,
         )
         self.axis = axis
@@ -185,10 +187,10 @@ class Steps:
             self._say(f"the encoder counts: turned by {turned:.5f} rad")
         reasons = [*problems_at_rest(axis.sample, bench.limits), *slow_on_bench(bench, drive, axis)]
         low, high = bench.limits.position
-        if not low + self._options.travel <= axis.sample.position <= high - self._options.travel:
+        if not low + sizes.travel <= axis.sample.position <= high - sizes.travel:
             reasons.append(
                 f"the joint stands at {axis.sample.position:.4f} rad, too near to the end of its window, "
-                f"{low:.4f} to {high:.4f} rad, to be moved by {self._options.travel:.4f} rad"
+                f"{low:.4f} to {high:.4f} rad, to be moved by {sizes.travel:.4f} rad"
             )
         if reasons:
             raise RefusedBenchError("not_ready", "; ".join(reasons))
@@ -284,10 +286,10 @@ class Steps:
             return
         inertia = math.nan
         if expected.inertia is not None:
-            pushes = self._pushes(
-                axis, breakaway, _FEW_PUSHES, _REACH / max(1.0, friction / stated)
-            )
-            inertia = motion_of(pushes).inertia
+            reach = _REACH * axis.sizes.span / max(1.0, friction / stated)
+            reach = max(reach, axis.sizes.least)
+            pushes = self._pushes(axis, breakaway, _FEW_PUSHES, reach)
+            inertia = motion_of(pushes).inertia if _informed(pushes) else math.nan
             self.found["inertia"] = inertia if math.isfinite(inertia) else None
         code = scale_fault(expected, friction, inertia)
         assert code is not None
@@ -314,22 +316,24 @@ class Steps:
 
     def _judge_sensor(self, axis: Axis, breakaway: tuple[float, float]) -> Motion:
         """Push until inertia and sensor are clear; returns what they say of the joint."""
-        expected, reach = self._expected, _REACH
+        expected, span = self._expected, axis.sizes.span
+        reach = _REACH * span
         pushes: list[Push] = []
         motion, response = Motion(math.nan, 0.0, 0.0), SensorResponse(0.0, math.inf)
         for pair in range(_MOST):
             pushes += self._pushes(axis, breakaway, 1, reach)
             widest = max((each.width for each in pushes[-2:]), default=0.0)
             fastest = max((each.fastest for each in pushes[-2:]), default=0.0)
-            if widest < _WIDE and fastest < _QUICK * self._options.velocity:
-                reach = min(reach + _REACH, _FARTHEST)
+            if widest < _WIDE * span and fastest < _QUICK * self._options.velocity:
+                reach = min(reach + _REACH * span, _FARTHEST * span)
             if pair + 1 < _FEWEST or not pushes:
                 continue
             motion = motion_of(pushes)
-            if not expected.sensor:
-                break
-            response = sensor_response(pushes, motion)
-            if abs(response.significance) > _CLEAR or axis.now > _PUSHED * self._options.longest:
+            informed = _informed(pushes)
+            if expected.sensor:
+                response = sensor_response(pushes, motion)
+                informed = informed and abs(response.significance) > _CLEAR
+            if informed or axis.now > _PUSHED * self._options.longest:
                 break
         if math.isfinite(motion.inertia):
             self.found["inertia"] = motion.inertia
@@ -393,8 +397,13 @@ class Steps:
             self.unchecked.append("control")
             return
         axis.encoder_watch = EncoderWatch(self._sure, inertia, axis.resolution)
-        for amplitude in self._options.moves:
+        for amplitude in axis.sizes.moves:
             worst = small_move(axis, amplitude, breakaway, inertia, wind_up)
             self._say(
                 f"under control: {math.degrees(amplitude):.2f}° and back, largest error {math.degrees(worst):.3f}°"
             )
+
+
+def _informed(pushes: list[Push]) -> bool:
+    """Whether the encoder has counted enough to tell the inertia."""
+    return sum(each.counts**2 for each in pushes) > _INFORMED
