@@ -91,6 +91,8 @@ class ElmoLink:
         when = self.clock.now()  # behind the sending, which may have had to wait for the processor
         if not self.stamped:  # nor does the answer tell how long we waited behind it
             when = 0.5 * (begun + when)
+        if identifier != canopen.SYNC:
+            self.watch.own(when, len(payload))
         if self.tap is not None:
             self.tap(when, identifier, payload, True)
         return when

@@ -61,7 +61,9 @@ class CycleReader:
             if identifier == canopen.SYNC:
                 self._begin(when)
                 continue
-            if identifier not in self._sent_by_us:
+            if identifier in self._sent_by_us:
+                self._watch.own(when, len(payload))
+            else:
                 answers = identifier == self._options.position_id
                 self._watch.came(when, len(payload), answers=answers)
             if identifier == self._options.command_id:
