@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jointid.base.values import dataclass
+from jointid.hardware.session.gains import GAINS
 
 if TYPE_CHECKING:
     from jointid.hardware.bench.bench import Bench
@@ -131,6 +132,11 @@ def in_force(joint_file: Path, bench: Bench) -> InForce:
             ),
             *_trajectory(trajectory, bench.trajectory.duration),
             Setting("controller", "law", law, "law" in session.get("controller", {})),
+            *(
+                Setting("controller", name, value, name in session.get("controller", {}))
+                for name, value in bench.controller.asdict().items()
+                if name in GAINS
+            ),
             *(
                 Setting("session", name, getattr(bench.options, name), name in session)
                 for name in _SESSION

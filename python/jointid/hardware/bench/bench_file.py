@@ -12,7 +12,9 @@ from jointid.hardware.bench.bench import Bench, BusOptions, Emulation, joint_wit
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, DriveType, drive_type, drive_type_names
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.bench.table import Table, type_name, types_of
+from jointid.hardware.session.gains import with_fitting_gains
 from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.moving_joint import MovingJoint
 from jointid.hardware.session.options import SessionOptions, check_cycles
 from jointid.hardware.session.realtime import RealTimeOptions
 from jointid.joint.angles import ANGLE_EXPECTED, text_in
@@ -96,7 +98,7 @@ def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
     _check_peaks(session.table("trajectory"), motion, limits)
     return Bench(
         joint=joint,
-        controller=_controller(session.table("controller"), joint),
+        controller=_controller(session.table("controller"), joint, options.period),
         trajectory=trajectory,
         drive=adapter.options(session, bus),
         limits=limits,
@@ -155,19 +157,20 @@ def _trajectory(table: Table) -> Trajectory:
     return trajectory
 
 
-def _controller(table: Table, joint: Joint) -> Controller:
+def _controller(table: Table, joint: Joint, period: float) -> Controller:
     law = _LAWS[table.choice("law", "adaptive_robust", _LAWS)]
     gains = table.without("law")
     controller: Controller = gains.make_core(law)
+    moved = MovingJoint.of(joint)
     if "coulomb" not in controller.asdict():
-        return controller
+        return with_fitting_gains(controller, gains.entries, moved, period)
     # Parameters of the joint file, unless this table has others.
     try:
         controller = believing(controller, joint)
     except InputError as error:
         raise InputError(str(error), place=table.source) from error
     assumed: Controller = controller.replace(**gains.entries)
-    return assumed
+    return with_fitting_gains(assumed, gains.entries, moved, period)
 
 
 def _emulation(table: Table, joint: Joint, adapter: DriveType) -> Emulation:

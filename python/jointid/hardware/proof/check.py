@@ -16,6 +16,8 @@ from jointid.hardware.proof.sizes import resolution_of, sizes_of
 from jointid.hardware.proof.watchdog import NO_WATCHDOG, watchdog_of_bench
 from jointid.hardware.session.drive import Drive, DriveFaultError
 from jointid.hardware.session.drive_report import DriveReport
+from jointid.hardware.session.gains import doubt_of_gains
+from jointid.hardware.session.moving_joint import MovingJoint
 from jointid.hardware.session.start_checks import problems_at_rest
 from jointid.hardware.session.watchdog import Watchdog
 from jointid.hardware.session.watchdog_check import WatchdogTravel, watchdog_problems
@@ -209,6 +211,9 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
     found["first_motion"] = str(sizes_of(bench.first_motion, resolution))
     if found["report"] is not None:
         found["remarks"] = tuple(_wide_speeds(found["report"], bench.limits.velocity))
+    doubt = doubt_of_gains(bench.controller, MovingJoint.of(bench.joint), period)
+    if doubt:
+        found["remarks"] = (*found.get("remarks", ()), doubt)
     positions = np.array([each.position for each in samples])
     duration = max(last.time - samples[0].time, period)
     found["position"] = last.position

@@ -51,6 +51,8 @@ class Guard:
         Checks that need to know the joint. Default: none.
     breakaway : float, optional
         Torque that the joint is believed to need before it moves [N·m]. Default: not known.
+    doubt_of_gains : str
+        What speaks against the controller's gains at this period. Default: nothing.
 
     Attributes
     ----------
@@ -65,8 +67,9 @@ class Guard:
         resolution: float,
         foresight: Foresight | None = None,
         breakaway: float | None = None,
+        doubt_of_gains: str = "",
     ) -> None:
-        self._foresight = foresight
+        self._foresight, self._doubt_of_gains = foresight, doubt_of_gains
         self._limits, self._period = limits, period
         self.lateness = Lateness(limits, period)
         self._largest_measured = limits.largest_measured
@@ -161,9 +164,10 @@ class Guard:
         self._last = torque
         cut = saturations + self._cut
         if cut > limits.saturated_samples:
+            why = self._doubt_of_gains or _WHY_CUT
             raise LimitError(
                 "saturated_samples",
-                f"the torque limit cut the command {cut} times, more than {limits.saturated_samples}; {_WHY_CUT}",
+                f"the torque limit cut the command {cut} times, more than {limits.saturated_samples}; {why}",
                 measured=cut,
                 allowed=limits.saturated_samples,
             )

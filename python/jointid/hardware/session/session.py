@@ -16,6 +16,7 @@ from jointid.hardware.session.braking import Braked, brake_after
 from jointid.hardware.session.control_loop import Course, Follower, Observer, unwritten
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, check_drive
 from jointid.hardware.session.foresight import foresight_of
+from jointid.hardware.session.gains import doubt_of_gains
 from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
@@ -297,6 +298,7 @@ class Session:
                     options.resolution,
                     foresight_of(self._moved, self._drive, limits, options),
                     self._breakaway,
+                    doubt_of_gains(self._controller, self._moved, options.period),
                 ),
                 options,
                 interruptions=interruptions,

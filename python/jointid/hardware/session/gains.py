@@ -1,0 +1,84 @@
+"""Feedback gains that an inertia and a period bear: a loop that reacts within few periods swings up."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from jointid import _core
+from jointid.hardware.session.moving_joint import MovingJoint
+from jointid.simulation.arguments import Controller
+
+_BANDWIDTH, _ROBUST = (
+    0.25,
+    0.5,
+)  # times the period: those of Table 6-1 at 2 ms, and the thesis's joint
+_MOST = 1.2  # of the whole velocity feedback over the inertia, times the period; Table 6-1 has 0.77
+_TABLE = _core.AdaptiveRobust()
+GAINS = ("bandwidth", "boundary", "stiffness", "damping")
+"""Gains that follow from inertia and period, where a bench file states none of its law's."""
+
+
+def inertia_of(controller: Controller, joint: MovingJoint | None) -> float | None:
+    """Return the inertia that a controller's feedback moves, by its own estimate or the joint's [kg·m²]."""
+    own = float(controller.asdict().get("inertia", 0.0))
+    if own > 0.0:
+        return own
+    return None if joint is None else joint.inertia
+
+
+def fitting_gains(controller: Controller, inertia: float, period: float) -> dict[str, float]:
+    """Return the gains that fit, never above those of Table 6-1; empty without feedback.
+
+    Parameters
+    ----------
+    controller : Controller
+    inertia : float
+        [kg·m²]
+    period : float
+        [s]
+    """
+    bandwidth = min(_TABLE.bandwidth, _BANDWIDTH / period)
+    if isinstance(controller, _core.AdaptiveRobust):
+        boundary = controller.robust_torque * period / (_ROBUST * inertia)
+        return {"bandwidth": bandwidth, "boundary": max(_TABLE.boundary, boundary)}
+    if isinstance(controller, _core.LugreObserver):
+        return {"bandwidth": bandwidth}
+    if isinstance(controller, _core.OpenLoop):
+        return {}
+    return {"stiffness": inertia * bandwidth**2, "damping": 2.0 * inertia * bandwidth}
+
+
+def with_fitting_gains(
+    controller: Controller, stated: Collection[str], joint: MovingJoint | None, period: float
+) -> Controller:
+    """Return the controller with the gains that fit, where none of them is stated."""
+    inertia = inertia_of(controller, joint)
+    gains = {} if inertia is None else fitting_gains(controller, inertia, period)
+    if any(name in stated for name in gains):
+        return controller
+    fitting: Controller = controller.replace(**gains)
+    return fitting
+
+
+def doubt_of_gains(controller: Controller, joint: MovingJoint | None, period: float) -> str:
+    """Say that gains times period is too large, and which gains fit; empty where it is not."""
+    inertia = inertia_of(controller, joint)
+    if inertia is None or not (gains := fitting_gains(controller, inertia, period)):
+        return ""
+    share = _velocity_feedback(controller) / inertia * period
+    if isinstance(controller, _core.AdaptiveRobust | _core.LugreObserver):
+        share += 2.0 * controller.bandwidth * period
+    if share <= _MOST:
+        return ""
+    text = ", ".join(f"{name} = {value:.3g}" for name, value in gains.items())
+    return (
+        f"gains times period is {share:.2g}, more than {_MOST:g}, at {inertia:.3g} kg·m² and {1e3 * period:g} ms; "
+        f"these fit, in [session.controller]: {text}"
+    )
+
+
+def _velocity_feedback(controller: Controller) -> float:
+    """Torque of an error of velocity, besides what grows with the inertia [N·m·s/rad]."""
+    if isinstance(controller, _core.AdaptiveRobust):
+        return controller.robust_torque / controller.boundary if controller.robust_term else 0.0
+    return float(controller.asdict().get("damping", 0.0))
