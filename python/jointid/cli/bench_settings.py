@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jointid.base.values import dataclass
-from jointid.hardware.session.gains import GAINS
 
 if TYPE_CHECKING:
     from jointid.hardware.bench.bench import Bench
@@ -25,6 +24,7 @@ _UNITS = {
     "torque_rate": "N·m/s",
     **dict.fromkeys(("period", "settle", "cycle", "duration"), "s"),
 }
+_GAINS = ("bandwidth", "boundary", "stiffness", "damping")
 _SESSION = ("period", "approach_velocity", "settle")
 
 
@@ -135,7 +135,7 @@ def in_force(joint_file: Path, bench: Bench) -> InForce:
             *(
                 Setting("controller", name, value, name in session.get("controller", {}))
                 for name, value in bench.controller.asdict().items()
-                if name in GAINS
+                if name in _GAINS
             ),
             *(
                 Setting("session", name, getattr(bench.options, name), name in session)

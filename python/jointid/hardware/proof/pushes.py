@@ -19,6 +19,7 @@ _LONGEST = 0.4  # [s] of a push
 _DEGREE = 5  # of the polynomial that stands for what the sensor reads at a position
 _UNKNOWN = 8  # rows at least, for four unknowns
 _FEWEST = 50  # samples in motion, to say anything
+_INFORMED = 4000.0  # squared counts of all pushes together, which tell the inertia
 
 
 @dataclass(frozen=True)
@@ -145,6 +146,11 @@ class Motion:
     friction: float
     viscous: float
     load: float = 0.0
+
+
+def informed(pushes: list[Push]) -> bool:
+    """Whether the encoder has counted enough to tell the inertia."""
+    return sum(each.counts**2 for each in pushes) > _INFORMED
 
 
 def motion_of(pushes: list[Push]) -> Motion:

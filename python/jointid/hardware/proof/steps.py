@@ -21,6 +21,7 @@ from jointid.hardware.proof.pushes import (
     Motion,
     Push,
     SensorResponse,
+    informed,
     motion_of,
     push,
     sensor_response,
@@ -38,7 +39,6 @@ from jointid.hardware.session.start_checks import FULLEST_BUS, problems_at_rest
 _CAP, _CAP_UNWATCHED = 5.0, 2.0
 _SLOWEST = 0.005  # [s] of a period; at twice that, benches that are right went too far
 _FEWEST, _MOST = 5, 25  # pairs of pushes
-_INFORMED = 4000.0  # squared counts of all pushes together, which tell the inertia
 _CLEAR = 6.0  # standard errors of a sign
 _REACH, _FARTHEST = 0.05, 0.3  # of the span, by the first push and by the last
 _WIDE = 0.5  # of the span: pushes that went so far are not made longer
@@ -46,11 +46,8 @@ _QUICK = 0.3  # of the velocity allowed: nor those that were so fast
 _PUSHED = 0.6  # of the time allowed, after which no more pushes begin
 _FEW_PUSHES = 4  # pairs that only tell a wrong torque constant from a wrong gear ratio
 _DRIFT = 5.0  # counts: a joint that stands moves less
-_SURE, _SURE_WOUND, _WOUND = (
-    1.02,
-    1.1,
-    2e-4,
-)  # of the breakaway; the joint slides; [rad] of yielding
+_SURE, _SURE_WOUND = 1.02, 1.1  # of the breakaway; the joint slides
+_WOUND = 2e-4  # [rad] of yielding
 _FARTHER = 2.0  # measured over stated inertia, where nothing else is known
 
 
@@ -287,9 +284,8 @@ class Steps:
         inertia = math.nan
         if expected.inertia is not None:
             reach = _REACH * axis.sizes.span / max(1.0, friction / stated)
-            reach = max(reach, axis.sizes.least)
-            pushes = self._pushes(axis, breakaway, _FEW_PUSHES, reach)
-            inertia = motion_of(pushes).inertia if _informed(pushes) else math.nan
+            pushes = self._pushes(axis, breakaway, _FEW_PUSHES, max(reach, axis.sizes.least))
+            inertia = motion_of(pushes).inertia if informed(pushes) else math.nan
             self.found["inertia"] = inertia if math.isfinite(inertia) else None
         code = scale_fault(expected, friction, inertia)
         assert code is not None
@@ -329,11 +325,11 @@ class Steps:
             if pair + 1 < _FEWEST or not pushes:
                 continue
             motion = motion_of(pushes)
-            informed = _informed(pushes)
+            clear = informed(pushes)
             if expected.sensor:
                 response = sensor_response(pushes, motion)
-                informed = informed and abs(response.significance) > _CLEAR
-            if informed or axis.now > _PUSHED * self._options.longest:
+                clear = clear and abs(response.significance) > _CLEAR
+            if clear or axis.now > _PUSHED * self._options.longest:
                 break
         if math.isfinite(motion.inertia):
             self.found["inertia"] = motion.inertia
@@ -402,8 +398,3 @@ class Steps:
             self._say(
                 f"under control: {math.degrees(amplitude):.2f}° and back, largest error {math.degrees(worst):.3f}°"
             )
-
-
-def _informed(pushes: list[Push]) -> bool:
-    """Whether the encoder has counted enough to tell the inertia."""
-    return sum(each.counts**2 for each in pushes) > _INFORMED

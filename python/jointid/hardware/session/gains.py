@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 from jointid import _core
 from jointid.hardware.session.moving_joint import MovingJoint
 from jointid.simulation.arguments import Controller
 
-_BANDWIDTH, _ROBUST = (
-    0.25,
-    0.5,
-)  # times the period: those of Table 6-1 at 2 ms, and the thesis's joint
+_BANDWIDTH, _ROBUST = 0.25, 0.5  # times the period, at most; Table 6-1 has 0.16 and 0.45 at 2 ms
 _MOST = 1.2  # of the whole velocity feedback over the inertia, times the period; Table 6-1 has 0.77
 _TABLE = _core.AdaptiveRobust()
-GAINS = ("bandwidth", "boundary", "stiffness", "damping")
-"""Gains that follow from inertia and period, where a bench file states none of its law's."""
+_WITH_DAMPING = (_core.Pd, _core.Pid, _core.CompensatedPid)
 
 
 def inertia_of(controller: Controller, joint: MovingJoint | None) -> float | None:
     """Return the inertia that a controller's feedback moves, by its own estimate or the joint's [kg·m²]."""
-    own = float(controller.asdict().get("inertia", 0.0))
+    own = float(getattr(controller, "inertia", 0.0))
     if own > 0.0:
         return own
     return None if joint is None else joint.inertia
@@ -43,9 +39,9 @@ def fitting_gains(controller: Controller, inertia: float, period: float) -> dict
         return {"bandwidth": bandwidth, "boundary": max(_TABLE.boundary, boundary)}
     if isinstance(controller, _core.LugreObserver):
         return {"bandwidth": bandwidth}
-    if isinstance(controller, _core.OpenLoop):
-        return {}
-    return {"stiffness": inertia * bandwidth**2, "damping": 2.0 * inertia * bandwidth}
+    if isinstance(controller, _WITH_DAMPING):
+        return {"stiffness": inertia * bandwidth**2, "damping": 2.0 * inertia * bandwidth}
+    return {}
 
 
 def with_fitting_gains(
@@ -56,8 +52,8 @@ def with_fitting_gains(
     gains = {} if inertia is None else fitting_gains(controller, inertia, period)
     if any(name in stated for name in gains):
         return controller
-    fitting: Controller = controller.replace(**gains)
-    return fitting
+    change: Callable[..., Controller] = controller.replace
+    return change(**gains)
 
 
 def doubt_of_gains(controller: Controller, joint: MovingJoint | None, period: float) -> str:
@@ -81,4 +77,4 @@ def _velocity_feedback(controller: Controller) -> float:
     """Torque of an error of velocity, besides what grows with the inertia [N·m·s/rad]."""
     if isinstance(controller, _core.AdaptiveRobust):
         return controller.robust_torque / controller.boundary if controller.robust_term else 0.0
-    return float(controller.asdict().get("damping", 0.0))
+    return controller.damping if isinstance(controller, _WITH_DAMPING) else 0.0

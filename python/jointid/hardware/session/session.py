@@ -289,17 +289,12 @@ class Session:
             law = self._controller.start(period=options.period, torque_limit=limits.torque)
             course = Course.of(self._trajectory, options.period)
             assert options.resolution is not None, "see __init__"
+            watching = foresight_of(self._moved, self._drive, limits, options)
+            doubt = doubt_of_gains(self._controller, self._moved, options.period)
             follower = Follower(
                 self._drive,
                 law,
-                Guard(
-                    limits,
-                    options.period,
-                    options.resolution,
-                    foresight_of(self._moved, self._drive, limits, options),
-                    self._breakaway,
-                    doubt_of_gains(self._controller, self._moved, options.period),
-                ),
+                Guard(limits, options.period, options.resolution, watching, self._breakaway, doubt),
                 options,
                 interruptions=interruptions,
                 observer=self._observer,
