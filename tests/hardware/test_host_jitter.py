@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import jointid as jid
-from jointid.hardware.can.canopen_frames import bits_on_wire
+from jointid.hardware.can.wire_time import bits_on_wire
 from jointid.hardware.elmo.timing import SyncWatch
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
