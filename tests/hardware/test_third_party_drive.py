@@ -172,4 +172,4 @@ def test_the_types_in_the_signatures_of_a_drive_type_are_public() -> None:
 
 def test_it_is_short() -> None:
     code = (PACKAGE / "acme_drive.py").read_text(encoding="utf-8").splitlines()
-    assert len(code) + len((PACKAGE / "pyproject.toml").read_text().splitlines()) < 200
+    assert len(code) + len((PACKAGE / "pyproject.toml").read_text().splitlines()) <= 200
