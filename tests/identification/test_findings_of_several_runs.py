@@ -102,3 +102,38 @@ def test_the_title_says_how_many_recordings_there_are() -> None:
     of_joint = jid.identify(RUNS[:3], jid.Joint(name="wrist"))
     assert of_joint.report().startswith("jointid estimate — wrist, 3 recordings\n")
     assert jid.identify(RUNS[0]).report().startswith("jointid estimate — run_0\n")
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.6, -1.0])
+def test_a_run_whose_torque_is_scaled_is_named_and_spoils_the_values(factor: float) -> None:
+    odd = changed(RUNS[2], torque=factor * np.asarray(RUNS[2].torque))
+    estimate = jid.identify([*RUNS[:2], odd, RUNS[3]])
+    (found,) = coded(estimate.findings, "other_run")
+    assert "(run_2) explains" in found.cause
+    assert found.severity == "blocking"
+    assert estimate.verdict.level == "not usable"
+
+
+def test_two_runs_that_contradict_each_other_are_both_named() -> None:
+    odd = changed(RUNS[1], torque=np.asarray(RUNS[1].torque) + 1.5)
+    (found,) = coded(jid.identify([RUNS[0], odd]).findings, "other_run")
+    assert "(run_0 and run_1) explains" in found.cause
+
+
+def test_a_run_with_a_little_more_friction_is_worth_a_word() -> None:
+    friction = 0.1 * 3.0 * np.sign(RUNS[2].velocity)
+    warm = changed(RUNS[2], torque=np.asarray(RUNS[2].torque) + friction)
+    estimate = jid.identify([*RUNS[:2], warm, RUNS[3]])
+    (found,) = coded(estimate.findings, "other_run")
+    assert found.severity == "warning"
+    assert estimate.verdict.level == "usable with care"
+
+
+def test_runs_that_lack_the_same_are_alike() -> None:
+    uneven = [
+        changed(run, torque=np.asarray(run.torque) + 0.4 * np.sin(3.0 * run.position))
+        for run in RUNS
+    ]
+    codes = {each.code for each in jid.identify(uneven).findings}
+    assert "other_run" not in codes
+    assert "harmonic" in codes

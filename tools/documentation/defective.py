@@ -27,6 +27,7 @@ class Case:
     """What is identified, and how."""
 
     recording: jid.Recording
+    others: tuple[jid.Recording, ...] = ()
     joint: jid.Joint | None = field(default_factory=jid.thesis_joint)
     identify: Mapping[str, Any] = field(default_factory=dict)
     text: str = ""  # what a file looks like, where the defect is in the file
@@ -34,7 +35,9 @@ class Case:
     def estimate(self) -> jid.Estimate:
         """Identify it."""
         return jid.identify(
-            self.recording, self.joint, **{"search": "separable"} | dict(self.identify)
+            [self.recording, *self.others],
+            self.joint,
+            **{"search": "separable"} | dict(self.identify),
         )
 
 
@@ -219,6 +222,8 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
         torque=torque - 1.5 * (degrees - 25.0),
         temperature=degrees,
     )
+    other = jid.Recording(time=time, position=position, velocity=velocity, torque=torque)
+    halved = 0.5 * np.asarray(other.crop(4.0, 8.0).torque)
     late = np.zeros(len(good), dtype=int)
     late[2000:9000:350] = 3
     return {
@@ -231,6 +236,11 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
         "cross_check": Case(recording=defects.wrong_gear_ratio(good)),
         "hardly_moves": Case(recording=hardly, joint=None, identify={"search": None}),
         "other_signal": Case(recording=warm, joint=None, identify={"model": "coulomb_viscous"}),
+        "other_run": Case(
+            recording=other.crop(0.0, 4.0),
+            others=(defects.changed(other.crop(4.0, 8.0), torque=halved),),
+            joint=None,
+        ),
         "poor_fit": Case(recording=foreign, joint=None),
         "late_samples": Case(recording=defects.changed(good, late=late)),
         "motor_side": Case(

@@ -180,6 +180,10 @@ SYMPTOMS: Mapping[str, Symptom] = {
         "The residual is large for a moment: something touched the joint.", windows
     ),
     "asymmetry": Symptom("The two directions have different friction.", friction),
+    "other_run": Symptom(
+        "The recordings do not fit together: what is left of one is no noise, and that of the others opposes it.",
+        windows,
+    ),
     "offset": Symptom(
         "The friction of one direction is larger by as much as that of the other is smaller.",
         friction,

@@ -231,5 +231,6 @@ MEANINGS = {
     "asymmetry": "friction that differs between the two directions",
     "offset": "a constant torque that the model lacks",
     "wrong_scale": "a given inertia that does not fit the torque",
+    "other_run": "a recording with other values than the rest",
 }
 """What each name means, as the beginning of a sentence."""

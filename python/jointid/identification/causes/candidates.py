@@ -15,6 +15,7 @@ from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.samples import Samples, WaySinceReversal, all_samples
+from jointid.identification.warnings.merging import recording_names
 from jointid.recording.order_statistics import quantile_of_sizes
 from jointid.recording.recording import Recording
 
@@ -22,6 +23,7 @@ Array = NDArray[np.float64]
 
 FILTERED = "velocity, which is not the position's rate"
 _PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
+_MOST_RUNS = 3  # recordings of which each is tried by itself
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -287,9 +289,28 @@ def _other_signal(fit: Fitted) -> Iterator[Candidate]:
         )
 
 
+def _other_run(fit: Fitted) -> Iterator[Candidate]:
+    """Values of its own of one recording; of many recordings those that are most likely to have them."""
+    runs = fit.problem.recordings
+    if len(runs) == 1:
+        return
+    found = {}
+    for number in range(len(runs) == 2, len(runs)):
+        here = fit.run == number
+        columns = np.where(here[:, None], fit.jacobian, 0.0)
+        columns = columns[:, np.any(columns != fit.jacobian, axis=0) & np.any(columns, axis=0)]
+        if columns.shape[1] and np.count_nonzero(here) > columns.shape[1]:
+            along = np.linalg.qr(columns[here])[0].T @ fit.residual[here]
+            found[number] = (float(along @ along), columns)
+    names = recording_names(runs)
+    for number in sorted(found, key=lambda each: -found[each][0])[:_MOST_RUNS]:
+        detail = names[number] if len(runs) > 2 else f"{names[0]} and {names[1]}"
+        yield Candidate(name="other_run", columns=found[number][1], detail=detail)
+
+
 FAMILIES: tuple[Callable[[Fitted], Iterator[Candidate]], ...] = (
     *(_gravity, _inertia_varies, _load_friction, _slow, _drift, _harmonic, _ripple),
-    *(_delay, _velocity, _asymmetry, _offset, _scale, _other_signal),
+    *(_delay, _velocity, _asymmetry, _offset, _scale, _other_signal, _other_run),
 )
 
 

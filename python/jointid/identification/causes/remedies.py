@@ -34,6 +34,12 @@ _OTHERWISE: dict[str, tuple[Action, ...]] = {
     ),
     "offset": (Action("call", {"torque_offset": True}, function="Joint"),),
     "wrong_scale": (Action("inspect", text="gear ratio, torque constant and inertia"),),
+    "other_run": (
+        Action(
+            "inspect", text="units, signs, zero position, load and temperature of that recording"
+        ),
+        Action("inspect", text="the values of each recording, identified by itself"),
+    ),
 }
 _SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion by itself"),)
 

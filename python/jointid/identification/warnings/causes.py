@@ -26,9 +26,11 @@ _REMEDIES = {
     "disturbance": "leave that stretch of time out",
     "asymmetry": "add asymmetric to the model",
     "offset": "let the joint have a torque_offset",
+    "other_run": "look for another unit, sign, zero or load in it; identify it by itself",
 }
 
 _LITTLE = 0.1  # of the squares
+_APART = 0.1  # of a value that one recording moves: it holds for none of them
 _NOTED = (
     0.3  # share of the misfit that a harmless cause explains; of less `estimate.causes()` speaks
 )
@@ -87,7 +89,9 @@ def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Findi
 
 
 def _is_gross(cause: Cause, missed: bool) -> bool:
-    """Whether a scale is so wrong that every value is, and no lack of the model explains it."""
+    """Whether a scale is so wrong that every value is, or the values are those of no recording."""
+    if cause.name == "other_run":
+        return max(map(abs, cause.relative.values()), default=0.0) > _APART
     if cause.name != "wrong_scale":
         return False
     ratio = cause.numbers["ratio"].value
