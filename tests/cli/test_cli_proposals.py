@@ -1,5 +1,6 @@
 """What is proposed for a foreign log has evidence: a header's unit or words, or numbers; else it is asked for."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,41 @@ def test_amperes_are_a_current(
     with pytest.raises(jid.InputError, match="is in A") as caught:
         jid.load(path, columns={"torque": header})
     assert "'Nm'" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("header", "quantity"), [("torque_current", "current"), ("current_torque", "torque")]
+)
+def test_the_last_word_says_what_a_column_is(
+    header: str, quantity: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(tmp_path / "a.csv", f"time_s,position_rad,{header}", TIME, ANGLE, EFFORT)
+    assert f"--column {quantity}={header}" in answer(["identify", path], capsys)[1]
+
+
+@pytest.mark.parametrize("header", ["", "sample"])
+def test_rows_that_are_counted_are_no_time(
+    header: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    head = f"{header},position_rad,torque_Nm"
+    _, said = answer(["info", log(tmp_path / "a.csv", head, np.arange(N), ANGLE, EFFORT)], capsys)
+    assert "load with --rate HZ" in said
+    assert "time=" not in said
+
+
+def test_a_wrong_rate_is_named_and_cured_by_what_is_pasted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    head = "position_rad,velocity_rad_s,torque_Nm"
+    path = log(tmp_path / "a.csv", head, ANGLE, SPEED, EFFORT)
+    line = ["identify", path, "--model", "coulomb_viscous", "--rate"]
+    assert main([*line, "230"]) == 0
+    said = capsys.readouterr().out
+    found = re.search(r"blocking \(velocity_mismatch\).* load with --rate ([\d.]+) ", said)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(200.0, rel=0.01)
+    assert main([*line, found[1]]) == 0
+    assert "velocity_mismatch" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("header", ["sample_count", "lamp", "extra"])

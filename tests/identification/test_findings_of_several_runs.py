@@ -10,7 +10,8 @@ from plain_joint import recorded
 
 import jointid as jid
 from jointid.estimate.findings import Finding, Measured
-from jointid.identification.warnings.merging import merged, recording_names
+from jointid.identification.warnings.merging import merged
+from jointid.problem.recordings import recording_names
 
 RUNS = [recorded(name=f"run_{seed}", seed=seed) for seed in range(4)]
 

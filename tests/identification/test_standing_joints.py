@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from defects import changed
 from plain_joint import motion, recorded
 
 import jointid as jid
@@ -42,3 +43,13 @@ def test_one_of_several_joints_at_rest_is_left_out() -> None:
     still = jid.Recording(time=TIME, position=REST, torque=PUSHED, name="parked")
     with pytest.raises(jid.InputError, match=r"recording 1 \(parked\).*leave this recording out"):
         jid.identify([recorded(name="moving"), still])
+
+
+def test_a_velocity_of_another_unit_is_no_standstill() -> None:
+    run = recorded()
+    wrong = changed(run, velocity=900.0 * np.asarray(run.velocity))
+    with pytest.raises(
+        jid.InputError, match=r"velocity: the position moves by 0\.001111 times"
+    ) as error:
+        jid.identify(wrong)
+    assert "side={'velocity': 'motor'}, gear_ratio=900.0" in str(error.value)

@@ -47,6 +47,7 @@ def check(robot: jid.RobotRecording) -> None:
         {"separator": "\t", "beginning": "(", "end": ")"},
         {"between": " "},
         {"beginning": "array('d', [", "end": "])"},
+        {"beginning": "[np.float64(", "between": "), np.float64(", "end": ")]"},
     ],
 )
 def test_a_cell_of_a_text_may_be_a_list(form: dict[str, Any], tmp_path: Path) -> None:

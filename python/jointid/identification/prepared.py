@@ -337,6 +337,10 @@ def prepare(
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)
+        elif not error.argument:  # the joint stands still, as far as its velocity says
+            from jointid.identification.warnings.velocity import raise_if_far_off
+
+            raise_if_far_off(runs)
         raise
     return Prepared(
         problem=problem,

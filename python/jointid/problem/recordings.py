@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
@@ -17,6 +18,8 @@ Array = NDArray[np.float64]
 
 # Largest share of the intervals that may be gaps: above it the median interval is not the sample period.
 _MOST_GAPS = 0.1
+# Of so many gaps, the largest share of the time that may be in them.
+_SOME_GAPS, _MOST_MISSING = 0.02, 0.5
 
 # Sample period [s] of stamps that count something shorter than seconds; nothing is identified from such samples.
 _SLOWEST = 50.0
@@ -81,13 +84,17 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
                     text="the velocity is then derived from the position",
                 ),
             )
-        if len(run.gaps) > _MOST_GAPS * len(run):
+        if _comes_in_bursts(run):
+            period = float(f"{run.duration / (len(run) - 1):.6g}")
             raise InputError(
                 f"{100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when a bus delivers "
                 "samples in bursts",
                 argument="time",
                 place=place,
-                remedy="use the drive's time stamps instead of the host's, or a uniform clock",
+                remedy=(
+                    "use the drive's time stamps instead of the host's",
+                    Action("call", {"sample_period": period}, "if none is missing", "load"),
+                ),
             )
         if run.kind != runs[0].kind:
             raise InputError(
@@ -108,6 +115,24 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
                 )
         alike.append(number)
     return runs
+
+
+def _comes_in_bursts(run: Recording) -> bool:
+    """Whether so many intervals are gaps, or so many seconds are in them, that the others are no sample period."""
+    count = len(run.gaps)
+    if count <= _SOME_GAPS * len(run):
+        return False
+    missing = sum(gap.duration for gap in run.gaps)
+    return count > _MOST_GAPS * len(run) or missing > _MOST_MISSING * run.duration
+
+
+def recording_names(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Return a name for each recording that no other one has: its own, else its number."""
+    counted = Counter(each.name for each in recordings)
+    return tuple(
+        each.name if each.name and counted[each.name] == 1 else f"recording {number}"
+        for number, each in enumerate(recordings)
+    )
 
 
 def _same(one: Recording, other: Recording) -> bool:

@@ -36,6 +36,11 @@ def speaks_for(header: str, signal: str) -> bool:
     return LIKELY[signal].search(plain(header)) is not None
 
 
+def last_word_for(header: str, signal: str) -> int:
+    """Where in a header the last word stands that speaks for a signal; -1 where none does."""
+    return max((found.start() for found in LIKELY[signal].finditer(plain(header))), default=-1)
+
+
 def values_of(table: Table, index: int) -> FloatArray | None:
     """Return the first values of a column that changes; None for text, a constant, or values that are missing."""
     try:
@@ -59,6 +64,8 @@ def shows_time(table: Table, index: int) -> bool:
         or understood(table.headers[index]).unit is not None
     ):
         return bool((np.diff(values) >= 0.0).all())
+    if not table.headers[index].strip() and (np.diff(values) == 1.0).all():
+        return False  # rows that are counted, as a data frame's index
     return not _COUNTER.search(plain(table.headers[index])) and _unevenness(values) < _EVEN
 
 

@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from jointid.recording.column_evidence import speaks_for, values_of
+from jointid.recording.column_evidence import last_word_for, speaks_for, values_of
 from jointid.recording.headers import plain, understood
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
@@ -54,7 +54,9 @@ def quantity_of(header: str) -> str:
         return "torque"
     if unit is not None and unit.dimension == "current":
         return "current"
-    return next((each for each in ("torque", "current") if speaks_for(header, each)), "")
+    spoken = [each for each in ("torque", "current") if speaks_for(header, each)]
+    # A torque current is a current, a current torque the actual one: the last word is what it is.
+    return max(spoken, key=lambda each: last_word_for(header, each), default="")
 
 
 def duty_column(table: Table, taken: Collection[int], position: int | None) -> int | None:

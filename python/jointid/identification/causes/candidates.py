@@ -15,7 +15,7 @@ from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.samples import Samples, WaySinceReversal, all_samples
-from jointid.identification.warnings.merging import recording_names
+from jointid.problem.recordings import recording_names
 from jointid.recording.order_statistics import quantile_of_sizes
 from jointid.recording.recording import Recording
 

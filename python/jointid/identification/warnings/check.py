@@ -9,7 +9,8 @@ from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
-from jointid.identification.warnings.merging import merged, recording_names
+from jointid.identification.warnings.merging import merged
+from jointid.problem.recordings import recording_names
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

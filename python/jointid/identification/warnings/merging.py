@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from jointid.estimate.findings import Finding, Measured
-from jointid.recording.recording import Recording
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 _NAMED = 5  # recordings in a sentence; the finding has all
-
-
-def recording_names(recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """Return a name for each recording that no other one has: its own, else its number."""
-    counted = Counter(each.name for each in recordings)
-    return tuple(
-        each.name if each.name and counted[each.name] == 1 else f"recording {number}"
-        for number, each in enumerate(recordings)
-    )
 
 
 def merged(found: Iterable[tuple[int, Finding]], names: Sequence[str]) -> list[Finding]:

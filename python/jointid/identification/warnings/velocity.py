@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from jointid.base.advice import Action
+from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.inspection import Inspected
+from jointid.identification.warnings.inspection import Inspected, inspect
 from jointid.identification.warnings.motor_side import other_side, possible_side
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice, unit_by_factor
+from jointid.recording.recording import Recording
 
 REVERSED_SIGN = FindingType(
     code="reversed_sign",
@@ -22,7 +24,8 @@ REVERSED_SIGN = FindingType(
 )
 VELOCITY_MISMATCH = FindingType(
     code="velocity_mismatch",
-    meaning="the velocity differs from the position's rate by more than 3 %; blocking beyond a factor of 3",
+    meaning="the velocity differs from the position's rate by more than 3 %; blocking beyond a factor of 3, and where "
+    "the call states the rate",
     advice="correct its unit, say on which side of the gear it is, or leave the velocity column out",
 )
 
@@ -68,14 +71,46 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             evidence={"factor": Measured(factor)},
         )
     elif abs(found.scale - 1.0) > MISMATCH:
+        rate = None if suspected else _other_rate(recording, found.scale)
+        if rate is not None:
+            suspected, advice = (
+                " at the rate that the call states: the rate is another one, or rows were lost",
+                (rate, Action("record", text="the time of each sample"), *advice),
+            )
         yield VELOCITY_MISMATCH.finding(
             f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
             *advice,
             *([] if suspected else possible),
-            _WITHOUT_VELOCITY,
+            *([_WITHOUT_VELOCITY] if rate is None else []),
             evidence=scale,
-            severity="blocking" if large else None,
+            severity="blocking" if large or rate is not None else None,
         )
+
+
+def _other_rate(recording: Recording, factor: float) -> Action | None:
+    """How to read rows without a time so that position and velocity agree; None where they have one."""
+    stated = recording.metadata.get("sample_period")
+    if not isinstance(stated, float):
+        return None
+    period = float(f"{factor * stated:.6g}")
+    return Action("call", {"sample_period": period}, "with which they agree", "load")
+
+
+def raise_if_far_off(recordings: Sequence[Recording]) -> None:
+    """Raise `InputError` if a velocity is so large that the joint seems to stand still beside it."""
+    for number, run in enumerate(recordings):
+        found = inspect(run).found.agreement
+        if found is not None and abs(found.scale) < 1.0 / _OTHER_UNIT:
+            raise InputError(
+                f"the position moves by {found.scale:.4g} times its integral",
+                argument="velocity",
+                place=f"recording {number}",
+                remedy=(
+                    Action("inspect", text="the units of both"),
+                    possible_side(found.scale),
+                    _WITHOUT_VELOCITY,
+                ),
+            )
 
 
 def _near(value: float, wanted: float) -> bool:

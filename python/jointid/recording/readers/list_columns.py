@@ -11,6 +11,7 @@ from jointid.recording.signals import FloatArray
 from jointid.recording.table import MOST_COLUMNS, Table, first_cell, raw_values
 
 _LIST = re.compile(r"(?:array\('[df]', *|array\()?([\[(])(.*)[\])]\)?", re.DOTALL)
+_SCALAR = re.compile(r"np\.float\d+\(([^()]*)\)")  # as NumPy 2 writes the numbers of a Python list
 _UNIT = re.compile(r"\s*[\[(][^\[\]()]*[\])]\s*$")
 
 
@@ -26,7 +27,7 @@ class HasLists(Table, Protocol):
 
 def list_of(cell: str) -> list[float] | None:
     """Return the numbers of a cell such as ``[0.1, 0.2]``, ``(0.1 0.2)`` or ``array('d', [0.1])``; None for others."""
-    found = _LIST.fullmatch(cell)
+    found = _LIST.fullmatch(_SCALAR.sub(r"\1", cell))
     if found is None:
         return None
     try:
