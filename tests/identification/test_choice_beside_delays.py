@@ -16,7 +16,7 @@ SIDES = ("positive", "negative")
 
 
 def simulated(index: int) -> jid.Recording:
-    """Coulomb and viscous friction; the torque is held, and nothing says so: it seems half a sample early."""
+    """Coulomb and viscous friction; the torque is held, but the log says linear: it seems half a sample early."""
     rng = np.random.default_rng(3)
     for _ in range(index + 1):
         rate = rng.uniform([0.15, 0.4, 0.8], [0.3, 0.7, 1.2])
@@ -33,7 +33,11 @@ def simulated(index: int) -> jid.Recording:
         seed=index,
     )
     return jid.Recording(
-        time=run.time, position=run.position, velocity=run.velocity, torque=run.torque
+        time=run.time,
+        position=run.position,
+        velocity=run.velocity,
+        torque=run.torque,
+        torque_hold="linear",
     )
 
 

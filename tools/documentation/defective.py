@@ -15,6 +15,7 @@ import jointid as jid
 from documentation.staging import ROOT
 
 sys.path.insert(0, str(ROOT / "tests"))
+import commanded_torque
 import defects
 from plants import Bench, Law, Log, Plant, simulate, sines, thesis
 
@@ -241,6 +242,7 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
             others=(defects.changed(other.crop(4.0, 8.0), torque=halved),),
             joint=None,
         ),
+        "held_torque": Case(recording=commanded_torque.log(2), joint=None),
         "poor_fit": Case(recording=foreign, joint=None),
         "late_samples": Case(recording=defects.changed(good, late=late)),
         "motor_side": Case(

@@ -235,6 +235,15 @@ SYMPTOMS: Mapping[str, Symptom] = {
             "position", caption="The angle starts again at 0; the identification unwraps it."
         ),
     ),
+    "held_torque": Symptom(
+        "The torque is a command: it stays for a sample what it was set to.",
+        samples(
+            "torque",
+            caption="Between two samples the drive has the earlier one.",
+            start=1.0,
+            stop=1.3,
+        ),
+    ),
     "held_rows": Symptom(
         "Rows repeat the row before, again and again.",
         samples("velocity", caption="Every fifth row is a copy.", start=3.0, stop=3.05),

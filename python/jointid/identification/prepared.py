@@ -53,7 +53,7 @@ from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
-from jointid.recording.mending import mended
+from jointid.recording.mending import Mend, mended
 from jointid.recording.motion import raise_if_hardly_moving, raise_if_still
 from jointid.recording.recording import Recording
 
@@ -322,6 +322,11 @@ def prepare(
             delays = {}
         else:
             problem, delays = without_delays(problem, shift, measure=measure)
+        if problem.torque_hold != torque_hold:
+            mends = tuple(
+                (*found, Mend(code="held_torque", count=len(run), size=run.sample_period))
+                for found, run in zip(mends, runs, strict=True)
+            )
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
         sensor_instant = None
         if instant:

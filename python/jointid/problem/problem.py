@@ -227,6 +227,13 @@ class Problem:
         check_choice("", "torque_hold", hold, _HOLDS)
         return hold
 
+    @property
+    def states_hold(self) -> bool:
+        """Whether anybody says how the torque varies between samples."""
+        of_joint = self.joint is not None and self.joint.torque_hold is not None
+        of_runs = any(run.torque_hold is not None for run in self.recordings)
+        return self.torque_hold is not None or of_joint or of_runs
+
     def output_torque(self, number: int) -> Array:
         """The drive's torque of a recording at the output [N·m or N]."""
         return output_torque(self.recordings[number], self.joint)

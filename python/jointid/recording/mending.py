@@ -14,12 +14,12 @@ class Mend:
 
     Attributes
     ----------
-    code : {"unwrapped", "held_rows"}
+    code : {"unwrapped", "held_rows", "held_torque"}
         Of the finding that says so.
     count : int
-        Wraps, or rows that were left out.
+        Wraps, or rows that were left out, or that hold the torque.
     size : float
-        Of a wrap [rad]; of held rows the usual number of rows with one sample.
+        Of a wrap [rad]; of held rows the usual number of rows with one sample; of a held torque the time [s].
     """
 
     code: str

@@ -43,7 +43,7 @@ def fits_better(
         has anything to say to it.
     """
     rows = tuple(
-        _rows_of(run, other) for run, other in zip(before.recordings, after.recordings, strict=True)
+        rows_of(run, other) for run, other in zip(before.recordings, after.recordings, strict=True)
     )
     whole, missed = _missed(replace(before, recordings=rows), reversals)
     whole_without, without = _missed(after, reversals)
@@ -100,8 +100,8 @@ def _in_one_direction(problem: Problem, penalty: _core.Penalty) -> NDArray[np.bo
     return found
 
 
-def _rows_of(recording: Recording, other: Recording) -> Recording:
-    """The samples of a recording at the other's times."""
+def rows_of(recording: Recording, other: Recording) -> Recording:
+    """Return the samples of a recording at the other's times."""
     kept = np.searchsorted(recording.time, other.time)
     if len(kept) == len(recording):
         return recording

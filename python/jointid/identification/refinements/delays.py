@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointid.estimate.delays import Delay
-from jointid.identification.refinements.balance_misfit import SURE, fits_better
+from jointid.identification.refinements.balance_misfit import SURE, fits_better, rows_of
 from jointid.identification.refinements.balances import SMALL, SUSPECT, Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
@@ -25,6 +25,8 @@ from jointid.recording.shifting import shifted
 
 _SURE = 5.0  # standard errors
 _SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity and position
+# A torque that is held between samples seems early by about half of one; read so, it leaves half of the squares.
+_HELD, _HELD_GAIN = 0.2, 0.5  # sample periods, and a share
 _VELOCITY = 0.35  # sample periods; a backward difference has 0.5
 _LEAST_IN_COMMAND = 0.3  # sample periods
 _BEYOND_ANSWER = 3.0  # times the joint's answer to noise of the torque
@@ -48,7 +50,8 @@ def refined_delays(
         Of the recordings as they are.
     given : mapping of str to float, optional
         Delays to take away [s], no others. Default: those that are certain and without which the torque
-        balance fits better; never a torque that is early by more than a sample.
+        balance fits better; never a torque that is early by more than a sample. One that fits better as held
+        between samples, which nobody stated, is taken for that.
     """
     choose = given is None
     shift = dict(given or {})
@@ -61,6 +64,11 @@ def refined_delays(
     motion = Motion(pieces=pieces_of(mended))
     for signal in ("velocity", "sensor", "torque"):
         measured = _measured(signal, motion)
+        if choose and signal == "torque" and measured is not None:
+            held = _with_held_torque(mended, measured[0].value)
+            if held is not None:
+                mended, motion = held, Motion(pieces=pieces_of(held))
+                measured = _measured(signal, motion)
         if measured is None:
             continue
         left, certain = measured
@@ -91,6 +99,23 @@ def refined_delays(
     if choose:
         problem = mended
     return replace(problem, shift=shift) if shift else problem, found
+
+
+def _with_held_torque(problem: Problem, delay: float) -> Problem | None:
+    """The problem with a torque that is held between samples; None where that is not clearly better.
+
+    Such a torque seems early by half a sample, if nobody says that it is held. A shift has to predict less well.
+    """
+    period = problem.recordings[0].sample_period
+    if delay > -_HELD * period or problem.states_hold:
+        return None
+    held = replace(problem, torque_hold="zoh")
+    if not fits_better(problem, held, _HELD_GAIN):
+        return None
+    moved = _shifted(problem, {"torque": delay})
+    pairs = zip(held.recordings, moved.recordings, strict=True)
+    same = replace(held, recordings=tuple(rows_of(run, other) for run, other in pairs))
+    return held if fits_better(moved, same, 0.0) else None
 
 
 def delays_removed(problem: Problem, given: Mapping[str, float]) -> Problem:

@@ -22,6 +22,13 @@ HELD_ROWS = FindingType(
     meaning="rows hold the sample before, since the logger is faster than the bus; the identification leaves them out",
     advice="log at the bus's own rate",
 )
+HELD_TORQUE = FindingType(
+    code="held_torque",
+    severity="info",
+    meaning="nobody says how the torque varies between samples, and the torque balance predicts better with one that "
+    "is held, as a command is; the identification takes it for that",
+    advice="state it; `linear` if it is a measured torque that is not held",
+)
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
@@ -31,6 +38,14 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
                 f"the angle is unwrapped: it jumps {mend.count} times by {mend.size:.4g} rad against the motion",
                 evidence={"wraps": Measured(mend.count), "size": Measured(mend.size, "rad")},
             )
+        elif mend.code == HELD_TORQUE.code:
+            yield HELD_TORQUE.finding(
+                "the torque is taken for a command that is held between samples: the balance predicts better so",
+                Action(
+                    "call", {"torque_hold": "zoh"}, text="so it is stated; linear if it is measured"
+                ),
+                evidence={"period": Measured(mend.size, "s")},
+            )
         else:
             yield HELD_ROWS.finding(
                 f"{mend.count} rows are left out that hold the sample before: a sample lasts {mend.size:.3g} rows",
@@ -39,4 +54,4 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             )
 
 
-CHECK = Check(None, (UNWRAPPED, HELD_ROWS), _in_recording)
+CHECK = Check(None, (UNWRAPPED, HELD_ROWS, HELD_TORQUE), _in_recording)
