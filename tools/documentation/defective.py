@@ -242,6 +242,9 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
             others=(defects.changed(other.crop(4.0, 8.0), torque=halved),),
             joint=None,
         ),
+        "unsigned_torque": Case(
+            recording=defects.changed(other, torque=np.abs(torque)), joint=None
+        ),
         "held_torque": Case(recording=commanded_torque.log(2), joint=None),
         "poor_fit": Case(recording=foreign, joint=None),
         "late_samples": Case(recording=defects.changed(good, late=late)),

@@ -235,6 +235,15 @@ SYMPTOMS: Mapping[str, Symptom] = {
             "position", caption="The angle starts again at 0; the identification unwraps it."
         ),
     ),
+    "unsigned_torque": Symptom(
+        "The torque touches zero and turns back: its sign was not recorded.",
+        samples(
+            "torque",
+            caption="It is never negative, in whichever direction the joint moves.",
+            start=1.0,
+            stop=4.0,
+        ),
+    ),
     "held_torque": Symptom(
         "The torque is a command: it stays for a sample what it was set to.",
         samples(

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import number, percent
+from jointid.problem.magnitude import BETTER, CLEAR, is_magnitude, is_one_sided, without
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.inertia import InertiaColumns
 from jointid.robot.plain_motion import PlainSignals
@@ -27,13 +28,9 @@ Array = NDArray[np.float64]
 _FAR = 1.6  # a factor on all torques: no URDF is off by so much in the weight of all links
 _CERTAIN = 2.5  # a factor that no load or link makes, which the URDF does not know
 _SEEN = 0.15  # of what friction leaves, squared: what the links may leave to say a factor
-_CLEAR = 0.3  # of a joint's torque: what may be left
 _NEAR = 0.03  # of it: another reading is not tried
-_BETTER = 0.25  # of a squared residual: what another reading of the signals has to leave
 _LINK = 0.5  # of what one link's other weight would leave, squared: what a factor has to leave
-_NEGATIVE = 0.02  # of the largest torque: noise about 0
 _BOTH = 0.2  # of the rows in each direction
-_TURNS = 10  # of signs and values
 _RANGE = 2.0  # times the URDF's range: no joint moves so far
 _DEGREES = np.pi / 180.0
 _MOVES = 0.05  # [rad or m]
@@ -59,7 +56,7 @@ class _Factor:
 
     @property
     def sure(self) -> bool:
-        return self.left < _SEEN * self.without and self.left < _CLEAR**2
+        return self.left < _SEEN * self.without and self.left < CLEAR**2
 
 
 def wrong_torques(
@@ -136,7 +133,7 @@ def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
         target = block.targets - block.matrix[:, [first]]
         values = np.column_stack([target, block.matrix[:, first + 1 :]])
         size = float(np.linalg.norm(block.targets)) or 1.0
-        rests.append(_without(block.matrix[:, :first], values) / size)
+        rests.append(without(block.matrix[:, :first], values) / size)
     rest, found = np.vstack(rests), []
     for link in range(n):
         mine = rest[:, 1 + np.array([link, *range(n + 4 * link, n + 4 * link + 4)])]
@@ -157,7 +154,7 @@ def _tried(signals: Sequence[PlainSignals], robot: Robot, factor: float) -> dict
 def _factor(block: Block) -> _Factor:
     target, links = block.targets[:, 0], block.matrix[:, -1]
     power = float(target @ target) or 1.0
-    rest = _without(block.matrix[:, :-1], np.column_stack([target, links]))
+    rest = without(block.matrix[:, :-1], np.column_stack([target, links]))
     length = float(rest[:, 1] @ rest[:, 1])
     seen = length > 1e-12 * max(float(links @ links), 1e-300)
     value = float(rest[:, 0] @ rest[:, 1]) / length if seen else 0.0
@@ -166,16 +163,6 @@ def _factor(block: Block) -> _Factor:
         return float(np.sum((rest[:, 0] - factor * rest[:, 1]) ** 2)) / power
 
     return _Factor(value=value, left=left(value), without=left(0.0), given=left(1.0))
-
-
-def _without(columns: Array, values: Array) -> Array:
-    """Values less what columns explain."""
-    lengths = np.linalg.norm(columns, axis=0)
-    basis, sizes, _ = np.linalg.svd(
-        columns / np.where(lengths > 0.0, lengths, 1.0), full_matrices=False
-    )
-    basis = basis[:, sizes > 1e-6 * sizes[0]]
-    return np.asarray(values - basis @ (basis.T @ values))
 
 
 def _common(factors: Mapping[int, _Factor]) -> float | None:
@@ -197,7 +184,7 @@ def _fits(other: Mapping[int, _Factor], given: Mapping[int, _Factor]) -> bool:
         return False
     both = [joint for joint in other if joint in given]
     falls = [other[joint].left / max(given[joint].left, 1e-12) for joint in both]
-    return bool(both) and float(np.median(falls)) < _BETTER
+    return bool(both) and float(np.median(falls)) < BETTER
 
 
 def _far(signals: Sequence[PlainSignals], robot: Robot) -> bool:
@@ -223,8 +210,11 @@ def _unsigned(
         of_joints = values[:, robot.columns_of(run)]
         lowest = np.minimum(lowest, of_joints.min(axis=0))
         highest = np.maximum(highest, of_joints.max(axis=0))
-    one_sided = np.maximum(-lowest, 0.0) < _NEGATIVE * highest
-    folded = [joint for joint, block in blocks.items() if one_sided[joint] and _folded(block)]
+    folded = [
+        joint
+        for joint, block in blocks.items()
+        if is_one_sided(lowest[joint], highest[joint]) and _folded(block)
+    ]
     if not folded:
         return None
     names = [robot.names[joint] for joint in folded]
@@ -252,15 +242,7 @@ def _folded(block: Block) -> bool:
     ]
     if min(np.mean(direction > 0.5), np.mean(direction < -0.5)) < _BOTH:
         return False
-    plain = np.sum(_without(block.matrix, target[:, None]) ** 2)
-    best = np.inf
-    for start in (block.matrix[:, -1] + 1e-12 * direction, direction):
-        sign = np.where(start < 0.0, -1.0, 1.0)
-        for _ in range(_TURNS):
-            rest = _without(block.matrix, (sign * target)[:, None])[:, 0]
-            sign = np.where(sign * target - rest < 0.0, -1.0, 1.0)
-        best = min(best, float(np.sum(_without(block.matrix, (sign * target)[:, None]) ** 2)))
-    return bool(best < _BETTER * plain and best < _CLEAR**2 * float(target @ target))
+    return is_magnitude(block.matrix, target, (block.matrix[:, -1] + 1e-12 * direction, direction))
 
 
 def _scales(robot: Robot, factors: Mapping[int, float]) -> list[float]:

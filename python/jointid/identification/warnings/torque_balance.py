@@ -13,6 +13,8 @@ from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.unbounded import EXPLAINED, Unbounded, without_bounds
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import REVERSED_SIGN
+from jointid.problem.magnitude import is_magnitude, is_one_sided
+from jointid.problem.recordings import output_torque
 
 WRONG_SCALE = FindingType(
     code="wrong_scale",
@@ -23,6 +25,14 @@ WRONG_SCALE = FindingType(
     "the wrong one",
 )
 
+UNSIGNED_TORQUE = FindingType(
+    code="unsigned_torque",
+    severity="blocking",
+    meaning="the torque is never negative though the joint moves both ways, and the model explains it as a magnitude",
+    advice="record the torque with its sign",
+)
+
+_BOTH = 0.2  # of the windows in each direction
 _AGAINST = -0.1  # correlation of torque and velocity: friction makes it positive
 _SCALE = 0.05
 _HIDDEN = 0.5  # of the gain: noise leaves no more of it, and the link's inertia goes to the joint
@@ -31,6 +41,16 @@ _DEGREE = np.pi / 180.0
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
+    if _is_unsigned(evidence):
+        yield UNSIGNED_TORQUE.finding(
+            "the torque is never negative, although the joint moves both ways and the magnitude fits a torque that "
+            "changes its sign: it is recorded without its sign",
+            Action(
+                "inspect",
+                text="the driver's signed value (of a servo that has none, the sign of its position error)",
+            ),
+        )
+        return
     correlation = _torque_with_velocity(evidence)
     if correlation is not None:
         yield REVERSED_SIGN.finding(
@@ -46,6 +66,26 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     yield from _inertia_contradicts(evidence, free)
     yield from _sensor_reversed(evidence, free)
+
+
+def _is_unsigned(evidence: Evidence) -> bool:
+    """Whether the windows' torque is the magnitude of what friction, inertia and gravity make."""
+    torques = [output_torque(run, evidence.joint) for run in evidence.recordings]
+    lowest, highest = min(each.min() for each in torques), max(each.max() for each in torques)
+    if evidence.problem.choice.sensor or not is_one_sided(float(lowest), float(highest)):
+        return False
+    table = evidence.table
+    direction = np.sign(table.velocity)
+    if min(np.mean(direction > 0.0), np.mean(direction < 0.0)) < _BOTH:
+        return False
+    middle = 0.5 * (table.start + table.stop)
+    angle = np.empty(len(middle))
+    for number, run in enumerate(evidence.recordings):
+        here = table.recording == number
+        angle[here] = np.interp(middle[here], run.time, run.position)
+    weight = [wave(angle) * table.duration for wave in (np.cos, np.sin)]
+    columns = np.column_stack([evidence.penalty.linear_columns(evidence.best), *weight])
+    return is_magnitude(columns, table.measured, (direction, *weight))
 
 
 def _torque_with_velocity(evidence: Evidence) -> float | None:
@@ -165,4 +205,4 @@ def _sensor_reversed(evidence: Evidence, free: Unbounded) -> Iterator[Finding]:
         )
 
 
-CHECK = Check(_find, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, WRONG_SCALE))
+CHECK = Check(_find, (UNSIGNED_TORQUE, REVERSED_SIGN, IMPLAUSIBLE_UNITS, WRONG_SCALE))
