@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from defects import changed
 from plain_joint import motion, torque
 
 import jointid as jid
@@ -13,12 +14,18 @@ from jointid.estimate.findings import Finding
 
 
 def behind_the_friction(
-    folder: Path, header: str, *, seed: int = 0, weight: float = 4.0, friction: float = 0.0
+    folder: Path,
+    header: str,
+    *,
+    seed: int = 0,
+    weight: float = 4.0,
+    friction: float = 0.0,
+    noise: float = 0.01,
 ) -> Path:
     """A log of a reading behind the gear: the link's inertia and weight, and a share of the drive's friction."""
     time, position, velocity, acceleration = motion(seed=seed)
-    noise = 0.01 * np.random.default_rng(seed).normal(size=len(time))
-    reading = torque(velocity, acceleration, 3.0 * friction, 1.2 * friction) + noise
+    reading = torque(velocity, acceleration, 3.0 * friction, 1.2 * friction)
+    reading += noise * np.random.default_rng(seed).normal(size=len(time))
     reading += weight * np.sin(position)
     path = folder / "log.csv"
     columns = np.column_stack([time, position, velocity, reading])
@@ -61,6 +68,23 @@ def test_a_simulator_without_friction_is_good_for_simulation(
     assert levels["compensation"] == "not usable"
     assert levels["simulation"] == "usable"
     assert "at_bound" not in {each.code for each in estimate.findings}
+
+
+@pytest.mark.parametrize("seed", [1, 8])
+def test_noise_is_no_viscous_friction(tmp_path: Path, seed: int) -> None:
+    path = behind_the_friction(tmp_path, "torque_Nm", seed=seed, weight=0.0, noise=0.2)
+    estimate = jid.identify(jid.load(path))
+    assert found_in(estimate) is not None
+    assert estimate.verdict.uses["compensation"].level == "not usable"
+
+
+def test_a_damper_is_friction(tmp_path: Path) -> None:
+    path = behind_the_friction(tmp_path, "torque_Nm", weight=0.0)
+    run = jid.load(path)
+    damped = changed(run, torque=np.asarray(run.torque) + 0.05 * run.velocity)
+    estimate = jid.identify(damped)
+    assert found_in(estimate) is None
+    assert estimate.parameters["viscous"].value == pytest.approx(0.05, rel=0.1)
 
 
 @pytest.mark.parametrize("friction", [0.05, 0.2, 1.0])

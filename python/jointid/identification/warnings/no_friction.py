@@ -16,15 +16,17 @@ from jointid.recording.header_words import AT_THE_LINK
 
 NO_FRICTION = FindingType(
     code="no_friction",
-    meaning="the torque is explained and holds no friction, by a bound of 2 % of its root mean square: it was measured "
-    "behind the drive's friction, or the joint has none, as in a simulation. Compensation has nothing to rest on; "
-    "blocking for everything where the torque's header names the joint or a sensor, and the bound is then 5 %",
+    meaning="the torque is explained and holds no friction, by a bound of 2 % of its root mean square (10 % where that "
+    "of its dry part is 2 %): it was measured behind the drive's friction, or the joint has none, as in a simulation. "
+    "Compensation has nothing to rest on; blocking for everything where the torque's header names the joint or a "
+    "sensor, and the bound is then 5 % at least",
     advice="give the motor's torque or current as torque, and this column as sensor; nothing, if the joint is "
     "simulated without friction",
 )
 _EXPLAINED = 0.95  # of the variance: friction is missing, not lost in a misfit
 _SMALL = 0.02  # of the torque's root mean square
 _SMALL_AT_THE_LINK = 0.05  # bearings of the link have some
+_SMALL_WITHOUT_DRY = 0.1  # no drive has viscous friction alone: noise, or a damper of a simulation
 _SURE = 3.0  # standard errors
 _BOUND = 2.0  # standard errors
 _LEVELS = ("coulomb", "static")
@@ -42,8 +44,15 @@ def without_friction(evidence: Evidence) -> tuple[str, ...]:
     beyond = any((p.value if not p.vary else p.at_bound == "max") for p in friction)
     if (shown and not header) or beyond:
         return ()
-    limit = (_SMALL_AT_THE_LINK if header else _SMALL) * evidence.torque_level
-    return tuple(p.name for p in friction) if _most(evidence, friction) < limit else ()
+    share = _SMALL_AT_THE_LINK if header else _SMALL
+    dry = [p for p in friction if _kind(p) in _LEVELS]
+    if dry and _most(evidence, dry) < _SMALL * evidence.torque_level:
+        share = _SMALL_WITHOUT_DRY
+    return (
+        tuple(p.name for p in friction)
+        if _most(evidence, friction) < share * evidence.torque_level
+        else ()
+    )
 
 
 def _most(evidence: Evidence, friction: list[ParameterEstimate]) -> float:
