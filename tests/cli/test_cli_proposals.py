@@ -103,7 +103,17 @@ def test_a_column_without_evidence_is_no_torque(
 ) -> None:
     path = log(tmp_path / "a.csv", f"time_s,position_rad,{header}", TIME, ANGLE, EFFORT)
     _, said = answer(["identify", path], capsys)
-    assert said.endswith("load with --column torque=HEADER\n")
+    assert said.endswith(
+        "load with --column torque=HEADER or load with --column current=HEADER (if it is in amperes)\n"
+    )
+
+
+def test_counts_of_an_encoder_are_a_position_whose_factor_is_asked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(tmp_path / "a.csv", "time_s,encoder_counts,torque_Nm", TIME, 500.0 * ANGLE, EFFORT)
+    _, said = answer(["identify", path], capsys)
+    assert "load with --column position=encoder_counts --scale position=FACTOR" in said
 
 
 @pytest.mark.parametrize(

@@ -156,4 +156,4 @@ def test_a_missing_time_is_said_beside_another_problem(tmp_path: Path) -> None:
     path.write_text("\n".join(["position [counts],torque_Nm", *rows, ""]))
     with pytest.raises(jid.InputError, match=r"no time column.* is a raw reading.*") as caught:
         jid.load(path)
-    assert "load with sample_period=..., scale={'position': 1.0}" in str(caught.value)
+    assert "load with sample_period=..., scale={'position': ...}" in str(caught.value)

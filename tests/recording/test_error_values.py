@@ -77,7 +77,8 @@ def test_every_call_that_is_advised_loads_the_file(header: str, tmp_path: Path) 
     assert calls
     for call in calls:
         assert (call.kind, call.function) == ("call", "load")
-        assert len(load(path, **call.arguments)) == 10, call
+        known = {"scale": dict.fromkeys(call.arguments.get("scale", ()), 0.1)}  # what is asked for
+        assert len(load(path, **{**call.arguments, **known})) == 10, call
 
 
 def test_a_run_is_part_of_the_place(tmp_path: Path) -> None:

@@ -227,5 +227,8 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
     raise InputError(
         "the recording has no signal torque",
         argument="torque",
-        remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
+        remedy=(
+            Action("call", {"columns": {"torque": ...}}, function="load"),
+            Action("call", {"columns": {"current": ...}}, "if it is in amperes", "load"),
+        ),
     )

@@ -84,9 +84,9 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
     elif column.unit and column.unit.dimension in ("raw reading", "voltage"):
         remedy = Action(
             "call",
-            {"scale": {signal: 1.0}},
+            {"scale": {signal: ...}},
             function="load",
-            text="with the factor from file units to SI instead of 1.0",
+            text="with the factor from file units to SI",
         )
     elif column.unit and column.unit.dimension == "current" and signal == "torque":
         header = table.headers[column.index]
@@ -235,7 +235,11 @@ def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> l
         if (
             index not in taken
             and not stamp
-            and (unit is None or unit.dimension in dimensions(signal, kind))
+            and (
+                unit is None
+                or unit.dimension in dimensions(signal, kind)
+                or (unit.dimension == "raw reading" and _likely(table, signal, [index]))
+            )
         ):
             found.append(index)
     return found
