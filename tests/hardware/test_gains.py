@@ -20,7 +20,7 @@ parameters = { coulomb = 0.8, viscous = 0.05 }
 limits = { position = [-1.4, 1.4], velocity = 10.0, torque = 40.0 }
 [session]
 period = PERIOD
-drive = { counts_per_turn = 90000, heartbeat = 0.06 }
+drive = { counts_per_turn = 90000, heartbeat = 0.065 }
 torque = { source = "none" }
 trajectory = { form = "thesis", amplitude = "60deg", cycle = 3.0, duration = 3.0 }
 controller = { law = "LAW" }
@@ -38,7 +38,7 @@ def small(folder: Path, period: float, law: str = "adaptive_robust") -> jid.hard
 def example(folder: Path, period: float, gains: str = "") -> jid.hardware.Bench:
     text = EXAMPLE.read_text(encoding="utf-8").replace("duration = 12.0", "duration = 3.0", 1)
     text = text.replace("period = 0.002 ", f"period = {period} ", 1)
-    text = text.replace("heartbeat = 0.05 ", "heartbeat = 0.06 ", 1)
+    text = text.replace("heartbeat = 0.05 ", "heartbeat = 0.065 ", 1)
     path = folder / "joint.toml"
     path.write_text(text.replace("[session.limits]", f"{gains}\n[session.limits]", 1))
     return jid.hardware.Bench.load(path)
