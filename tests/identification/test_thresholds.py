@@ -208,9 +208,9 @@ def test_every_row_has_a_finding_of_its_own() -> None:
 
 @pytest.mark.parametrize(
     ("scale", "severity"),
-    [(2.99, "warning"), (3.01, "blocking"), (0.3345, "warning"), (0.3322, "blocking")],
+    [(1.099, "warning"), (1.101, "blocking"), (0.91, "warning"), (0.908, "blocking")],
 )
-def test_a_velocity_off_by_a_factor_of_three_blocks(scale: float, severity: str) -> None:
+def test_a_velocity_off_by_a_tenth_blocks(scale: float, severity: str) -> None:
     (finding,) = found("velocity", _agreement(scale))
     assert finding.severity == severity
 

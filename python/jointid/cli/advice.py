@@ -96,7 +96,7 @@ def option_with_value(option: str, key: str, value: Any) -> str:
     if option == "--windows" and isinstance(value, float):
         value = f"{behind_option(value)}s"
     if option == "--rate" and isinstance(value, float):
-        value = float(f"{1.0 / value:.6g}")
+        value = f"{1.0 / value:.6g}"
     if value is ... or value == "...":
         text = placeholder
     elif option in FLAGS and isinstance(value, bool):

@@ -223,16 +223,21 @@ def concluded(
 def use_by(
     objections: Iterable[Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
 ) -> Use:
-    """Return the level by what concerns the parameters that a purpose needs; without parameters it concerns all."""
+    """Return the level by what concerns the parameters that a purpose needs; without parameters it concerns all.
+
+    Where something blocks all, none is named: it would look as if the others were right.
+    """
     level: Level = "usable"
     names: dict[str, None] = {}
     codes: dict[str, None] = {}
+    of_all = False
     for each in objections:
         concerned = [name for name in each.parameters if name in asked and needed(name)]
         if each.parameters and not concerned and not (each.blocking and each.code != "self_test"):
             continue
         codes[each.code] = None
         names.update(dict.fromkeys(concerned))
+        of_all |= each.blocking and not each.parameters
         reached: Level = "not usable" if each.blocking else "usable with care"
         level = max(level, reached, key=LEVELS.index)
-    return Use(level=level, parameters=tuple(names), codes=tuple(codes))
+    return Use(level=level, parameters=() if of_all else tuple(names), codes=tuple(codes))

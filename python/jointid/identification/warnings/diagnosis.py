@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings import registry
 from jointid.identification.warnings.evidence import Evidence
@@ -31,7 +32,10 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     ):  # no motion, no answer: what concerns the values follows from it
         left = [found for found in left if found.code in _OF_THE_FILE]
     if any(found.severity == "blocking" for found in left):
-        left = [_without_other_fits(found) for found in left]
+        asked = {
+            name for found in left if found.severity == "blocking" for name in _units_in(found)
+        }
+        left = [_without_other_fits(found, asked) for found in left]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))
 
 
@@ -52,9 +56,31 @@ def _again_of(found: Finding, before: list[Finding]) -> bool:
     return bool(before) and set(found.recordings) <= named
 
 
-def _without_other_fits(found: Finding) -> Finding:
-    """The finding without advice to fit again, which rests on values that cannot be used; a blocking one keeps it."""
+def _units_in(found: Finding) -> set[str]:
+    """The signals for which a finding proposes a unit."""
+    return {name for each in found.advice for name in each.arguments.get("units", ())}
+
+
+def _without_other_fits(found: Finding, asked: set[str]) -> Finding:
+    """The finding without advice that rests on values that cannot be used; a blocking one keeps it.
+
+    Such are other fits, the limits of a motion, and units where a blocking finding proposes others (`asked`).
+    """
     if found.severity == "blocking":
         return found
-    kept = [each for each in found.advice if (each.kind, each.function) != ("call", "identify")]
-    return replace(found, advice=tuple(kept))
+    kept = (_as_far_as_known(each, asked) for each in found.advice)
+    return replace(found, advice=tuple(each for each in kept if each is not None))
+
+
+def _as_far_as_known(action: Action, asked: set[str]) -> Action | None:
+    if (action.kind, action.function) == ("call", "identify"):
+        return None
+    if action.designs:
+        return Action("record", text=action.text)
+    if action.kind == "call" and asked & set(action.arguments.get("units", ())):
+        units = {
+            name: unit for name, unit in action.arguments["units"].items() if name not in asked
+        }
+        others = {**action.arguments, "units": units} if units else None
+        return replace(action, arguments=others) if others else None
+    return action

@@ -40,16 +40,16 @@ def _without_gear(evidence: Evidence, run: Recording) -> bool:
     return run.torque is None and (run.motor_torque is not None or run.current is not None)
 
 
-def other_side(evidence: Evidence, factor: float) -> tuple[str, Action] | None:
+def other_side(ratio: float | None, factor: float) -> tuple[str, Action] | None:
     """Return which signal is on the other side of the gear, and how to say so; None where no gear explains a factor.
 
     Parameters
     ----------
-    evidence : Evidence
+    ratio : float or None
+        Of the gear, where it is known.
     factor : float
         The position's change over the integral of the velocity.
     """
-    ratio = _known_ratio(evidence)
     if ratio is None or abs(abs(ratio) - 1.0) < _CLOSE:
         return None
     for signal, expected in (("velocity", 1.0 / ratio), ("position", ratio)):
@@ -68,7 +68,8 @@ def _on_motor(signal: str, ratio: float, text: str = "") -> Action:
     return Action("call", {"side": {signal: "motor"}, "gear_ratio": ratio}, text, "load")
 
 
-def _known_ratio(evidence: Evidence) -> float | None:
+def known_ratio(evidence: Evidence) -> float | None:
+    """Return the gear ratio that the joint, or else a recording, states; None where none does."""
     if evidence.joint is not None and evidence.joint.gear_ratio != 1.0:
         return evidence.joint.gear_ratio
     stated = [run.metadata.get("gear_ratio") for run in evidence.recordings]

@@ -35,7 +35,9 @@ _FACTORS: tuple[tuple[float, dict[str, str]], ...] = (
 _CLOSE = 0.03
 
 
-def unit_by_factor(recording: Recording, factor: float) -> tuple[str, tuple[Action, ...]]:
+def unit_by_factor(
+    recording: Recording, factor: float, ratio: float | None = None
+) -> tuple[str, tuple[Action, ...]]:
     """Return which unit a factor between position and velocity suggests, as words and as advice.
 
     Parameters
@@ -43,18 +45,25 @@ def unit_by_factor(recording: Recording, factor: float) -> tuple[str, tuple[Acti
     recording : Recording
     factor : float
         Position's change over the integral of the velocity.
+    ratio : float, optional
+        Of the gear: one of the two may be the motor's, too. Default: not known.
     """
     assumed = recording.metadata.get("assumed_units")
-    for known, units in _FACTORS if recording.kind == "revolute" else ():
-        near = abs(factor / known - 1.0) < _CLOSE
-        if near and isinstance(assumed, list | tuple) and set(units) <= set(assumed):
+    unstated = set(assumed) if isinstance(assumed, list | tuple) else set()
+    of_motor = {} if ratio is None else {"velocity": ratio, "position": 1.0 / ratio}
+    for signal, times in {"": 1.0, **of_motor}.items():
+        for known, units in _FACTORS if recording.kind == "revolute" else ():
+            if abs(factor * times / known - 1.0) > _CLOSE or not set(units) <= unstated:
+                continue
             names, verb = " and ".join(units), "seem" if len(units) > 1 else "seems"
-            advice = Action("call", {"units": units}, function="load")
+            side = {"side": {signal: "motor"}, "gear_ratio": ratio} if signal else {}
+            advice = Action("call", {**side, "units": units}, function="load")
             return (
-                f": the {names}, of which no unit is stated, {verb} to be in {' and '.join(units.values())}",
+                f": the {names}, of which no unit is stated, {verb} to be in {' and '.join(units.values())}"
+                + f", and the {signal} the motor's" * bool(signal),
                 (advice,),
             )
-    return "", (Action("inspect", text="the units of both"),)
+    return "", (Action("inspect", text="the units of both, and of the time"),)
 
 
 def degrees_advice(recording: Recording, signals: Sequence[str]) -> Action:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected, inspect
-from jointid.identification.warnings.motor_side import other_side, possible_side
+from jointid.identification.warnings.motor_side import known_ratio, other_side, possible_side
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice, unit_by_factor
 from jointid.recording.recording import Recording
 
@@ -24,16 +24,20 @@ REVERSED_SIGN = FindingType(
 )
 VELOCITY_MISMATCH = FindingType(
     code="velocity_mismatch",
-    meaning="the velocity differs from the position's rate by more than 3 %; blocking beyond a factor of 3, and where "
-    "the call states the rate",
-    advice="correct its unit, say on which side of the gear it is, or leave the velocity column out",
+    meaning="the velocity differs from the position's rate by more than 3 %; blocking beyond 10 %",
+    advice="correct rate, gear ratio or unit, or say on which side of the gear it is; leave the velocity column out "
+    "only if it is the wrong one: position or time may be wrong, too",
 )
 
 MISMATCH = 0.03  # of the position's rate
-_OTHER_UNIT = 3.0  # a factor that no filter, gear or gain explains
+_WRONG = 1.1  # a factor that no filter or gain explains: a wrong fact, of which nothing says that it is the velocity's
+_OTHER_UNIT = 3.0  # a factor that a side of the gear may explain
 _DEGREE = np.pi / 180.0
 _WITHOUT_VELOCITY = Action(
-    "call", {"columns": {"velocity": None}}, text="it is then derived centrally", function="load"
+    "call",
+    {"columns": {"velocity": None}},
+    "if the velocity alone is wrong; it is then derived centrally",
+    "load",
 )
 
 
@@ -42,10 +46,11 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     if found is None:
         return
     scale = {"scale": Measured(found.scale)}
-    suspected, advice = unit_by_factor(recording, found.scale)
-    gear = other_side(evidence, found.scale)
+    ratio = known_ratio(evidence)
+    suspected, advice = unit_by_factor(recording, found.scale, ratio)
+    gear = other_side(ratio, found.scale)
     large = not 1.0 / _OTHER_UNIT < abs(found.scale) < _OTHER_UNIT
-    possible = [possible_side(found.scale)] * large
+    possible = [possible_side(found.scale)] * (large and ratio is None)
     if gear is not None:
         yield VELOCITY_MISMATCH.finding(
             f"the position moves by {found.scale:.4g} times the integral of the velocity, which the gear ratio "
@@ -71,29 +76,40 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             evidence={"factor": Measured(factor)},
         )
     elif abs(found.scale - 1.0) > MISMATCH:
-        rate = None if suspected else _other_rate(recording, found.scale)
-        if rate is not None:
-            suspected, advice = (
-                " at the rate that the call states: the rate is another one, or rows were lost",
-                (rate, Action("record", text="the time of each sample"), *advice),
-            )
+        facts = () if suspected else tuple(_stated_facts(recording, found.scale))
+        wrong = not 1.0 / _WRONG < found.scale < _WRONG
         yield VELOCITY_MISMATCH.finding(
             f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
+            *facts,
             *advice,
             *([] if suspected else possible),
-            *([_WITHOUT_VELOCITY] if rate is None else []),
+            *([] if suspected or (facts and wrong) else [_WITHOUT_VELOCITY]),
             evidence=scale,
-            severity="blocking" if large or rate is not None else None,
+            severity="blocking" if wrong else None,
         )
 
 
-def _other_rate(recording: Recording, factor: float) -> Action | None:
-    """How to read rows without a time so that position and velocity agree; None where they have one."""
-    stated = recording.metadata.get("sample_period")
-    if not isinstance(stated, float):
-        return None
-    period = float(f"{factor * stated:.6g}")
-    return Action("call", {"sample_period": period}, "with which they agree", "load")
+def _stated_facts(recording: Recording, factor: float) -> Iterator[Action]:
+    """What the call states and a factor between position and velocity corrects: the rate, the gear ratio."""
+    stated = recording.metadata
+    period, ratio = stated.get("sample_period"), stated.get("gear_ratio")
+    if isinstance(period, int | float):
+        right = 1.0 / _short(1.0 / (period * factor))
+        yield Action("call", {"sample_period": right}, "if the rate is wrong", "load")
+    sides = stated.get("stated_sides")
+    if isinstance(ratio, int | float) and isinstance(sides, Mapping):
+        of_motor = {name for name in ("position", "velocity") if sides.get(name) == "motor"}
+        if len(of_motor) == 1:
+            right = ratio / factor if of_motor == {"velocity"} else ratio * factor
+            yield Action(
+                "call", {"gear_ratio": _short(right)}, "if the gear ratio is wrong", "load"
+            )
+
+
+def _short(value: float) -> float:
+    """A value of four digits; of two where these are within 1 %, as a rate or a ratio is stated."""
+    two = float(f"{value:.2g}")
+    return two if abs(two / value - 1.0) < 0.01 else float(f"{value:.4g}")
 
 
 def raise_if_far_off(recordings: Sequence[Recording]) -> None:

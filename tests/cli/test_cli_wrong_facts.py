@@ -1,0 +1,75 @@
+"""A rate, a gear ratio or units that position and velocity contradict: each is asked, and the first paste cures it."""
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jointid.cli.command_line import main
+
+TIME = 0.004 * np.arange(1500)
+ANGLE = np.sin(2.0 * TIME) + 0.4 * np.sin(5.3 * TIME)
+SPEED = 2.0 * np.cos(2.0 * TIME) + 2.12 * np.cos(5.3 * TIME)
+RATE = -4.0 * np.sin(2.0 * TIME) - 11.236 * np.sin(5.3 * TIME)
+CURRENT = (0.5 * RATE + 3.0 * np.sign(SPEED) + 1.2 * SPEED) / 5.0
+FACTS = ["--model", "coulomb_viscous", "--torque-constant", "0.1"]
+
+
+def log(path: Path, **columns: np.ndarray) -> str:
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(path, table, fmt="%.9g", delimiter=",", header=",".join(columns), comments="")
+    return str(path)
+
+
+def shown(line: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    assert main(["identify", *line, *FACTS]) == 0
+    return capsys.readouterr().out
+
+
+def first_paste(text: str) -> list[str]:
+    found = re.search(r"^blocking .*?; load with ((?:--\S+ \S+ ?)+)", text, re.MULTILINE)
+    assert found is not None, text
+    return shlex.split(found[1].rstrip("; "))
+
+
+def check_cured(path: str, options: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    """The log is not usable, names no parameter, keeps the velocity, and is right after the first paste."""
+    text = shown([path, *options], capsys)
+    assert "verdict: not usable\n" in text
+    assert "velocity=none" not in text
+    cured = shown([path, *options, *first_paste(text)], capsys)
+    for name, value in (("inertia", 0.5), ("coulomb", 3.0), ("viscous", 1.2)):
+        found = re.search(rf"^{name} +(\S+)", cured, re.MULTILINE)
+        assert found is not None
+        assert float(found[1]) == pytest.approx(value, rel=0.02)
+    return cured
+
+
+@pytest.mark.parametrize("rate", [500.0, 125.0])
+def test_a_wrong_rate_is_corrected_by_the_velocity(
+    rate: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(tmp_path / "a.csv", position_rad=ANGLE, velocity_rad_s=SPEED, current_A=CURRENT)
+    check_cured(path, ["--gear-ratio", "50", "--rate", str(rate)], capsys)
+
+
+@pytest.mark.parametrize(("stated", "right"), [(25.0, 50.0), (100.0, 50.0), (60.0, 50.0)])
+def test_a_wrong_gear_ratio_is_corrected_by_the_position(
+    stated: float, right: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {"time_s": TIME, "position_rad": ANGLE, "velocity_rad_s": right * SPEED}
+    path = log(tmp_path / "a.csv", **columns, current_A=CURRENT)
+    check_cured(path, ["--gear-ratio", f"{stated:g}", "--side", "velocity=motor"], capsys)
+
+
+def test_units_are_recognised_behind_a_stated_gear_ratio(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {"time": TIME, "pos": np.degrees(ANGLE), "vel": 50.0 * SPEED * 30.0 / np.pi}
+    path = log(tmp_path / "a.csv", **columns, current=CURRENT)
+    text = shown([path, "--gear-ratio", "50"], capsys)
+    assert "position=rad" not in text  # what is asked is not proposed otherwise
+    assert "--gear-ratio 50 --unit position=deg --unit velocity=rpm" in text
+    check_cured(path, ["--gear-ratio", "50"], capsys)
