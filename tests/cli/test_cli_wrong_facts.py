@@ -34,12 +34,24 @@ def first_paste(text: str) -> list[str]:
     return shlex.split(found[1].rstrip("; "))
 
 
+def corrected(options: list[str], paste: list[str]) -> list[str]:
+    """The options with those of a paste, each in place of the one that it corrects."""
+    pairs = [
+        *zip(options[::2], options[1::2], strict=True),
+        *zip(paste[::2], paste[1::2], strict=True),
+    ]
+    latest = {
+        (name, value.partition("=")[0] if "=" in value else ""): value for name, value in pairs
+    }
+    return [part for (name, _), value in latest.items() for part in (name, value)]
+
+
 def check_cured(path: str, options: list[str], capsys: pytest.CaptureFixture[str]) -> str:
     """The log is not usable, names no parameter, keeps the velocity, and is right after the first paste."""
     text = shown([path, *options], capsys)
     assert "verdict: not usable\n" in text
     assert "velocity=none" not in text
-    cured = shown([path, *options, *first_paste(text)], capsys)
+    cured = shown([path, *corrected(options, first_paste(text))], capsys)
     for name, value in (("inertia", 0.5), ("coulomb", 3.0), ("viscous", 1.2)):
         found = re.search(rf"^{name} +(\S+)", cured, re.MULTILINE)
         assert found is not None
@@ -73,3 +85,82 @@ def test_units_are_recognised_behind_a_stated_gear_ratio(
     assert "position=rad" not in text  # what is asked is not proposed otherwise
     assert "--gear-ratio 50 --unit position=deg --unit velocity=rpm" in text
     check_cured(path, ["--gear-ratio", "50"], capsys)
+
+
+def drive_log(path: Path, header: str, factor: float) -> str:
+    """The log with the drive's column in another unit or on another side."""
+    columns = {"time_s": TIME, "position_rad": ANGLE, "velocity_rpm": SPEED * 50.0 * 30.0 / np.pi}
+    return log(path, **columns, **{header: CURRENT * factor})
+
+
+MOTOR = ["--gear-ratio", "50", "--side", "velocity=motor"]
+
+
+@pytest.mark.parametrize(
+    ("header", "factor", "known", "paste"),
+    [
+        ("current", 1e3, [], ["--unit", "current=mA"]),
+        ("torque", 5e3, [], ["--unit", "torque=mNm"]),
+        ("torque", 0.1, [], ["--side", "torque=motor"]),
+        ("torque_Nm", 0.1, [], ["--side", "torque=motor"]),
+        ("current", 1e3, ["--unit", "current=A"], ["--unit", "current=mA"]),
+        ("torque", 5e2, ["--side", "torque=joint"], ["--unit", "torque=Ncm"]),
+        ("torque_Nm", 0.1, [], ["--side", "torque=motor", "--gear-ratio", "50"]),
+    ],
+)
+def test_a_torque_of_another_size_is_asked(
+    header: str,
+    factor: float,
+    known: list[str],
+    paste: list[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = drive_log(tmp_path / "a.csv", header, factor)
+    options = [*MOTOR, *known]
+    if known or "--gear-ratio" in paste:
+        options += ["--inertia", "0.5"]
+    if paste == ["--unit", "torque=mNm"]:
+        options += ["--side", "torque=joint"]
+    text = shown([path, *options], capsys)
+    assert first_paste(text) == paste
+    cured = check_cured(path, options, capsys)
+    assert "blocking" not in cured
+
+
+def test_a_statement_is_obeyed_and_an_implausible_one_asked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = drive_log(tmp_path / "a.csv", "current", 1e3)
+    text = shown([path, *MOTOR, "--unit", "current=A"], capsys)
+    assert "verdict: usable with care" in text
+    assert "load with --unit current=mA" in text
+    path = drive_log(tmp_path / "b.csv", "torque_Nm", 5.0)
+    text = shown([path, *MOTOR], capsys)
+    assert "load with --side torque=joint" in text
+    assert "verdict: usable\n" in shown([path, *MOTOR, "--side", "torque=joint"], capsys)
+
+
+def test_no_side_is_asked_where_it_is_known(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = drive_log(tmp_path / "a.csv", "joint_torque_Nm", 5.0)
+    assert "torque_side" not in shown([path, *MOTOR], capsys)
+    path = drive_log(tmp_path / "b.csv", "motor_torque_Nm", 0.1)
+    assert "torque_side" not in shown([path, *MOTOR], capsys)
+    path = drive_log(tmp_path / "c.csv", "torque_Nm", 5.0)
+    assert "torque_side" not in shown([path, *MOTOR, "--inertia", "0.5"], capsys)
+
+
+def test_a_velocity_in_stated_units_shows_that_time_is_in_seconds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {"t": TIME, "position_rad": ANGLE, "velocity_rad_s": SPEED, "current_A": CURRENT}
+    path = log(tmp_path / "a.csv", **columns)
+    assert "assumed_units" not in shown([path, "--gear-ratio", "50"], capsys)
+    assert "assumed_units" in shown(
+        [path, "--gear-ratio", "50", "--column", "velocity=none"], capsys
+    )
+    columns["velocity_rad_s"] = 1.02 * SPEED
+    path = log(tmp_path / "b.csv", **columns)
+    assert "assumed_units" in shown([path, "--gear-ratio", "50"], capsys)

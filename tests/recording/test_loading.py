@@ -67,7 +67,8 @@ def test_si_is_assumed_and_noted(tmp_path: Path) -> None:
     loaded = load(written(tmp_path / "a.csv", lines("time,angle,vel_rad_s,sensor")))
     assert loaded.metadata == {"assumed_units": ["time", "position"]}
     assert load(tmp_path / "a.csv", units={"position": "rad"}).metadata == {
-        "assumed_units": ["time"]
+        "assumed_units": ["time"],
+        "stated_units": {"position": "rad"},
     }
 
 

@@ -315,7 +315,7 @@ def read_contents(
     found = match.found
     read = {table.headers[column.index] for column in own.values()}
     left_out = [each for each in match.left_out if each["column"] not in read]
-    notes: dict[str, Any] = {}
+    notes: dict[str, Any] = {"stated_units": dict(units)} if units else {}
     values = read_values(table, found, left_out, notes)
     for missing in unrecorded(saved, values):
         found = {signal: column for signal, column in found.items() if signal != missing}

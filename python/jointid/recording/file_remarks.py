@@ -45,12 +45,6 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
             f"{signal}: the file states {unit}, and the call another unit, which is taken"
             for signal, unit in overridden.items()
         ]
-    sides = metadata.get("stated_sides")
-    if isinstance(sides, Mapping):
-        found += [
-            f"{signal} is taken as the {side}'s, as the call states"
-            for signal, side in sides.items()
-        ]
     repeated = metadata.get("repeated_rows")
     if isinstance(repeated, int) and repeated:
         rows = "1 row repeats" if repeated == 1 else f"{repeated} rows repeat"

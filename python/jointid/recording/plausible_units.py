@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 
 import numpy as np
 
@@ -14,7 +15,10 @@ from jointid.recording.units import UNITS
 _WIDE = 4.0 * math.pi  # [rad]: two turns away from zero, which few joints reach
 _WIDEST = 3.0 * 360.0  # [deg]
 _FAST = 50.0  # [rad/s] of a joint behind a gear
-_STRONG = 5000.0  # [N·m]
+_LARGEST = {
+    "current": (100.0, "A", "mA"),
+    "torque": (5000.0, "N·m", "mNm"),
+}  # of the drive of a joint
 _ALIKE = (
     0.03  # of a velocity and the position's rate; 6 degrees a second (1 rpm) and 2π are 5 % apart
 )
@@ -43,7 +47,8 @@ class ProposedUnit:
 def proposed_units(recording: Recording) -> dict[str, ProposedUnit]:
     """Return by signal the units that are likelier than SI, of those that no header and no call states.
 
-    The position's and the velocity's are judged together, by the position's rate; the torque's by its size alone.
+    The position's and the velocity's are judged together, by the position's rate; the torque's and the current's by
+    their size alone.
     What is plausible in SI is not in the result, and neither is what no unit makes plausible.
 
     Parameters
@@ -63,12 +68,30 @@ def proposed_units(recording: Recording) -> dict[str, ProposedUnit]:
     found: dict[str, ProposedUnit] = {}
     if recording.kind == "revolute":
         found |= _of_motion(recording, unstated)
-    if "torque" in unstated and recording.torque is not None and recording.kind == "revolute":
-        largest = float(np.abs(recording.torque).max())
-        if largest > _STRONG:
-            found["torque"] = ProposedUnit(
-                "mNm", f"up to {largest:.4g}: {largest / 1e3:.3g} N·m if these are mN·m"
-            )
+    return found | unlikely_sizes(recording, unstated)
+
+
+def unlikely_sizes(
+    recording: Recording, signals: Collection[str], times: float = 1.0
+) -> dict[str, ProposedUnit]:
+    """Return by signal the unit that makes a current or a torque plausible which few joints have.
+
+    Parameters
+    ----------
+    recording : Recording
+    signals : collection of str
+        Those to judge.
+    times : float
+        How many times as large as a usual joint's it may be. Default 1.
+    """
+    found = {}
+    for signal, (limit, unit, smaller) in _LARGEST.items() if recording.kind == "revolute" else ():
+        values = getattr(recording, signal)
+        if signal in signals and values is not None:
+            largest = float(np.abs(values).max())
+            if largest > times * limit:
+                reason = f"up to {largest:.4g}: {largest / 1e3:.3g} {unit} if these are {smaller}"
+                found[signal] = ProposedUnit(smaller, reason)
     return found
 
 

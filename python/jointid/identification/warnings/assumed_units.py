@@ -1,12 +1,15 @@
 """Signals whose unit no header states."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.inspection import Inspected
+from jointid.identification.warnings.inspection import DRIVE, Inspected
+from jointid.recording.recording import Recording
 from jointid.recording.signals import SIGNALS, header_unit
 
 ASSUMED_UNITS = FindingType(
@@ -14,11 +17,13 @@ ASSUMED_UNITS = FindingType(
     meaning="a column has no unit; SI is assumed",
     advice="name the unit in the header (as in `position_rad`, `torque_Nm`), or state it when loading",
 )
+_AGREES = 0.01  # of a velocity and the position's rate
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     recording = inspected.recording
-    signals = [str(signal) for signal in _sequence(recording.metadata.get("assumed_units"))]
+    assumed = [str(signal) for signal in _sequence(recording.metadata.get("assumed_units"))]
+    signals = [name for name in assumed if name != "time" or not _shows_seconds(inspected, assumed)]
     units = {name: header_unit(name, recording.kind) for name in signals if name in SIGNALS}
     if signals:
         advice = [
@@ -31,7 +36,8 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             purpose = "or whatever the units are"
             advice.append(Action("call", {"units": units}, text=purpose, function="load"))
         yield ASSUMED_UNITS.finding(
-            f"no unit is stated for {', '.join(signals)}; SI is assumed", *advice
+            f"no unit is stated for {', '.join(signals)}; SI is assumed{_sizes(recording, signals)}",
+            *advice,
         )
     recognised = _pairs(recording.metadata.get("recognised_units"))
     if recognised:
@@ -41,6 +47,22 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             Action("inspect", text="the header, and name the unit there (time_ns)"),
             severity="info",
         )
+
+
+def _shows_seconds(inspected: Inspected, assumed: Sequence[str]) -> bool:
+    """Whether position and velocity in stated units agree: then the time between them is in seconds."""
+    found = inspected.found.agreement
+    stated = not {"position", "velocity"} & set(assumed)
+    return stated and found is not None and abs(found.scale - 1.0) < _AGREES
+
+
+def _sizes(recording: Recording, signals: Sequence[str]) -> str:
+    """How large the torque or current is then: a reader sees whether that can be."""
+    return "".join(
+        f": {name} up to {float(np.abs(getattr(recording, name)).max()):.4g} {recording.unit(name)}"
+        for name in DRIVE
+        if name in signals and getattr(recording, name) is not None
+    )
 
 
 def _pairs(value: object) -> tuple[tuple[object, object], ...]:

@@ -10,6 +10,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.torque_facts import corrections_of
 from jointid.identification.warnings.unbounded import EXPLAINED, Unbounded, without_bounds
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import REVERSED_SIGN
@@ -147,7 +148,8 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
         "given_inertia": Measured(given.value, given.unit),
         "ratio": Measured(ratio),
     }
-    if 0.8 < ratio / _DEGREE < 1.25:
+    corrections = tuple(corrections_of(evidence, ratio))
+    if not corrections and 0.8 < ratio / _DEGREE < 1.25:
         yield IMPLAUSIBLE_UNITS.finding(
             f"{seen}, as when degrees are taken for radians",
             degrees_advice(evidence.recordings[0], ("position", "velocity")),
@@ -158,6 +160,7 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
     yield WRONG_SCALE.finding(
         f"{seen}{_gear_hint(evidence, ratio)}: gear ratio, torque constant, unit of the torque or the joint's inertia "
         "is wrong, and with it every value",
+        *corrections,
         Action(
             "inspect",
             # Not a call that frees the inertia: with a wrong torque it hides this finding, and all stays wrong.

@@ -13,9 +13,9 @@ IMPLAUSIBLE_UNITS = FindingType(
     code="implausible_units",
     severity="blocking",
     meaning="degrees taken for radians: position and velocity differ by 57.3, a known inertia is contradicted by "
-    "as much, or the motion would be impossibly fast or wide; or other stamps than seconds. A wide motion in units "
-    "that a header states is an info",
-    advice="state the unit of position, velocity and time when loading, or convert the values",
+    "as much, or the motion would be impossibly fast or wide; or other stamps than seconds; or a current above 100 A "
+    "or a torque above 5 kN·m without a stated unit. A wide motion in units that a header states is an info",
+    advice="state the unit of position, velocity, time, current or torque when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
 

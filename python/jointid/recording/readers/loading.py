@@ -373,7 +373,7 @@ def _of_joint(
 ) -> dict[str, Any]:
     if not one.joint and gear_ratio is None and not side:
         return fields
-    from jointid.recording.wide.sides import at_joint, stated_sides
+    from jointid.recording.wide.sides import at_joint, stated_sides, unstated_torque
 
     try:
         own, others = stated_sides(one.side, one.other_sides, side)
@@ -384,6 +384,8 @@ def _of_joint(
         found["metadata"] = {**found["metadata"], "joint": one.joint}
     if side:
         found["metadata"] = {**found["metadata"], "stated_sides": dict(side)}
+        if unstated_torque(fields, side, gear_ratio):
+            found["metadata"]["assumed_side"] = "torque"
     return found
 
 

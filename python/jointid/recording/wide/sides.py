@@ -7,6 +7,7 @@ from typing import Any
 from jointid.base.advice import Action
 from jointid.base.argument_checks import is_finite, require_mapping
 from jointid.base.errors import InputError
+from jointid.recording.header_words import AT_THE_LINK
 from jointid.recording.wide.words import JOINT, MOTOR, SIDES
 
 _MOTION = ("position", "velocity", "reference")
@@ -83,6 +84,25 @@ def at_joint(
     return result
 
 
+def unstated_torque(
+    fields: Mapping[str, Any], stated: Mapping[str, str] | None, gear_ratio: float | None
+) -> bool:
+    """Whether the call puts a motion on the motor's side of a gear and nothing says on which side the torque is.
+
+    Parameters
+    ----------
+    fields : mapping
+        Arguments of `Recording`, before they are brought to the joint.
+    stated : mapping of str to str, or None
+        As given to `load`.
+    gear_ratio : float or None
+    """
+    at_motor = MOTOR in (stated or {}).values() and "torque" not in (stated or {})
+    geared = gear_ratio is not None and abs(gear_ratio) != 1.0
+    named = AT_THE_LINK in (fields.get("metadata") or {})
+    return at_motor and geared and not named and fields.get("torque") is not None
+
+
 def stated_sides(
     side: str, other_sides: Mapping[str, str], stated: Mapping[str, str] | None
 ) -> tuple[str, Mapping[str, str]]:
@@ -126,4 +146,4 @@ def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
     )
 
 
-__all__ = ["JOINT", "MOTOR", "at_joint", "checked_ratio", "stated_sides"]
+__all__ = ["JOINT", "MOTOR", "at_joint", "checked_ratio", "stated_sides", "unstated_torque"]

@@ -1,0 +1,41 @@
+"""A torque of which nothing says on which side of the gear it is, beside a motion on the motor's."""
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
+
+TORQUE_SIDE = FindingType(
+    code="torque_side",
+    severity="blocking",
+    meaning="position or velocity are stated to be the motor's, and nothing says whether the torque is the motor's or "
+    "the joint's: all values in units of torque may be wrong by the gear ratio",
+    advice="say on which side of the gear the torque is (`side`)",
+)
+
+
+def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
+    stated = inspected.recording.metadata
+    ratio = stated.get("gear_ratio")
+    inertia = evidence.parameters.get("inertia")
+    if inertia is not None and not inertia.vary:
+        return  # a known inertia shows the side: what contradicts it is a wrong scale
+    if stated.get("assumed_side") == "torque" and isinstance(ratio, int | float):
+        yield TORQUE_SIDE.finding(
+            "a motion is stated to be the motor's, and nothing says whether the torque is, too; it is taken as the "
+            f"joint's: if it is the motor's, every torque, inertia and friction is {abs(ratio):.4g} times as large",
+            Action("call", {"side": {"torque": "motor"}}, "if the drive reports it", "load"),
+            Action(
+                "call",
+                {"side": {"torque": "joint"}},
+                "if it is measured or computed behind the gear",
+                "load",
+            ),
+            evidence={"gear_ratio": Measured(abs(ratio))},
+        )
+
+
+CHECK = Check(None, (TORQUE_SIDE,), _in_recording)
