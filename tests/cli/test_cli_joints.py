@@ -104,7 +104,7 @@ def test_a_joint_file_for_each_joint(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("identify",), "load with --joints 1 (or another joint) or load with --joints all"),
+        (("identify",), "load with --joints 1 (or another joint); or load with --joints all"),
         (("compare",), "2 joints (1, 2)"),
         (("info",), "--joints 1"),
         (("identify", "--joints", "7"), "--joints 7: there is no such joint"),
@@ -200,7 +200,7 @@ def test_a_current_and_a_commanded_torque(
         code, out, error = ran(capsys, "identify", log, "--joints", *joints)
         assert code == 2
         assert advised in out + error
-        assert "--torque-constant VALUE --gear-ratio RATIO (which convert it)" in out + error
+        assert "--torque-constant VALUE --gear-ratio RATIO (facts of motor and gear)" in out + error
         column = ("--column", "torque=target_moment_{joint}")
         assert ran(capsys, "identify", log, "--joints", *joints, *column)[0] == 0
 

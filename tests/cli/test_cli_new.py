@@ -157,3 +157,20 @@ def test_it_asks_at_a_terminal() -> None:
     joint = jid.Joint.load("asked.toml")
     assert (joint.gear_ratio, joint.rotor_inertia, joint.torque_constant) == (101.0, 2.5e-4, None)
     assert joint.limits == jid.Limits(position=(-np.pi / 3, np.pi / 3), torque=100.0)
+
+
+def test_the_next_command_reads_the_recording_as_this_one(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    run = jid.load(WELL)
+    columns = np.column_stack([run.position, 50.0 * run.velocity, run.torque])  # type: ignore[list-item]
+    header = "position_rad,velocity_rad_s,torque_Nm"
+    np.savetxt("log.csv", columns, delimiter=",", header=header, comments="")
+    reading = f"--rate {1.0 / run.sample_period:.15g} --side velocity=motor --side torque=joint"
+    assert (
+        main(["new", "a.toml", "log.csv", *f"--gear-ratio 50 --no-questions {reading}".split()])
+        == 0
+    )
+    following = capsys.readouterr().out.partition("next: jointid ")[2]
+    assert main(shlex.split(following)) == 0
+    assert "velocity_mismatch" not in capsys.readouterr().out

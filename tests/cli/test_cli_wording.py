@@ -153,7 +153,7 @@ def test_advice_extends_the_model_of_the_command_line() -> None:
     more, less = CALL({"ripple": (2,)}), CALL({"model": {"asymmetric": False}})
     error = InputError("it does not fit", remedy=(more, CALL({"x": 1}, function="y"), less))
     assert wording.of_error(error) == (
-        "it does not fit; identify with --model stribeck:asymmetric:ripple=2 "
+        "it does not fit; identify with --model stribeck:asymmetric:ripple=2; "
         "or identify with --model stribeck"
     )
 

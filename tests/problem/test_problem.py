@@ -92,12 +92,12 @@ def test_a_recording_with_many_gaps() -> None:
 def test_a_motor_side_signal_needs_a_joint() -> None:
     error = refused(jid.Recording(**MOTION, current=np.cos(7.0 * TIME)))
     assert error.argument == "torque"
-    joint = "set the joint with torque_constant=..., gear_ratio=... (which convert it)"
+    joint = "set the joint with torque_constant=..., gear_ratio=... (facts of motor and gear)"
     assert [str(each) for each in error.remedy] == [joint]
     error = refused(jid.Recording(**MOTION, motor_torque=np.cos(7.0 * TIME)))
     ratio, joint = map(str, error.remedy)
     assert ratio == "load with gear_ratio=... (the motor's angle per angle of the joint)"
-    assert joint == "identify with joint=... (with gear_ratio, which convert it)"
+    assert joint == "identify with joint=... (with gear_ratio, which converts it)"
     commanded = {"commanded_torque": "target_moment_{joint}"}
     error = refused(jid.Recording(**MOTION, current=np.cos(7.0 * TIME), metadata=commanded))
     assert (

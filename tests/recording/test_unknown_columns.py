@@ -105,6 +105,7 @@ def test_it_is_said_where_values_are_shown(
         *((name, "torque") for name in ("effort", "tau_J", "torque_measured", "ActTorque")),
         *((name, "motor_torque") for name in ("tau_m", "motor torque [Nm]", "motor_torque_actual")),
         *((name, "current") for name in ("actual_current_0", "i_q_A", "Iq", "motor current")),
+        *((name, "current") for name in ("i_A", "i_mA", "I [A]", "i_motor [A]", "joint_2_i_A")),
         *((name, "reference") for name in ("target_q_0", "q_d", "q_des", "desired.positions[0]")),
     ],
 )
@@ -133,6 +134,7 @@ def test_names_of_other_programs(header: str, signal: str) -> None:
             "time_offset",
             "tau_ext_hat_filtered",
         ),
+        *("i", "i [s]", "i_d_A", "i_cmd_A", "i_max [A]", "i_bus_A"),
         *("link_velocity", "q_std", "gravity_torque", "axis_angle", "drive state", "column 0", ""),
     ],
 )

@@ -61,7 +61,7 @@ def looked_ahead(
     if not actions or (len(actions) == 1 and error.remedy and actions[0] is error.remedy[0]):
         return error
     merged = _merged(actions)
-    purposes = " and ".join(dict.fromkeys(action.text for action in actions if action.text))
+    purposes = "; ".join(dict.fromkeys(action.text for action in actions if action.text))
     return InputError(
         "; ".join(_reason(each, first=each is error) for each, _ in found),
         argument=error.argument,

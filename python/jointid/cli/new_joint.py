@@ -214,13 +214,19 @@ def _obeyed(arguments: argparse.Namespace, error: InputError) -> str:
 def _reading_options(arguments: argparse.Namespace) -> list[str]:
     """How the recording is read, as options of any command."""
     options: list[str] = []
-    for name in (*_READING.values(), "extra"):
+    for name in (*_READING.values(), "side", "extra"):
         pairs = by_name(name, getattr(arguments, name))
         options += [word for pair in pairs.items() for word in (f"--{name}", "=".join(pair))]
-    for name in ("joints", "topic", "group"):
+    for name in ("joints", "topic", "group", "rate"):
         if getattr(arguments, name) is not None:
-            options += [f"--{name}", getattr(arguments, name)]
+            options += [f"--{name}", _plain(getattr(arguments, name))]
+    for name in ("drop_copies", "drop_invalid"):
+        options += [f"--{name.replace('_', '-')}"] * getattr(arguments, name)
     return options
+
+
+def _plain(value: object) -> str:
+    return f"{value:.15g}" if isinstance(value, float) else str(value)
 
 
 def _next(arguments: argparse.Namespace) -> str:

@@ -91,7 +91,8 @@ class Wording:
 
     def _alternatives(self, remedies: tuple[str | Action, ...]) -> str:
         texts = [each if isinstance(each, str) else self.of_action(each) for each in remedies]
-        return " or ".join(text for text in texts if text)
+        options = any(isinstance(each, Action) for each in remedies)  # each is pasted by itself
+        return ("; or " if options else " or ").join(text for text in texts if text)
 
     def _located(self, error: InputError) -> tuple[str, str]:
         """Where it stands and what it is about; a place that has an option is part of the name."""

@@ -196,7 +196,7 @@ def _of_stamps(run: Recording, number: int) -> InputError:
     return InputError(
         f"the samples are {run.sample_period:.3g} s apart: {TIME_UNITS[unit]} seem to be taken for seconds",
         argument="time",
-        place=f"recording {number}",
+        place=run.name or f"recording {number}",
         remedy=Action("call", {"units": {"time": unit}}, function="load"),
     )
 
@@ -215,8 +215,8 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
         return recording.torque
     facts = {"torque_constant": ..., "gear_ratio": ...}
     for signal, needs in (
-        ("motor_torque", Action("call", {"joint": ...}, "with gear_ratio, which convert it")),
-        ("current", Action("call", facts, "which convert it", "Joint")),
+        ("motor_torque", Action("call", {"joint": ...}, "with gear_ratio, which converts it")),
+        ("current", Action("call", facts, "facts of motor and gear", "Joint")),
     ):
         if getattr(recording, signal) is not None:
             raise InputError(

@@ -218,9 +218,7 @@ def together(table: Table, problems: Sequence[InputError]) -> InputError:
     return InputError(
         "; ".join(reasons),
         place=table.header_place,
-        remedy=Action(
-            "call", arguments, function="load", text=" and ".join(dict.fromkeys(purposes))
-        )
+        remedy=Action("call", arguments, function="load", text="; ".join(dict.fromkeys(purposes)))
         if arguments
         else (),
     )

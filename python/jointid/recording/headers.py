@@ -30,6 +30,7 @@ ALIASES: dict[str, str] = {
 
 _AXIS = r"(?i)(?:axis|joint|motor|servo|id)[ _]?(\d+)"
 _INDEX = r"(?<=[\w\]])\[(\d+)\]"
+_SYMBOL = r"(?i)(?<![^\W_])i(?![^\W_])"  # of a current
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +72,8 @@ def understood(header: str) -> Header:
         other = None if text == whole or unit is None else _meaning(whole)
         if other is not None:
             return Header(plain(whole), None, "", other)
+    if meaning is None and unit and unit.dimension == "current":  # "i" alone may be an index
+        meaning = _meaning(re.sub(_SYMBOL, "current", text))
     known = documented(text)
     if known is not None and (meaning is None or meaning.rank == OF_A_JOINT):
         axis = re.search(_AXIS, text)

@@ -176,6 +176,8 @@ class Recording(Parts):
         units: Mapping[str, str] | None = None,
         scale: Mapping[str, float] | None = None,
         extra: Collection[str] | Mapping[str, str | int] | None = None,
+        gear_ratio: float | None = None,
+        side: Mapping[str, str] | None = None,
         sample_period: float | None = None,
         kind: str | None = None,
         torque_hold: str | None = None,
@@ -187,7 +189,7 @@ class Recording(Parts):
         df : DataFrame
             Anything with `columns` and `df[column]`; headers are read as `load` reads a file's. Its index is a column,
             too, if it has a name ("time_s"), or holds dates or durations.
-        columns, units, scale, extra, sample_period, kind, torque_hold
+        columns, units, scale, extra, gear_ratio, side, sample_period, kind, torque_hold
             As in `load`.
 
         Raises
@@ -198,6 +200,7 @@ class Recording(Parts):
         from jointid.recording.contents import read_contents
         from jointid.recording.dataframe import FrameTable
         from jointid.recording.even_rows import at_rate
+        from jointid.recording.wide.one_joint import OneJoint, of_joint
 
         table, columns = at_rate(FrameTable(df), sample_period, columns)
         contents = read_contents(
@@ -209,7 +212,8 @@ class Recording(Parts):
             kind=kind,
             torque_hold=torque_hold,
         )
-        return cls(**contents.fields())
+        one = OneJoint(table=table, columns=columns)
+        return cls(**of_joint(contents.fields(), one, gear_ratio, side))
 
     @functools.cached_property
     def sample_period(self) -> float:

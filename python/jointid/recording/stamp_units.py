@@ -7,6 +7,7 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.order_statistics import median
+from jointid.recording.plausibility import slow_stamps
 from jointid.recording.signals import FloatArray
 from jointid.recording.units import UNITS, Unit
 
@@ -17,6 +18,7 @@ _DATES = (978_307_200.0, 4_102_444_800.0)  # s since 1970: 2001 to 2100
 _UPTIME = 1e8  # s: no clock runs for three years since it was switched on
 _FILE_TIMES = (1.2e17, 1.5e17)  # 1981 to 2076
 _ETHERCAT = (5e17, 9e17)  # ns since 2000: 2015 to 2028
+_COUNTED = Action("call", {"sample_period": ...}, "if they count the rows", "load")
 _HOPELESS = 1e10  # a step that is long in every unit
 
 
@@ -105,13 +107,16 @@ def _undecided(step: float, units: Sequence[Unit], place: str) -> InputError:
         for unit in sorted(units, key=lambda unit: unit.factor)
     ]
     reason = f"no unit is stated, and the stamps are {step:.6g} apart"
+    usual = [unit for unit in units if slow_stamps(step * unit.factor) is None] or units
+    remedies = [
+        Action("call", {"units": {"time": unit.name}}, function="load")
+        for unit in sorted(usual, key=lambda unit: unit.factor)
+    ]
+    if units and step == 1.0:
+        remedies.append(_COUNTED)
     return InputError(
         f"{reason}: {' and '.join(shown)}" if units else f"{reason}, which is too long in any unit",
         argument="time",
         place=place,
-        remedy=tuple(
-            Action("call", {"units": {"time": unit.name}}, function="load")
-            for unit in sorted(units, key=lambda unit: unit.factor)
-        )
-        or "choose another column",
+        remedy=tuple(remedies) or "choose another column",
     )

@@ -25,7 +25,7 @@ from jointid.recording.recording import Recording
 from jointid.recording.signals import Kind, TorqueHold
 from jointid.recording.table import MOST_COLUMNS, Table
 from jointid.recording.unreadable import read_leniently
-from jointid.recording.wide.one_joint import OneJoint, joint_of_table
+from jointid.recording.wide.one_joint import OneJoint, joint_of_table, of_joint
 
 _SURROGATE = "[\ud800-\udfff]"
 _SORT = "sort the rows by time, or cut the file where a second run begins"
@@ -195,7 +195,7 @@ def load(
             raise error.at(str(file)) from None
     if dropped:
         fields["metadata"] = {**fields.get("metadata", {}), NOTE: dropped}
-    return _recording(file, _of_joint(fields, one, ratio, side), _named(file, fields, name, one))
+    return _recording(file, of_joint(fields, one, ratio, side), _named(file, fields, name, one))
 
 
 def _one_run(contents: Contents) -> tuple[str | Action, ...]:
@@ -272,7 +272,7 @@ def load_runs(
     for value, rows in contents.rows_of(by).items():
         run = f"{header}={value}"
         try:
-            fields = _of_joint(contents.fields(rows), one, ratio, side)
+            fields = of_joint(contents.fields(rows), one, ratio, side)
             runs.append(
                 _recording(file, fields, f"{_named(file, fields, name, one)} {run}".lstrip())
             )
@@ -366,27 +366,6 @@ def _ratio(one: OneJoint, gear_ratio: float | None) -> float | None:
     from jointid.recording.wide.sides import checked_ratio
 
     return checked_ratio(gear_ratio)
-
-
-def _of_joint(
-    fields: dict[str, Any], one: OneJoint, gear_ratio: float | None, side: Mapping[str, str] | None
-) -> dict[str, Any]:
-    if not one.joint and gear_ratio is None and not side:
-        return fields
-    from jointid.recording.wide.sides import at_joint, stated_sides, unstated_torque
-
-    try:
-        own, others = stated_sides(one.side, one.other_sides, side)
-        found = at_joint(fields, own, gear_ratio, others)
-    except InputError as error:
-        raise error.at(one.table.header_place) from None
-    if one.joint:
-        found["metadata"] = {**found["metadata"], "joint": one.joint}
-    if side:
-        found["metadata"] = {**found["metadata"], "stated_sides": dict(side)}
-        if unstated_torque(fields, side, gear_ratio):
-            found["metadata"]["assumed_side"] = "torque"
-    return found
 
 
 def _recording(file: Path, fields: Mapping[str, Any], name: str | None) -> Recording:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import field
+from typing import Any
 
+from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.table import Table
@@ -87,3 +89,25 @@ def is_one(table: Table, columns: Mapping[str, str | int | None] | None) -> bool
     if position is not None:
         return not isinstance(position, str) or MARK not in position
     return any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers)
+
+
+def of_joint(
+    fields: dict[str, Any], one: OneJoint, gear_ratio: float | None, side: Mapping[str, str] | None
+) -> dict[str, Any]:
+    """Return the arguments of `Recording` at the joint: see `load` for `gear_ratio` and `side`."""
+    if not one.joint and gear_ratio is None and not side:
+        return fields
+    from jointid.recording.wide.sides import at_joint, stated_sides, unstated_torque
+
+    try:
+        own, others = stated_sides(one.side, one.other_sides, side)
+        found = at_joint(fields, own, gear_ratio, others)
+    except InputError as error:
+        raise error.at(one.table.header_place) from None
+    if one.joint:
+        found["metadata"] = {**found["metadata"], "joint": one.joint}
+    if side:
+        found["metadata"] = {**found["metadata"], "stated_sides": dict(side)}
+        if unstated_torque(fields, side, gear_ratio):
+            found["metadata"]["assumed_side"] = "torque"
+    return found
