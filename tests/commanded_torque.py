@@ -22,7 +22,7 @@ def log(seed: int, *, measured: bool = False, torque_hold: str | None = None) ->
     angle = np.array([0.6, 0.3, 0.1]) @ np.sin(
         2.0 * np.pi * np.outer(rates, time) + phases[:, None]
     )
-    joint = jid.Joint(inertia=1.0, model="coulomb_viscous").with_parameters(TRUTH)
+    joint = jid.Joint(inertia=1.0, model=jid.Model("coulomb_viscous")).with_parameters(TRUTH)
     run = jid.simulate(
         joint,
         jid.Pd(stiffness=300.0, damping=30.0),

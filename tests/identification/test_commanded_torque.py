@@ -29,6 +29,8 @@ def test_a_measured_torque_is_not(seed: int) -> None:
 def test_what_is_stated_stands() -> None:
     by_file = jid.identify(log(2, torque_hold="linear"))
     by_call = jid.identify(log(2), torque_hold="linear")
-    by_joint = jid.identify(log(2), jid.Joint(torque_hold="linear", model="coulomb_viscous"))
+    by_joint = jid.identify(
+        log(2), jid.Joint(torque_hold="linear", model=jid.Model("coulomb_viscous"))
+    )
     for estimate in (by_file, by_call, by_joint):
         assert "held_torque" not in {each.code for each in estimate.findings}
