@@ -77,7 +77,7 @@ def test_an_estimate_that_cannot_be_used_is_refused(
 ) -> None:
     """A controller would obey it, as a session obeys a joint file."""
     monkeypatch.chdir(tmp_path)
-    finding = Finding(code="lag", severity=severity, cause="a signal is late")  # type: ignore[arg-type]
+    finding = Finding(code="lag", severity=severity, title="a signal is late")  # type: ignore[arg-type]
     dataclasses.replace(shipped_estimate(), findings=(finding,)).save("estimate.json")
     code = main(["export", "estimate.json", "--to", "joint.h"])
     said = capsys.readouterr().err

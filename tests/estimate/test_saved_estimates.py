@@ -142,7 +142,7 @@ def test_a_script_reaches_the_page_where_nothing_escapes(
 ) -> None:
     """What the tests above look for would be found."""
     monkeypatch.setattr(html, "escape", lambda text: text)
-    for path in (("joint", "name"), ("settings", "version"), ("findings", 0, "cause")):
+    for path in (("joint", "name"), ("settings", "version"), ("findings", 0, "title")):
         estimate = read(damaged(path, JUNK["script"]))
         assert estimate is not None
         assert any("<script>" in page for page in pages(estimate)), path
@@ -243,7 +243,7 @@ def test_what_a_finding_may_hold_is_read_again() -> None:
     estimate = jid.Estimate.from_json(text_of(3))
     unknown = {"columns": {"sensor": ...}, "models": ["stribeck", ...]}
     found = Finding(
-        code="undetermined", cause="x" * 50_000, advice=(Action("call", unknown, function="load"),)
+        code="undetermined", title="x" * 50_000, advice=(Action("call", unknown, function="load"),)
     )
     again = jid.Estimate.from_json(dataclasses.replace(estimate, findings=(found,)).to_json())
     assert again.findings == (found,)

@@ -166,7 +166,7 @@ def test_held_out_torque_does_not_excuse_a_reading_that_is_missed() -> None:
 
 
 def test_each_purpose_minds_its_own_parameters() -> None:
-    moved = Finding(code="inertia_varies", cause="it varies", parameters=("inertia", "viscous"))
+    moved = Finding(code="inertia_varies", title="it varies", parameters=("inertia", "viscous"))
     joint = jid.thesis_joint()
     free = replace(with_findings(moved), free=("inertia", *estimate().free), joint=joint)
     uses = free.verdict.uses
@@ -176,14 +176,14 @@ def test_each_purpose_minds_its_own_parameters() -> None:
     only = replace(free, findings=(replace(moved, parameters=("inertia",)),))
     assert only.verdict.uses["compensation"].level == "usable"
     assert only.verdict.level == "usable with care"
-    few = Finding(code="few_windows", cause="too few", parameters=("static",))
+    few = Finding(code="few_windows", title="too few", parameters=("static",))
     chance = with_findings(few)
     assert {str(use) for use in chance.verdict.uses.values()} == {"usable with care (static)"}
     assert str(chance.verdict) == "usable with care (static)"
 
 
 def test_monitoring_minds_a_change_of_a_tenth() -> None:
-    vague = with_findings(Finding(code="undetermined", cause="few", parameters=("static",)))
+    vague = with_findings(Finding(code="undetermined", title="few", parameters=("static",)))
     static = vague.parameters["static"]
     for share, level in ((0.035, "usable"), (0.037, "usable with care")):
         wide = replace(static, stderr=share * static.value)
@@ -199,7 +199,7 @@ def test_a_cause_by_name_excuses_what_it_explains() -> None:
     for share, level in ((0.9, "usable with care"), (0.5, "not usable")):
         evidence = {"share": Measured(share)}
         named = Finding(
-            code="slow_motion", cause="it is", parameters=("coulomb",), evidence=evidence
+            code="slow_motion", title="it is", parameters=("coulomb",), evidence=evidence
         )
         assert replace(half, findings=(named,)).verdict.level == level
         assert (
@@ -208,7 +208,7 @@ def test_a_cause_by_name_excuses_what_it_explains() -> None:
 
 
 def test_a_simulation_needs_an_inertia_that_is_known() -> None:
-    hidden = Finding(code="undetermined", cause="it is hidden", parameters=("inertia",))
+    hidden = Finding(code="undetermined", title="it is hidden", parameters=("inertia",))
     inertia = replace(estimate().parameters["inertia"], stderr=1.5, interval=(-0.5, 5.5))
     parameters = dict(estimate().parameters) | {"inertia": inertia}
     free = replace(with_findings(hidden), parameters=parameters, free=("inertia",))
@@ -284,10 +284,10 @@ def test_no_name_excuses_values_that_miss_everything() -> None:
 
 
 def test_an_info_does_not_matter_and_a_blocking_finding_always() -> None:
-    told = Finding(code="gaps", severity="info", cause="samples are missing")
+    told = Finding(code="gaps", severity="info", title="samples are missing")
     assert with_findings(told).verdict.level == "usable"
-    blocking = Finding(code="wrong_scale", severity="blocking", cause="no", parameters=("inertia",))
-    verdict = with_findings(Finding(code="spikes", cause="two"), blocking).verdict
+    blocking = Finding(code="wrong_scale", severity="blocking", title="no", parameters=("inertia",))
+    verdict = with_findings(Finding(code="spikes", title="two"), blocking).verdict
     assert {use.level for use in verdict.uses.values()} == {"not usable"}
     assert verdict.reasons == ("no", "two")
 
@@ -312,7 +312,7 @@ def test_a_self_test_that_loses_a_parameter_that_was_asked_for() -> None:
 
 def test_a_parameter_that_is_not_there_is_refused() -> None:
     """Nothing speaks against it: it would be usable."""
-    vague = with_findings(Finding(code="few_windows", cause="few", parameters=("static",)))
+    vague = with_findings(Finding(code="few_windows", title="few", parameters=("static",)))
     with pytest.raises(jid.InputError, match="parameters is 'statik': the estimate has no such"):
         judged(vague, parameters=["statik"])
     assert str(judged(vague, parameters="static")) == "usable with care (static)"
@@ -333,7 +333,7 @@ def test_a_tolerance_that_is_larger_than_all_else() -> None:
 def test_the_page_begins_with_it() -> None:
     page = html_report(estimate())
     assert '</h1><p class="verdict usable"><b>Usable.</b></p>' in page
-    found = [Finding(code=f"c{n}", cause=f"reason {n}", parameters=("static",)) for n in range(5)]
+    found = [Finding(code=f"c{n}", title=f"reason {n}", parameters=("static",)) for n in range(5)]
     page = html_report(with_findings(*found))
     assert '<p class="verdict usable-with-care"><b>Usable with care.</b></p>' in page
     assert re.search(r"<b>compensation: usable with care, to ± [\d.]+ %</b>: static \(above", page)
@@ -343,7 +343,7 @@ def test_the_page_begins_with_it() -> None:
 def test_text_and_numbers_have_it() -> None:
     lines = estimate().report().splitlines()
     assert lines[:3] == [f"jointid estimate — {estimate().joint.name}", "", "verdict: usable"]
-    moved = Finding(code="inertia_varies", cause="it varies", parameters=("static",))
+    moved = Finding(code="inertia_varies", title="it varies", parameters=("static",))
     found = with_findings(moved)
     shown = found.report().splitlines()[2:6]
     assert [line.partition(", to ± ")[0] for line in shown] == [

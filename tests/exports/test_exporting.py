@@ -56,7 +56,7 @@ def test_a_file_states_what_was_not_determined(tmp_path: Path, ending: str) -> N
     assert "held at its bound max" in text
     assert "did not determine" not in text_of(estimate, tmp_path / f"other{ending}")
     # What the identification warns of keeps its error.
-    finding = Finding(code="undetermined", parameters=("viscous",), cause="one reversal")
+    finding = Finding(code="undetermined", parameters=("viscous",), title="one reversal")
     warned = text_of(dataclasses.replace(estimate, findings=(finding,)), tmp_path / f"w{ending}")
     assert "did not determine, or not well: viscous." in warned
     assert "19.9932 to 20.0045, not well determined by the recording" in warned

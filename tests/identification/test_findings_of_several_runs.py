@@ -63,7 +63,7 @@ def test_what_is_stated_nowhere_is_said_once() -> None:
 
 def test_different_findings_stay_apart() -> None:
     one, other = (
-        Finding(code="spikes", cause=f"1 spike in {name}") for name in ("torque", "sensor")
+        Finding(code="spikes", title=f"1 spike in {name}") for name in ("torque", "sensor")
     )
     apart = merged([(0, one), (1, other), (2, one)], ("a", "b", "c"))
     assert [each.cause for each in apart] == [
@@ -75,7 +75,7 @@ def test_different_findings_stay_apart() -> None:
 def test_a_range_reads_well_below_zero_and_keeps_words_with_digits() -> None:
     several = [
         Finding(
-            code="x", cause=f"off by {value} of kg·m2 and 2π", evidence={"off": Measured(value)}
+            code="x", title=f"off by {value} of kg·m2 and 2π", evidence={"off": Measured(value)}
         )
         for value in (-3.5, 2.0)
     ]

@@ -108,7 +108,7 @@ def test_the_first_cause_alone_makes_wide_values_uncertain() -> None:
 
 
 def _said(code: str, severity: Any = "warning", **other: Any) -> Finding:
-    return Finding(code=code, severity=severity, cause=code, **other)
+    return Finding(code=code, severity=severity, title=code, **other)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -139,7 +139,7 @@ def test_ripple_is_not_told_beside_what_explains_most(
 
 def test_a_wrong_unit_is_told_once_and_hides_ripple(monkeypatch: pytest.MonkeyPatch) -> None:
     unit = _said("implausible_units", "blocking")
-    other = dataclasses.replace(unit, cause="another")
+    other = dataclasses.replace(unit, title="another")
     assert _diagnosed(monkeypatch, unit, _said("ripple"), other) == ["implausible_units"]
 
 

@@ -29,7 +29,7 @@ def test_a_residual_is_called_autocorrelated_only_where_it_is(
         velocity_effect=None,
     )
     (finding,) = structured_residual.CHECK.findings(seen)
-    assert ("the residuals are autocorrelated" in finding.cause) == said
+    assert ("neighbouring windows correlate" in finding.title) == said
     assert f"r = {correlation:.2f}" in finding.cause
     assert "inertia" in finding.cause
 
@@ -75,7 +75,8 @@ def test_a_finding_is_no_surer_of_another_joint_than_the_text() -> None:
     found = Finding(
         code="structured_residual",
         severity="warning",
-        cause="it misses; none of 9 known causes explains it",
+        title="it misses",
+        details="none of 9 known causes explains it",
     )
     share = Share(joint="1", by="acceleration", share=0.95, scale=0.1, own_too=True)
     estimate: Any = Some((found,))

@@ -67,7 +67,7 @@ def test_a_wrong_link_needs_care(robot: jid.Robot, run: jid.RobotRecording, tmp_
 def test_each_purpose_minds_its_own(robot: jid.Robot, run: jid.RobotRecording) -> None:
     found = jid.identify_robot(run, robot)
     vague = Finding(
-        code="undetermined", cause="it hardly moves", parameters=("elbow.rotor_inertia",)
+        code="undetermined", title="it hardly moves", parameters=("elbow.rotor_inertia",)
     )
     uses = replace(found, findings=(vague,)).verdict.uses
     assert uses["compensation"].level == "usable"
@@ -75,7 +75,7 @@ def test_each_purpose_minds_its_own(robot: jid.Robot, run: jid.RobotRecording) -
     assert uses["monitoring"].level == "usable"  # a change of a tenth would be seen
     drift = replace(vague, code="drift")
     assert replace(found, findings=(drift,)).verdict.uses["monitoring"].level == "usable with care"
-    impossible = Finding(code="impossible_inertia", cause="no body is so")
+    impossible = Finding(code="impossible_inertia", title="no body is so")
     verdict = replace(found, findings=(impossible,)).verdict
     assert verdict.uses["simulation"].level == "not usable"
     assert verdict.uses["compensation"].level == "usable"

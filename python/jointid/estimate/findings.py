@@ -42,10 +42,12 @@ class Finding:
         Concerned parameters.
     evidence : mapping of str to Measured
         The numbers it rests on, by name.
-    cause : str
-        What was seen and its probable cause, in a sentence without the syntax of any interface.
+    title : str
+        What was found, with its numbers, in at most 90 characters without the syntax of any interface.
+    details : str
+        Why, what follows, and the other numbers. Default: nothing.
     advice : tuple of Action
-        What to do; the first that can be done helps.
+        What to do; the first that can be done helps most.
     recordings : tuple of str
         Names of those concerned, of several; empty where it concerns all together.
     """
@@ -54,7 +56,8 @@ class Finding:
     severity: Severity = "warning"
     parameters: tuple[str, ...] = ()
     evidence: Mapping[str, Measured] = field(default_factory=dict, hash=False)
-    cause: str
+    title: str
+    details: str = ""
     advice: tuple[Action, ...] = field(default=(), hash=False)
     recordings: tuple[str, ...] = ()
 
@@ -64,10 +67,10 @@ class Finding:
         object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
 
     def __repr__(self) -> str:
-        return f"<Finding {self.code} ({self.severity}): {_shortened(self.cause)}>"
+        return f"<Finding {self.code} ({self.severity}): {_shortened(self.title)}>"
 
     def worded(self, action: Callable[[Action], str] = str) -> str:
-        """The finding in a sentence: its cause, and its advice as an interface words it.
+        """The whole finding: title, details, and the advice as an interface words it.
 
         Parameters
         ----------
@@ -78,8 +81,13 @@ class Finding:
         return f"{self.cause}; {advice}" if advice else self.cause
 
     @property
+    def cause(self) -> str:
+        """Title and details."""
+        return f"{self.title}; {self.details}" if self.details else self.title
+
+    @property
     def message(self) -> str:
-        """The sentence that Python shows: cause and advice."""
+        """Title, details and advice, as Python shows them."""
         return self.worded()
 
     def __str__(self) -> str:
@@ -92,7 +100,8 @@ class Finding:
             "severity": self.severity,
             "parameters": self.parameters,
             "evidence": dict(self.evidence),
-            "cause": self.cause,
+            "title": self.title,
+            "details": self.details,
             "advice": self.advice,
             "recordings": self.recordings,
         }

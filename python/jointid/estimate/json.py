@@ -1,6 +1,6 @@
 """Estimates as JSON: complete enough to redraw every picture and to repeat the run."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -47,8 +47,7 @@ def write_estimate(estimate: Estimate) -> str:
             document[item.name] = plain(getattr(estimate, item.name))
     document["derived"] = plain(estimate.derived)
     document["verdict"] = estimate.verdict.document()
-    for entry, found in zip(document["findings"], estimate.findings, strict=True):
-        entry["message"] = found.message  # for readers that are not ours
+    document["findings"] = documents_of(estimate.findings)
     return json_text(document)
 
 
@@ -181,6 +180,11 @@ def _cross_check(entry: Mapping[str, Any] | None) -> CrossCheck | None:
     return CrossCheck(**{**entry, "values": values})
 
 
+def documents_of(findings: Iterable[Finding]) -> list[dict[str, Any]]:
+    """Findings as JSON has them; older versions of jointid read the cause, other programs the message."""
+    return [{**plain(found), "cause": found.cause, "message": found.message} for found in findings]
+
+
 def finding_of(entry: Mapping[str, Any]) -> Finding:
     """A finding from its checked entry."""
     return Finding(
@@ -188,7 +192,8 @@ def finding_of(entry: Mapping[str, Any]) -> Finding:
         severity=entry["severity"],
         parameters=tuple(entry["parameters"]),
         evidence={name: Measured(**measured) for name, measured in entry["evidence"].items()},
-        cause=entry["cause"],
+        title=entry.get("title", entry["cause"]),
+        details=entry.get("details", ""),
         advice=tuple(_action(each) for each in entry["advice"]),
         recordings=tuple(entry.get("recordings", ())),
     )
@@ -210,7 +215,7 @@ def _with_ellipsis(value: Any) -> Any:
 def _old_warning(entry: Mapping[str, Any]) -> Finding:
     """A finding of schema 1: a finished sentence."""
     return Finding(
-        code=entry["code"], parameters=tuple(entry["parameters"]), cause=entry["message"]
+        code=entry["code"], parameters=tuple(entry["parameters"]), title=entry["message"]
     )
 
 

@@ -79,7 +79,7 @@ FINDING = Record(
         "advice": ListOf(_ACTION),
         "message": _SENTENCES,
     },
-    {"recordings": ListOf(Text())},
+    {"title": _SENTENCES, "details": _SENTENCES, "recordings": ListOf(Text())},
 )
 DELAY = Record(
     {

@@ -73,7 +73,7 @@ def objections_of(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Ob
         if found.severity != "info" and not _is_of_compensation(found):
             yield Objection(
                 code=found.code,
-                reason=found.cause,
+                reason=found.title,
                 blocking=found.severity == "blocking",
                 parameters=_free(estimate, found),
                 share=found.evidence["share"].value if "share" in found.evidence else 0.0,
@@ -156,7 +156,7 @@ def without_friction(estimate: Estimate) -> Iterable[Objection]:
         if _is_of_compensation(found):
             yield Objection(
                 code=found.code,
-                reason=found.cause,
+                reason=found.title,
                 blocking=True,
                 parameters=_free(estimate, found),
             )

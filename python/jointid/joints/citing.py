@@ -41,11 +41,11 @@ def _citing(finding: Finding, shares: Sequence[Share]) -> Finding:
         for share in shares
     ]
     text = " and ".join(parts)
-    cause, count = _UNEXPLAINED.subn(lambda _: text, finding.cause)
+    details, count = _UNEXPLAINED.subn(lambda _: text, finding.details)
     explained = min(1.0, sum(share.share for share in shares))
     evidence = {name: each for name, each in finding.evidence.items() if name != "causes_excluded"}
     return replace(
         finding,
-        cause=cause if count else f"{finding.cause}; {text}",
+        details=details if count else "; ".join(filter(None, (finding.details, text))),
         evidence={**evidence, "explained_by_others": Measured(explained)},
     )

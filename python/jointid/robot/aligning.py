@@ -123,7 +123,7 @@ def _told(code: str, severity: Severity, away: Array, found: Aligned) -> Finding
         ) + ", which biases the values"
         shift = {"shift": told_shift(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
-    return Finding(code=code, severity=severity, evidence=evidence, cause=cause, advice=advice)
+    return Finding(code=code, severity=severity, evidence=evidence, title=cause, advice=advice)
 
 
 def _short(delay: Array, left: TorqueDelay) -> Array:

@@ -38,7 +38,7 @@ def assumptions_told(
             yield Finding(
                 code="joints_in_order",
                 severity="info",
-                cause="the recording does not name the URDF's joints; they are taken in order: "
+                title="the recording does not name the URDF's joints; they are taken in order: "
                 + ", ".join(f"{name} is {each}" for name, each in pairs),
             )
             break
@@ -47,7 +47,7 @@ def assumptions_told(
         yield Finding(
             code="no_gravity",
             severity="info",
-            cause="no gravity acts on this robot, as it was given",
+            title="no gravity acts on this robot, as it was given",
         )
     yield from _units(recordings, robot, attempt)
 
@@ -64,7 +64,7 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
             yield Finding(
                 code="locked_joint_moves",
                 evidence={"range": Measured(max(spans))},
-                cause=f"{name} moves by {max(spans):.3g} in the recording and is left out of the robot's joints, "
+                title=f"{name} moves by {max(spans):.3g} in the recording and is left out of the robot's joints, "
                 "which has it stand at 0",
                 advice=(Action("inspect", text=f"joints, which lack {name}"),),
             )
@@ -96,7 +96,7 @@ def _units(
         yield Finding(
             code="implausible_unit",
             evidence={"range": Measured(moved, "rad")},
-            cause=f"{name}'s {signal} is probably in degrees and was taken for radians: "
+            title=f"{name}'s {signal} is probably in degrees and was taken for radians: "
             + ", and ".join(reasons),
             advice=(Action("inspect", text=f"the unit of the {signal} of {name}"),),
         )

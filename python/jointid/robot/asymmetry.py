@@ -40,7 +40,7 @@ def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
             yield Finding(
                 code="asymmetric_friction",
                 evidence={"difference": Measured(value, unit), "explained": Measured(explained)},
-                cause=f"the viscous friction of {name} differs between the directions by "
+                title=f"the viscous friction of {name} differs between the directions by "
                 f"{2.0 * abs(value):.3g} ± {2.0 * error:.2g} {unit}; that explains "
                 f"{percent(explained)} of its squared residual in stretches of motion that it was not taken from",
                 advice=(

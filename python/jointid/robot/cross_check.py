@@ -218,7 +218,7 @@ def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
         severity="blocking",
         parameters=tuple(apart) if not worse else (),
         evidence={f"{name}.second": Measured(each.second or 0.0) for name, each in apart.items()},
-        cause=f"a plain filtered least squares of the signals as recorded {' and '.join(texts)}: the handling of time "
+        title=f"a plain filtered least squares of the signals as recorded {' and '.join(texts)}: the handling of time "
         "stamps, gaps, delays or slow motion is not right for this recording",
         advice=(*advice, Action("inspect", text="the time stamps and the logger")),
     )

@@ -230,7 +230,7 @@ def _summary(
                 code="several_wrong_facts",
                 severity="info",
                 evidence=evidence,
-                cause=f"{len(causes)} given facts are wrong; with all of them corrected {percent(after)} of the torque "
+                title=f"{len(causes)} given facts are wrong; with all of them corrected {percent(after)} of the torque "
                 f"stays unexplained instead of {percent(before)}",
                 advice=(
                     Action(
@@ -246,7 +246,7 @@ def _summary(
                 severity="info",
                 parameters=tuple(name for each in gone for name in each.parameters),
                 evidence=evidence,
-                cause=f"{len(gone)} further warnings ({', '.join(codes)}) only follow from {facts}: with "
+                title=f"{len(gone)} further warnings ({', '.join(codes)}) only follow from {facts}: with "
                 f"{'it' if len(causes) == 1 else 'them'} corrected they are gone, and {percent(after)} of the torque "
                 f"stays unexplained instead of {percent(before)}",
             )
@@ -258,7 +258,7 @@ def _summary(
                 code="more_wrong_facts",
                 severity="warning",
                 evidence=evidence,
-                cause=f"with {facts} corrected, {' and '.join(poor)} still fit badly: more than {facts} is wrong",
+                title=f"with {facts} corrected, {' and '.join(poor)} still fit badly: more than {facts} is wrong",
             )
         )
     return found

@@ -9,7 +9,7 @@ from typing import Any
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
-from jointid.estimate.json import plain
+from jointid.estimate.json import documents_of, plain
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 
@@ -46,12 +46,10 @@ def document_of(estimate: RobotEstimate) -> dict[str, Any]:
         "covariance": plain(estimate.covariance),
         "robot": robot_document(estimate.robot),
         "cross_check": plain(estimate.cross_check),
-        "findings": plain(estimate.findings),
+        "findings": documents_of(estimate.findings),
         "verdict": estimate.verdict.document(),
         "settings": plain(estimate.settings),
     }
-    for entry, found in zip(document["findings"], estimate.findings, strict=True):
-        entry["message"] = found.message  # for readers that are not ours
     return document
 
 

@@ -67,7 +67,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
                 code="standing",
                 parameters=_all_of(estimate.joints[name]),
                 evidence={"left_out": Measured(share)},
-                cause=f"{name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
+                title=f"{name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
                 "information about friction and is left out",
                 advice=(Action("record", text="more motion"),),
             )
@@ -78,7 +78,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
             code="standing",
             severity="info",
             evidence={name: Measured(share) for name, share in some.items()},
-            cause=f"joints stand still, stick or are too slow, which carries no information about friction and is left "
+            title=f"joints stand still, stick or are too slow, which carries no information about friction and is left "
             f"out: {shown} of the time",
         )
 
@@ -95,7 +95,7 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> I
             code="undetermined",
             parameters=(f"{joint.name}.{name}",),
             evidence={"stderr": Measured(p.stderr, p.unit)} if np.isfinite(p.stderr) else {},
-            cause=f"{name.replace('_', ' ')} of {joint.name} may be off {error} (standard error); its value is "
+            title=f"{name.replace('_', ' ')} of {joint.name} may be off {error} (standard error); its value is "
             f"{number(p.value)} {p.unit}",
             advice=(Action("record", text="more and faster motion of this joint"),),
         )
@@ -114,7 +114,7 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> I
                 severity="info" if small else "warning",
                 parameters=tuple(f"{joint.name}.{name}" for name in alike),
                 evidence={f"{joint.name}.{name}.share": Measured(held_by[name]) for name in alike},
-                cause=f"{' and '.join(alike)} of {joint.name} "
+                title=f"{' and '.join(alike)} of {joint.name} "
                 + (
                     f"is 0, its bound: it is at most {largest} of the joint's friction"
                     if small
@@ -128,7 +128,7 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> I
             code="poor_fit",
             parameters=_all_of(joint),
             evidence={"relative_residual": Measured(residual)},
-            cause=f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
+            title=f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
             advice=() if estimate.inertia == FREE else (freed,),
         )
 
@@ -144,7 +144,7 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
         yield Finding(
             code="merged_inertia",
             severity="info",
-            cause=f"no motion separates the rotor inertia of {shown} from the links' inertias; the base parameters "
+            title=f"no motion separates the rotor inertia of {shown} from the links' inertias; the base parameters "
             "contain it",
         )
     if columns.fixed:
@@ -152,7 +152,7 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
         yield Finding(
             code="merged_inertia",
             severity="info",
-            cause=f"no motion separates the scale of the link that {shown} moves from rotor inertias and other scales; "
+            title=f"no motion separates the scale of the link that {shown} moves from rotor inertias and other scales; "
             "it stays at 1",
             advice=(Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),),
         )
@@ -160,7 +160,7 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
         yield Finding(
             code="impossible_inertia",
             severity="warning",
-            cause="there are links that no body can be: friction and the torque of motion may be right, single "
+            title="there are links that no body can be: friction and the torque of motion may be right, single "
             "inertial parameters are not",
             advice=(Action("call", {"inertia": FREE}, function="identify_robot"),),
         )
@@ -172,7 +172,7 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
                 severity="info",
                 parameters=(f"{joint.name}.inertia_scale",),
                 evidence={"scale": Measured(scale.value), "stderr": Measured(scale.stderr)},
-                cause=f"the link that {joint.name} moves has {scale.value:.3g} ± {two_digits(scale.stderr)} times the "
+                title=f"the link that {joint.name} moves has {scale.value:.3g} ± {two_digits(scale.stderr)} times the "
                 "URDF's inertial parameters",
             )
 

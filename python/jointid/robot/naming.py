@@ -27,7 +27,7 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
         code="turned_zero",
         severity="warning",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
-        cause=f"the recording counts {' and '.join(turned)} from another zero than the URDF: with the URDF's inertias "
+        title=f"the recording counts {' and '.join(turned)} from another zero than the URDF: with the URDF's inertias "
         f"{percent(zeros.before)} of the torque stays unexplained without these offsets, and {percent(zeros.after)} "
         "with them; they are taken into account",
         advice=(
@@ -74,7 +74,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
         code=wrong.kind,
         severity="warning",
         evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
-        cause=f"{texts[wrong.kind]}: {percent(wrong.before)} of the torque of {shown} stays unexplained as it is, "
+        title=f"{texts[wrong.kind]}: {percent(wrong.before)} of the torque of {shown} stays unexplained as it is, "
         f"and {percent(wrong.after)} so",
         advice=advice,
     )
@@ -97,7 +97,7 @@ def named_error(error: SmallError, names: Sequence[str]) -> Finding:
         code=error.kind,
         severity="warning",
         evidence={**evidence, "share": Measured(error.share)},
-        cause=f"{text}{also}; that explains {percent(error.share)} of the squared residual in stretches of motion that "
+        title=f"{text}{also}; that explains {percent(error.share)} of the squared residual in stretches of motion that "
         "it was not taken from",
         advice=advice,
     )

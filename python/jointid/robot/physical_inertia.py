@@ -59,7 +59,7 @@ def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
         code="impossible_inertia",
         severity="info",
         evidence={"distance": Measured(estimate.impossible_by)},
-        cause="no bodies have these base parameters: the nearest that bodies can have are "
+        title="no bodies have these base parameters: the nearest that bodies can have are "
         f"{two_digits(estimate.impossible_by)} standard errors away, all of them together; friction and the torque of "
         "motion may be right, single inertial parameters are not",
     )

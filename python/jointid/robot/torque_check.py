@@ -223,7 +223,7 @@ def _unsigned(
         severity="blocking",
         parameters=() if len(folded) == robot.n else tuple(f"{name}.coulomb" for name in names),
         evidence={name: Measured(float(lowest[j])) for name, j in zip(names, folded, strict=True)},
-        cause=f"the torque of {', '.join(names)} is never negative, although the joints move both ways and the "
+        title=f"the torque of {', '.join(names)} is never negative, although the joints move both ways and the "
         "magnitude fits a torque that changes its sign: it is recorded without its sign",
         advice=(
             Action(
@@ -257,7 +257,7 @@ def _scaled(robot: Robot, given: Mapping[int, _Factor], common: float) -> Findin
             code="reversed_torques",
             severity="blocking",
             evidence={"factor": Measured(common)},
-            cause="all torques have the opposite sign of what the URDF's links weigh",
+            title="all torques have the opposite sign of what the URDF's links weigh",
             advice=(
                 Action(
                     "call",
@@ -282,7 +282,7 @@ def _scaled(robot: Robot, given: Mapping[int, _Factor], common: float) -> Findin
             "factor": Measured(common),
             **{robot.names[j]: Measured(each[j]) for j in given if given[j].sure},
         },
-        cause=f"the torques are about {times} than the links of the URDF weigh{sign}; with one factor a joint the URDF "
+        title=f"the torques are about {times} than the links of the URDF weigh{sign}; with one factor a joint the URDF "
         f"explains all but {percent(float(np.sqrt(np.median([e.left for e in given.values()]))))} of them: {what}",
         advice=(
             Action(
@@ -305,7 +305,7 @@ def _reversed(robot: Robot, torques_too: bool) -> Finding:
     return Finding(
         code="reversed_positions",
         severity="blocking",
-        cause=f"all positions{with_torques} have the opposite sign of the URDF's axes: only so the links weigh what "
+        title=f"all positions{with_torques} have the opposite sign of the URDF's axes: only so the links weigh what "
         "was measured",
         advice=(Action("call", found, function="Robot.from_urdf"),),
     )
@@ -318,7 +318,7 @@ def _in_degrees(signals: Sequence[PlainSignals], robot: Robot) -> Finding:
         code="implausible_unit",
         severity="blocking",
         evidence={"range": Measured(float(moved[joint]), "rad")},
-        cause=f"the positions are probably in degrees and were taken for radians: {robot.names[joint]} moves by "
+        title=f"the positions are probably in degrees and were taken for radians: {robot.names[joint]} moves by "
         f"{number(float(moved[joint]))}",
         advice=(Action("call", {"units": {"position": "deg"}}, function="load_robot"),),
     )

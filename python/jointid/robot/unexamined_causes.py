@@ -47,7 +47,7 @@ def unexamined(estimate: RobotEstimate, corrected: RobotEstimate) -> Iterator[Fi
             f"{name}.{key}" for name in told for key in estimate.joints[name].parameters
         ),
         evidence={name: Measured(share) for name, share in told.items()},
-        cause=f"what is left of the torque is no noise ({shown} of it){also}; not examined for a robot: "
+        title=f"what is left of the torque is no noise ({shown} of it){also}; not examined for a robot: "
         f"{', '.join(CAUSES)}",
         advice=(
             Action(

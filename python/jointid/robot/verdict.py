@@ -52,7 +52,7 @@ def _objections(estimate: RobotEstimate) -> Iterable[Objection]:
     for found in estimate.warnings:
         yield Objection(
             code=found.code,
-            reason=found.cause,
+            reason=found.title,
             blocking=found.severity == "blocking" or found.code == _IMPOSSIBLE,
             parameters=tuple(name for name in found.parameters if name in estimate.parameters),
         )

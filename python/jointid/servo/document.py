@@ -9,7 +9,7 @@ from typing import Any
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
-from jointid.estimate.json import plain
+from jointid.estimate.json import documents_of, plain
 from jointid.joint.joint_file import joint_document
 from jointid.servo.estimate import ServoEstimate
 
@@ -24,7 +24,7 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
         "kind": KIND,
         "joint": joint_document(estimate.joint),
         "parameters": {name: plain(p) for name, p in estimate.parameters.items()},
-        "findings": plain(estimate.findings),
+        "findings": documents_of(estimate.findings),
         "verdict": estimate.verdict.document(),
         "rms": estimate.rms,
         "relative_residual": estimate.relative_residual,
@@ -42,8 +42,6 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
         },
         "seconds": estimate.seconds,
     }
-    for entry, found in zip(document["findings"], estimate.findings, strict=True):
-        entry["message"] = found.message  # for readers that are not ours
     return document
 
 

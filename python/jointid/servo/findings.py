@@ -44,7 +44,7 @@ def _inseparable(estimate: ServoEstimate, sought: Sought) -> Iterator[Finding]:
         code="inseparable_back_emf",
         parameters=_MOTOR,
         evidence={"sum": Measured(total, "N·m·s/rad")},
-        cause="the motor is driven throughout, so back-EMF and viscous friction brake alike and only their sum, "
+        title="the motor is driven throughout, so back-EMF and viscous friction brake alike and only their sum, "
         f"{total:.3g} N·m·s/rad, is known: k_t and R are not identifiable, only k_t / R; {percent(sought.share)} of "
         f"the sum is taken as back-EMF, {_chosen(estimate)}",
         advice=(
@@ -66,7 +66,7 @@ def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
             code="no_known_load",
             severity="blocking",
             parameters=tuple(estimate.parameters),
-            cause="no load is known, so nothing says how large the motor's torque is: all values have an unknown "
+            title="no load is known, so nothing says how large the motor's torque is: all values have an unknown "
             "factor",
             advice=(
                 Action("inspect", text="mass and length of the load, and state the joint's link"),
@@ -88,7 +88,7 @@ def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
             severity="warning" if blocking else "info",
             parameters=(name,),
             evidence={"upper": Measured(float(top), p.unit)} if np.isfinite(top) else {},
-            cause=f"{name.replace('_', ' ')} ended on its bound 0: the runs show none{upto}",
+            title=f"{name.replace('_', ' ')} ended on its bound 0: the runs show none{upto}",
         )
 
 
@@ -105,7 +105,7 @@ def _vague(estimate: ServoEstimate) -> Iterator[Finding]:
             severity="info" if name == "viscous" else "warning",
             parameters=(name,),
             evidence={"stderr": Measured(p.stderr, p.unit), "size": Measured(size, p.unit)},
-            cause=f"{name.replace('_', ' ')} may be off by {two_digits(size)} {p.unit}".rstrip()
+            title=f"{name.replace('_', ' ')} may be off by {two_digits(size)} {p.unit}".rstrip()
             + f" (half of its 95 % interval); its value is {two_digits(p.value)}",
             advice=(Action("record", text="more runs, with other gains and motions"),),
         )
@@ -116,7 +116,7 @@ def _poor_fit(estimate: ServoEstimate) -> Iterator[Finding]:
         yield Finding(
             code="poor_fit",
             evidence={"relative_residual": Measured(estimate.relative_residual)},
-            cause=f"the model leaves {percent(estimate.relative_residual)} of the load's torque",
+            title=f"the model leaves {percent(estimate.relative_residual)} of the load's torque",
             advice=(
                 Action(
                     "inspect", text="scale and sign of the duty, the load, and the link's angle"

@@ -50,7 +50,7 @@ def _objections(estimate: ServoEstimate) -> Iterable[Objection]:
     for found in estimate.warnings:
         yield Objection(
             code=found.code,
-            reason=found.cause,
+            reason=found.title,
             blocking=found.severity == "blocking",
             parameters=tuple(name for name in found.parameters if name in estimate.parameters),
         )

@@ -38,8 +38,9 @@ class FindingType:
 
     def finding(
         self,
-        cause: str,
+        title: str,
         *advice: Action,
+        details: str = "",
         evidence: Mapping[str, Measured] | None = None,
         parameters: tuple[str, ...] = (),
         severity: Severity | None = None,
@@ -50,7 +51,8 @@ class FindingType:
             severity=severity or self.severity,
             parameters=parameters,
             evidence=evidence or {},
-            cause=cause,
+            title=title,
+            details=details,
             advice=advice,
         )
 

@@ -25,7 +25,7 @@ def merged(found: Iterable[tuple[int, Finding]], names: Sequence[str]) -> list[F
     groups: dict[object, list[tuple[int, Finding]]] = {}
     for number, each in found:
         advice = tuple((action.kind, action.function, action.text) for action in each.advice)
-        said = _NUMBER.sub("#", each.cause)
+        said = _NUMBER.sub("#", f"{each.title}\n{each.details}")
         key = (each.code, each.severity, each.parameters, said, advice)
         groups.setdefault(key, []).append((number, each))
     if len(names) == 1:
@@ -38,7 +38,8 @@ def _as_one(group: Sequence[tuple[int, Finding]], names: Sequence[str]) -> Findi
     findings = [each for _, each in group]
     return replace(
         findings[0],
-        cause=f"{_where(concerned, len(names))}: {_with_ranges([each.cause for each in findings])}",
+        title=f"{_where(concerned, len(names))}: {_with_ranges([each.title for each in findings])}",
+        details=_with_ranges([each.details for each in findings]),
         evidence=_largest(findings),
         recordings=concerned,
     )

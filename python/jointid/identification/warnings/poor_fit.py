@@ -30,9 +30,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     measured = {"r_squared": Measured(explained)}
     if explained < 0.0 and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains less of what was measured than its mean does (R² = {explained:.2f}): the values "
-            "cannot be used",
+            f"the model explains less than the mean of the signal does (R² = {explained:.2f})",
             *actions,
+            details="the values cannot be used",
             evidence=measured,
             severity="blocking",
         )
@@ -41,9 +41,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     limit = _NOTHING if evidence.white else POORLY_EXPLAINED
     if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains only {100.0 * explained:.1f} % of the variance of what was measured (R²)"
-            f"{excluded(evidence, 'the rest')}",
+            f"the model explains only {100.0 * explained:.1f} % of the variance of the signal (R²)",
             *actions,
+            details=excluded(evidence, "the rest"),
             evidence=measured | excluded_number(evidence),
         )
 

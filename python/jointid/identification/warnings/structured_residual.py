@@ -30,17 +30,18 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     uncertain = _unexplained(evidence) if evidence.causes is not None else ()
     if not uncertain and (correlation <= _CORRELATED or harmless(evidence)):
         return
-    makes = f"; uncertain: {listed(uncertain)}" if uncertain else ""
-    sign = f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
+    makes = f"uncertain: {listed(uncertain)}" if uncertain else ""
+    title = (
+        f"residuals of neighbouring windows correlate (r = {correlation:.2f}): an effect is missing"
+    )
     if not correlation > _CORRELATED:  # what is uncertain is all that shows it
-        sign = (
-            f"values are uncertain without a lack of motion, and the residuals are hardly autocorrelated (r = "
-            f"{correlation:.2f}): the model misses something, or the windows are too long to show it"
-        )
+        title = f"{listed(uncertain)} uncertain, without a lack of motion (r = {correlation:.2f})"
+        makes = "the model misses an effect, or the windows are too long to show it"
     # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
     yield STRUCTURED_RESIDUAL.finding(
-        f"{sign}{excluded(evidence)}{makes}",
+        title,
         Action("inspect", text="the residuals over time and over velocity"),
+        details="; ".join(filter(None, (excluded(evidence), makes))),
         evidence={"autocorrelation": Measured(correlation)} | excluded_number(evidence),
         parameters=uncertain,
         severity=None if uncertain else "info",
@@ -65,17 +66,15 @@ def harmless(evidence: Evidence) -> bool:
 
 
 def excluded(evidence: Evidence, what: str = "it") -> str:
-    """A harmless cause, or how much was looked for and not found, as a part of a sentence.
+    """A harmless cause, or how many causes were excluded, as a clause.
 
     `Causes.excluded` has the names.
     """
     if evidence.causes is not None and evidence.causes.harmless:
         cause = evidence.causes.harmless[0]
-        return (
-            f"; {MEANINGS[cause.name]} explains {percent(cause.share)} of {what}, and is harmless"
-        )
+        return f"{MEANINGS[cause.name]} explains {percent(cause.share)} of {what}, and is harmless"
     count = len(evidence.causes.excluded) if evidence.causes is not None else 0
-    return f"; none of {count} known causes explains {what}" if count else ""
+    return f"none of {count} known causes explains {what}" if count else ""
 
 
 def excluded_number(evidence: Evidence) -> dict[str, Measured]:
