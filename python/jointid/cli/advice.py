@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -31,6 +32,8 @@ _VERBS = {
     "sweep": "sweep",
 }
 _VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
+_UNKNOWN = {*PLACEHOLDERS.values(), *FILES.values(), *NUMBERS.values(), "VALUE", "NAME"}
+"""Words that stand for what only the user knows."""
 
 
 def words_of_action(action: Action, command: str, model: str = "", *, file: bool = False) -> str:
@@ -55,27 +58,88 @@ def words_of_action(action: Action, command: str, model: str = "", *, file: bool
         facts = ", ".join(f"{name} = {_fact(value)}" for name, value in action.arguments.items())
         purpose = f" ({action.text})" if action.text else ""
         return f"write {facts} in the file of --facts{purpose}"
-    by_option = not file and all(option_of(command, name)[0] for name in action.arguments)
-    if action.function == "Joint" and not (by_option and action.arguments.keys() <= _FACTS):
-        options: list[str] = []
-        joint_file = list(_joint_fields(action.arguments))
-    elif action.function == "Joint":
-        options, joint_file = _arguments(action.arguments, command, model)
-    elif action.function in _VERBS:
-        other = {"compare_models": "compare", "load": "identify"}
-        speaker = command
-        if not _has_options(command, action.arguments):
-            if command in ("simulate", "emulate", "report"):
-                speaker = ""
-            elif not all(name in (*_TABLES, "model", "parameters") for name in action.arguments):
-                speaker = other.get(action.function, action.function)
-        options, joint_file = _arguments(action.arguments, speaker, model)
-    else:
-        return ""
-    parts = [f"{_VERBS.get(action.function, 'identify')} with {' '.join(options)}"] * bool(options)
+    verb, options, joint_file = _parts(action, command, model, file=file)
+    parts = [f"{verb} with {' '.join(options)}"] * bool(options)
     parts += [_in_joint_file(joint_file)] * bool(joint_file)
     purpose = f" ({action.text})" if action.text and parts else ""
     return " and ".join(parts) + purpose
+
+
+def command_of_action(
+    action: Action, command: str, typed: Sequence[str], model: str = "", *, file: bool = False
+) -> str:
+    """The command that was typed, with what the action changes; empty where no command does it.
+
+    Parameters
+    ----------
+    action : Action
+    command : str
+        The command that gives the advice.
+    typed : sequence of str
+        Its words as they were typed, the command first.
+    model, file
+        As those of `words_of_action`.
+    """
+    if action.kind != "call" or action.function == "Robot.from_urdf":
+        return ""
+    if action.function in ("load", "load_robot", "identify_joints"):
+        action = _of_reading(action, "load")
+    verb, options, joint_file = _parts(action, command, model, file=file)
+    words = [word for option in options for word in shlex.split(option)]
+    unknown = any(word in _UNKNOWN or word.partition("=")[2] in _UNKNOWN for word in words)
+    if not words or joint_file or unknown or verb not in ("load", command):
+        return ""
+    return f"jointid {shlex.join(with_options(typed, words))}"
+
+
+def with_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:
+    """Words of a command with options added, or put in the place of those with the same name and key."""
+    kept = _pairs(typed)
+    for option, value in _pairs(options):
+        kept = [words for words in kept if not _same(words, option, value)]
+        kept.append((option, value))
+    return [word for pair in kept for word in pair if word is not None]
+
+
+def _pairs(words: Sequence[str]) -> list[tuple[str, str | None]]:
+    """Each option with its value, if it has one; any other word alone."""
+    found: list[tuple[str, str | None]] = []
+    rest = list(words)
+    while rest:
+        word = rest.pop(0)
+        takes = word.startswith("--") and "=" not in word and word not in FLAGS
+        found.append((word, rest.pop(0) if takes and rest else None))
+    return found
+
+
+def _same(words: tuple[str, str | None], option: str, value: str | None) -> bool:
+    """Whether these words are the same option, of the same key where it has keys."""
+    name, _, behind = words[0].partition("=")
+    stated = behind or words[1] or ""
+    if name != option:
+        return False
+    return option not in PLACEHOLDERS or stated.partition("=")[0] == (value or "").partition("=")[0]
+
+
+def _parts(
+    action: Action, command: str, model: str, *, file: bool
+) -> tuple[str, list[str], list[tuple[str, str, Any]]]:
+    """The verb, the options, and for what has none entries of the joint file."""
+    by_option = not file and all(option_of(command, name)[0] for name in action.arguments)
+    if action.function == "Joint" and not (by_option and action.arguments.keys() <= _FACTS):
+        return "", [], list(_joint_fields(action.arguments))
+    if action.function == "Joint":
+        return "identify", *_arguments(action.arguments, command, model)
+    if action.function not in _VERBS:
+        return "", [], []
+    other = {"compare_models": "compare", "load": "identify"}
+    speaker = command
+    if not _has_options(command, action.arguments):
+        if command in ("simulate", "emulate", "report"):
+            speaker = ""
+        elif not all(name in (*_TABLES, "model", "parameters") for name in action.arguments):
+            speaker = other.get(action.function, action.function)
+    return _VERBS[action.function], *_arguments(action.arguments, speaker, model)
 
 
 def _fact(value: Any) -> str:

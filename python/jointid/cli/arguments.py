@@ -284,3 +284,10 @@ def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str
             raise InputError("a number is expected", argument=f"{argument}.{name}", value=value)
         numbers[name] = float(number)
     return numbers
+
+
+def verbose_argument(command: CommandParser) -> None:
+    """Add `-v`, which prints all that an answer leaves out."""
+    command.add_argument(
+        "-v", "--verbose", action="store_true", help="print everything, not the answer alone"
+    )

@@ -52,6 +52,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return DONE
     from jointid.cli.running import run_command
 
+    arguments.typed = tuple(words)
     return run_command(arguments)
 
 

@@ -75,6 +75,11 @@ _TABLE = {
         "jointid.cli.app:add_app",
         "jointid.cli.app:serve_page",
     ),
+    "explain": (
+        "say what a finding means, and what to do about it",
+        "jointid.cli.explain:add_explain",
+        "jointid.cli.explain:explain",
+    ),
     "info": (
         "show what a recording holds",
         "jointid.cli.grammar:add_info",

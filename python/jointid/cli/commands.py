@@ -12,7 +12,7 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.joint_options import joint_file, joint_of, torque_needed
-from jointid.cli.outputs import check_output_folder, check_outputs, check_page
+from jointid.cli.outputs import check_output_folder, check_outputs, check_page, estimate_file
 from jointid.cli.reading import joints_wanted, load_all
 from jointid.cli.requirement import required
 from jointid.cli.wording import ADVICE, Wording
@@ -37,25 +37,25 @@ def demo(arguments: argparse.Namespace) -> None:
     demonstration = demonstrate()
     estimate = demonstration.estimate
     make_folder(arguments.output)
+    saved = arguments.output / "estimate.json"
+    estimate.save(saved)
+    wording = replace(Wording.of(arguments), saved=str(saved))
     page = save_report(
         estimate,
         arguments.output / "report.html",
-        action=ADVICE.of_action,
+        action=wording.of_command,
         recordings=demonstration.recording,
     )
-    estimate.save(arguments.output / "estimate.json")
     if arguments.json:
         print(estimate.to_json())
         return
-    print(Wording.of(arguments).of_report(estimate))
-    print()
-    for name, nominal in demonstration.nominal.items():
-        found = estimate.parameters[name]
-        difference = 100.0 * (found.value / nominal - 1.0)
-        print(
-            f"{name}: {found.value:.4g} {found.unit}, published value {nominal:g} ({difference:+.1f} %)"
-        )
-    print(f"\nreport: {page}")
+    print(wording.of_answer(estimate, verbose=arguments.verbose))
+    published = ", ".join(
+        f"{name} {nominal:g} {estimate.parameters[name].unit}"
+        for name, nominal in demonstration.nominal.items()
+    )
+    print(f"published: {published}")
+    print(f"report: {page}   estimate: {saved}")
 
 
 def identify(arguments: argparse.Namespace) -> int:
@@ -129,7 +129,7 @@ def identify(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(_with_checks(estimate, {"selftest": tested, "bootstrap": drawn, "causes": causes}))
     else:
-        print(Wording.of(arguments).of_report(estimate))
+        print(Wording.of(arguments).of_answer(estimate, verbose=arguments.verbose))
         for check in (tested, drawn):
             if check is not None:
                 print(f"\n{check.report()}")
@@ -253,13 +253,16 @@ def _write(
         save_report(
             comparison or estimate,
             arguments.report,
-            action=ADVICE.of_action,
+            action=Wording.of(arguments).of_command,
             recordings=recordings,
         )
+    saved = estimate_file(arguments)
+    if saved is not None:
+        estimate.save(saved)
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
-    if arguments.save is None:
+    if arguments.save is None or arguments.save == saved:
         return ""
-    if arguments.save.suffix == ".toml" and blocking:
+    if blocking:
         return blocking[0]
     estimate.save(arguments.save)
     return ""
@@ -267,12 +270,13 @@ def _write(
 
 def _say_written(refused: str, arguments: argparse.Namespace) -> None:
     """Say after the report which files were written; JSON stands alone."""
-    lines = [f"report: {arguments.report}"] if arguments.report is not None else []
-    if arguments.save is not None and not refused:
-        kind = "joint file" if arguments.save.suffix == ".toml" else "estimate"
-        lines.append(f"{kind}: {arguments.save}")
+    saved = estimate_file(arguments)
+    files = {"report": arguments.report, "estimate": saved}
+    if not refused and arguments.save != saved:
+        files["joint file"] = arguments.save
+    lines = [f"{kind}: {path}" for kind, path in files.items() if path is not None]
     if lines and not arguments.json:
-        print("", *lines, sep="\n")
+        print("   ".join(lines))
 
 
 def _exit_code(refused: str, arguments: argparse.Namespace) -> int:

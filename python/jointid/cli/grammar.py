@@ -14,6 +14,7 @@ from jointid.cli.arguments import (
     refinement_arguments,
     several_recordings,
     term_argument,
+    verbose_argument,
     whole,
     whole_seed,
     windows,
@@ -30,6 +31,7 @@ def add_demo(demo: CommandParser) -> None:
         "--output", default="demo", type=Path, help="folder for report.html and estimate.json"
     )
     demo.add_argument("--json", action="store_true", help="print the estimate as JSON")
+    verbose_argument(demo)
 
 
 def add_identify(identify: CommandParser) -> None:
@@ -215,9 +217,12 @@ def _identification_arguments(command: CommandParser) -> None:
 
 
 def _output_arguments(command: CommandParser) -> None:
-    command.add_argument("--report", type=Path, help="write the HTML report to this file")
+    command.add_argument(
+        "--report", type=Path, help="write the HTML report to this file, and the estimate beside it"
+    )
     command.add_argument(
         "--save", type=Path, action=Once, help="write the estimate to a joint file (.toml) or .json"
     )
     command.add_argument("--json", action="store_true", help="print the result as JSON")
+    verbose_argument(command)
     command.add_argument("--quiet", action="store_true", help="no progress bar")

@@ -44,3 +44,9 @@ def words_of_next_motion(action: Action, joint: str, estimate: str, of_joint: st
 
 def _unknown(value: object) -> bool:
     return value is ... or value == "..."
+
+
+def runs_as_printed(action: Action) -> bool:
+    """Whether the design needs nothing that only the user knows."""
+    limits: Mapping[str, Any] = action.arguments.get("limits", {})
+    return not any(_unknown(value) for value in (*limits.values(), *action.arguments.values()))

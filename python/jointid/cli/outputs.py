@@ -12,6 +12,17 @@ from jointid.base.errors import InputError
 from jointid.base.files import new_beside
 
 
+def estimate_file(arguments: argparse.Namespace) -> Path | None:
+    """Return the .json file that a command writes its estimate to: the one of `--save`, or one with the report."""
+    save, page = (getattr(arguments, name, None) for name in ("save", "report"))
+    if isinstance(save, Path) and save.suffix == ".json":
+        return save
+    if not isinstance(page, Path):
+        return None
+    name = "estimate" if page.stem == "report" else f"{page.stem}_estimate"
+    return page.with_name(f"{name}.json")
+
+
 def check_outputs(arguments: argparse.Namespace) -> None:
     """Refuse before the work, not after it, what cannot be written.
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import re
+import shlex
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.error_text import on_one_line
 from jointid.base.errors import NOT_GIVEN, InputError
 from jointid.base.values import dataclass
-from jointid.cli.advice import option_with_value, words_of_action
+from jointid.cli.advice import command_of_action, option_with_value, words_of_action
 from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
 from jointid.cli.values import as_typed, behind_option, in_sentence
 
@@ -36,6 +37,8 @@ class Wording:
         The joint file that the command reads. Default: it reads none.
     saved : str
         The .json file that the command saves its estimate to. Default: it saves none.
+    typed : tuple of str
+        The words of the command line, the command first. Default: not known.
     joint : str
         The joint that is spoken of, of several in one file. Default: there is one.
     """
@@ -46,18 +49,22 @@ class Wording:
     joint_file: str = "the joint file"
     saved: str = "ESTIMATE"
     joint: str = ""
+    typed: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, arguments: argparse.Namespace) -> Wording:
         """The wording for a command line that was read."""
-        saved = str(getattr(arguments, "save", None))
+        from jointid.cli.outputs import estimate_file
+
         models = getattr(arguments, "models", None) or [getattr(arguments, "model", None)]
+        saved = estimate_file(arguments)
         return cls(
             arguments.command,
             models[0] if len(models) == 1 and models[0] else "",
             frozenset(name for name, _ in getattr(arguments, "grid", ())),
             str(getattr(arguments, "joint", None) or "the joint file"),
-            saved if saved.endswith(".json") else "ESTIMATE",
+            "ESTIMATE" if saved is None else str(saved),
+            typed=getattr(arguments, "typed", ()),
         )
 
     def of_error(self, error: InputError) -> str:
@@ -83,11 +90,36 @@ class Wording:
         words = words_of_action(action, self.command, self.model, file=named)
         return words.replace("the joint file", self.joint_file)
 
-    def of_report(self, estimate: Estimate) -> str:
-        """An estimate's report as text, the advice of its findings in the words of the command."""
+    def of_command(self, action: Action) -> str:
+        """One command that runs as it stands, or one plain act."""
+        if action.designs:
+            return self._recording(action)
+        named = self.joint_file != "the joint file"
+        command = command_of_action(action, self.command, self.typed, self.model, file=named)
+        if action.kind == "call":
+            return command or self.of_action(action)
+        return f"{action.kind} {action.text}"
+
+    def _recording(self, action: Action) -> str:
+        """How to get another motion: designed after the saved estimate, where that needs no more of the user."""
+        from jointid.cli.next_motion import runs_as_printed
+
+        if not runs_as_printed(action):
+            return f"record {action.text}"
+        if self.saved == "ESTIMATE":
+            return f"record {action.text} (--save estimate.json: jointid design can plan it)"
+        of_joint = ["--after-joint", self.joint] if self.joint else []
+        words = ["design", "--after", self.saved, *of_joint, "--output", "motion.toml"]
+        return f"jointid {shlex.join(words)}"
+
+    def of_answer(self, estimate: Estimate, *, verbose: bool) -> str:
+        """An estimate in a few lines, or all of its report, with commands as advice."""
+        from jointid.estimate.answer import answer
         from jointid.estimate.tables import text_report
 
-        return text_report(estimate, action=self.of_action)
+        if verbose:
+            return text_report(estimate, self.of_command)
+        return answer(estimate, self.of_command, self.saved if self.saved != "ESTIMATE" else "")
 
     def _alternatives(self, remedies: tuple[str | Action, ...]) -> str:
         texts = [each if isinstance(each, str) else self.of_action(each) for each in remedies]
