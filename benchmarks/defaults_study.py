@@ -11,7 +11,7 @@ from recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid import _core
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Engine
 from jointid.problem.problem import Problem

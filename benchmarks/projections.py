@@ -19,7 +19,7 @@ from store import Record
 import jointid as jid
 from jointid import _core
 from jointid.base.files import write_whole
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Engine
 from jointid.joint.model import Model

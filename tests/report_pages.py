@@ -17,7 +17,7 @@ from example_recordings import WELL_EXCITED
 from simulated_servo import Truth, bench_runs, servo_joint
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.commissioning import Commissioning, commission
 from jointid.hardware.bench.bench import Bench
 from jointid.report.saving import report_page

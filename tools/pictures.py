@@ -8,7 +8,6 @@ matplotlib.use("Agg")
 from matplotlib import pyplot
 
 import jointid as jid
-from jointid.cli.demo import demonstrate
 from jointid.plot import style
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -18,7 +17,8 @@ SIMULATED = ROOT / "examples" / "data" / "well_excited.csv.gz"
 
 def main() -> None:
     """Draw and save them."""
-    robot = demonstrate().estimate
+    kuka = jid.demo()
+    robot = jid.identify(kuka.recording, kuka.joint)
     simulated = jid.identify(jid.load(SIMULATED), jid.thesis_joint())
     with style():
         figure, (left, right) = pyplot.subplots(1, 2, figsize=(9.0, 3.6))

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     )
     from jointid.base.advice import Action
     from jointid.base.errors import InputError
+    from jointid.cli.demonstration import Demonstration, demo
     from jointid.commissioning import ring as commissioning
     from jointid.comparison.comparison import compare_models
     from jointid.comparison.result import Comparison
@@ -97,6 +98,7 @@ __all__ = [
     "Bristle",
     "Comparison",
     "CompensatedPid",
+    "Demonstration",
     "Design",
     "DesignProgress",
     "DesignSearch",
@@ -148,6 +150,7 @@ __all__ = [
     "compare_robot_models",
     "compare_servo_models",
     "control_estimates",
+    "demo",
     "design_excitation",
     "export",
     "hardware",
@@ -184,6 +187,7 @@ _HOMES = {
     ),
     "jointid.base.advice": ("Action",),
     "jointid.base.errors": ("InputError",),
+    "jointid.cli.demonstration": ("Demonstration", "demo"),
     "jointid.comparison.comparison": ("compare_models",),
     "jointid.comparison.result": ("Comparison",),
     "jointid.design.design": ("Design",),

@@ -184,7 +184,18 @@ IDENTIFYING = READING | {
 # What a command needs of the standard library beside what NumPy, argparse, pathlib and dataclasses have loaded before:
 # the last of them brings inspect, which later NumPys load themselves, and 2.0 does not.
 LIBRARY = {
-    *("__future__", "atexit", "csv", "gc", "hashlib", "importlib", "locale", "select", "signal"),
+    *(
+        "__future__",
+        "atexit",
+        "csv",
+        "gc",
+        "hashlib",
+        "importlib",
+        "locale",
+        "select",
+        "shlex",
+        "signal",
+    ),
     "zlib",
 }
 COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
@@ -192,7 +203,7 @@ COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
     "identify --report": (
         ["identify", "RUN", "--quiet", "--report", "PAGE"],
         IDENTIFYING | {"report", "report.drawing"},
-        265,
+        270,
     ),
     "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 255),
     "info": (["info", "RUN"], IDENTIFYING, 220),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.identification.search.run import _read_state
 
 _VALUES = (

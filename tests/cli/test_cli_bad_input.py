@@ -8,7 +8,7 @@ from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_line import main
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 
 KR300 = str(data_folder() / "kr300_joint1.csv.gz")
 KR300_JOINT = str(data_folder() / "kr300_joint1.toml")

@@ -32,7 +32,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 def test_a_terminal_without_a_root_sign_gets_the_report(encoding: str) -> None:
     result = subprocess.run(
-        [sys.executable, "-m", "jointid", "identify", WELL, "--model", "stribeck", "--quiet"],
+        [sys.executable, "-m", "jointid", "identify", WELL, "--model", "stribeck", "--quiet", "-v"],
         capture_output=True,
         timeout=120,
         env=os.environ | {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"},
@@ -44,9 +44,13 @@ def test_a_terminal_without_a_root_sign_gets_the_report(encoding: str) -> None:
 
 def test_identify_says_what_it_wrote(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     line = ["identify", WELL, "--model", "stribeck", "--quiet", "--report", "page.html", "--save"]
-    for name, kind in (("new.toml", "joint file"), ("new.json", "estimate")):
+    for name, said in (
+        ("new.toml", "estimate: page_estimate.json   joint file: new.toml"),
+        ("new.json", "estimate: new.json"),
+    ):
         assert main([*line, name]) == 0
-        assert capsys.readouterr().out.endswith(f"\n\nreport: page.html\n{kind}: {name}\n")
+        assert capsys.readouterr().out.endswith(f"\nreport: page.html   {said}\n")
+    assert jid.Estimate.load("page_estimate.json").parameters
     assert main([*line, "new.json", "--json"]) == 0
     assert capsys.readouterr().out.endswith("}\n")
 

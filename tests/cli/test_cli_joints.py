@@ -60,7 +60,7 @@ def test_the_same_as_from_python(arm: Path, capsys: pytest.CaptureFixture[str]) 
 def test_one_joint_has_the_usual_report(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = ran(capsys, "identify", arm, "--joints", "2")
     assert code == 0
-    assert out.startswith("jointid estimate — ")
+    assert out.startswith("joint 2: ")
     code, out, _ = ran(capsys, "info", arm, "--joints", "2")
     assert code == 0
     assert "position" in out

@@ -128,5 +128,5 @@ def test_a_joint_is_identified_from_a_log(
     (finding,) = [each for each in found.findings if each.code == "message_log"]
     assert "1 messages repeat another one" in str(finding)
     assert finding.evidence["repeated_messages"].value == 1
-    assert main(["identify", str(path), "--topic", "/joint_states", "--model", model]) == 0
+    assert main(["identify", str(path), "--topic", "/joint_states", "--model", model, "-v"]) == 0
     assert "repeat another one and are left out" in " ".join(capsys.readouterr().out.split())

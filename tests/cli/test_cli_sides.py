@@ -28,7 +28,9 @@ def advised(path: str, options: list[str], capsys: pytest.CaptureFixture[str]) -
     """The options of the first advice that names a side."""
     line = ["identify", path, "--model", "coulomb_viscous", *options]
     assert main(line) == 0
-    found = re.search(r"load with (--side \S+ --gear-ratio \S+)", capsys.readouterr().out)
+    found = re.search(
+        r"do: jointid identify .* (--side \S+ --gear-ratio \S+)", capsys.readouterr().out
+    )
     assert found is not None
     return shlex.split(found[1])
 

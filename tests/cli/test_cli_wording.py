@@ -332,5 +332,6 @@ def test_a_page_from_the_command_line_advises_options(tmp_path: Path) -> None:
     target = tmp_path / "report.html"
     assert main(["identify", WELL, "--report", str(target), "--quiet"]) == 0
     page = target.read_text(encoding="utf-8")
-    assert "identify with --torque-hold zoh" in page
+    command = f"jointid identify {WELL} --report {target} --quiet --torque-hold zoh"
+    assert command in page
     assert "torque_hold=" not in page

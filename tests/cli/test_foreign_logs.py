@@ -109,9 +109,7 @@ def test_a_motor_side_without_a_gear_ratio_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = ["identify", str(SHORTENED / "tx40_200_hz.csv.gz"), "--joints", "1", "--quiet"]
-    said = (
-        "no gear ratio is known: the values are on the motor's side; load with --gear-ratio RATIO"
-    )
+    said = "add --gear-ratio RATIO"
     page = tmp_path / "page.html"
     assert main([*line, "--report", str(page)]) == 0
     assert said in capsys.readouterr().out

@@ -16,7 +16,7 @@ from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.cli.command_table import HELP
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.cli.terminal import broken
 
 WELL = str(WELL_EXCITED)

@@ -10,7 +10,7 @@ from example_recordings import WELL_EXCITED
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.estimate.derived import DerivedValue
 from jointid.estimate.wording import number, rounded
 from jointid.report.html import html_report

@@ -10,7 +10,7 @@ import pytest
 from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 
 matplotlib.use("Agg")
 

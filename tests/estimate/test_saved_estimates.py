@@ -15,7 +15,7 @@ from dealt_places import dealt
 import jointid as jid
 from jointid.base import html
 from jointid.base.advice import Action
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.estimate.findings import Finding
 from jointid.report import html as report
 

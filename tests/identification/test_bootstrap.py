@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.identification.inference.resampling import bounded_minima
 
 

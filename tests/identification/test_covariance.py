@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.estimate.student import quantile
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.segments import Segments, even_segments

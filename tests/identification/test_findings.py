@@ -15,7 +15,7 @@ from simulated_joint import TRUTH
 
 import jointid as jid
 from jointid.base.advice import Action
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.estimate.findings import Finding
 from jointid.identification import warnings
 from jointid.identification.warnings import registry

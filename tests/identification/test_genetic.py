@@ -32,7 +32,7 @@ SHORT = jid.GaOptions(population=12, generations=40, tolerance=0.0)
 PENALTY = """
 import numpy as np
 from jointid import _core
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 
 def penalty_of(frequency):
     time = np.arange(2001) * 1e-3

@@ -7,7 +7,7 @@ import pytest
 from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 
 
 @pytest.fixture(scope="module")

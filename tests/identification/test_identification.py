@@ -11,7 +11,7 @@ from reference import window_least_squares
 
 import jointid as jid
 from jointid import _core
-from jointid.cli.demo import NOMINAL, data_folder, demonstrate
+from jointid.cli.demonstration import data_folder
 
 TRUTH = {
     "coulomb": 25.0,
@@ -129,8 +129,9 @@ def test_another_seed_searches_elsewhere(well_excited: jid.Recording) -> None:
 
 
 def test_demo_reproduces_the_authors_values_and_an_independent_fit() -> None:
-    estimate = demonstrate().estimate
-    for name, nominal in NOMINAL.items():
+    kuka = jid.demo()
+    estimate = jid.identify(kuka.recording, kuka.joint)
+    for name, nominal in kuka.published.items():
         assert estimate.parameters[name].value == pytest.approx(nominal, rel=0.08), name
 
     recording = jid.load(data_folder() / "kr300_joint1.csv.gz")

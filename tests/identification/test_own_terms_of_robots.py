@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import jointid as jid
-from jointid.cli.demo import NOMINAL, data_folder, demonstrate
+from jointid.cli.demonstration import PUBLISHED, data_folder
 
 
 def kr300(path: Path, number: int) -> jid.Recording:
@@ -34,7 +34,7 @@ def test_kr300_joint_1_with_its_model_as_known_signals(shared_data: Path) -> Non
     recording = kr300(shared_data / "kr300/kr300_A.csv.gz", 1)
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
     found = jid.identify(recording, joint, terms=KNOWN)
-    for name, nominal in NOMINAL.items():
+    for name, nominal in PUBLISHED.items():
         parameter = found.parameters[name]
         assert parameter.interval is not None
         assert parameter.stderr is not None
@@ -83,10 +83,10 @@ def test_tx40_joint_5_with_the_motor_of_joint_6(shared_data: Path) -> None:
 
 
 def test_the_demonstration_warns_of_what_its_log_lacks_and_of_nothing_else() -> None:
-    found = demonstrate().estimate
+    found = jid.identify(jid.demo().recording, jid.demo().joint)
     warnings = [each.code for each in found.findings if each.severity != "info"]
     assert warnings == ["undetermined"]
-    for name, nominal in NOMINAL.items():
+    for name, nominal in PUBLISHED.items():
         parameter = found.parameters[name]
         assert parameter.interval is not None
         assert parameter.stderr is not None

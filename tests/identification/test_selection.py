@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.estimate.selection import Selection
 from jointid.identification.selection.selecting import excess
 

@@ -13,7 +13,7 @@ from example_recordings import WELL_EXCITED
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.estimate.findings import Finding
 from jointid.identification.warnings.inspection import inspect
 

@@ -13,7 +13,7 @@ import numpy as np
 from designs import designed
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.hardware import Bench, EmulatedBus, Session, emulated_devices
 from jointid.hardware.elmo import ElmoDrive
 from jointid.hardware.proof.certificate import Certificate

@@ -7,7 +7,7 @@ import pytest
 from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.identification.warnings.registry import finding_types
 from jointid.report.html import html_report
 from jointid.report.saving import save_report

@@ -18,7 +18,7 @@ from moving_joints import recorded, sines, torques
 
 import jointid as jid
 from jointid.cli import main
-from jointid.cli.demo import data_folder
+from jointid.cli.demonstration import data_folder
 from jointid.cli.parser import command_parser
 
 PAGES = ["README.md", "CONTRIBUTING.md", "examples/README.md"]
@@ -134,7 +134,9 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     torque = torques(motion, 1) / ratios
     recorded(motion, torque).save(folder / "arm.csv")
     text = (folder / "run.csv").read_text(encoding="utf-8")
-    (folder / "log.csv").write_text(text.replace("position_rad", "enc1", 1), encoding="utf-8")
+    (folder / "enc1.csv").write_text(text.replace("position_rad", "enc1", 1), encoding="utf-8")
+    current = text.replace("torque_Nm", "current_A", 1)
+    (folder / "log.csv").write_text(current, encoding="utf-8")
     return folder
 
 

@@ -84,7 +84,17 @@ GROUPS = (
     Group(
         "joints",
         "Joints and models",
-        _of("jointid", "Joint", "Model", "Parameter", "Link", "Limits", "thesis_joint"),
+        _of(
+            "jointid",
+            "Joint",
+            "Model",
+            "Parameter",
+            "Link",
+            "Limits",
+            "demo",
+            "Demonstration",
+            "thesis_joint",
+        ),
     ),
     Group(
         "identification",

@@ -9,7 +9,7 @@ from typing import Any
 
 from jointid.base.advice import Action
 from jointid.cli.arguments import number_or_text
-from jointid.cli.options import FILES, FLAGS, NUMBERS, PLACEHOLDERS, option_of
+from jointid.cli.options import FILES, FLAGS, NUMBERS, OPTIONS, PLACEHOLDERS, option_of
 from jointid.cli.values import behind_option, in_joint_file
 
 MODEL_FIELDS = frozenset(
@@ -34,6 +34,8 @@ _VERBS = {
 _VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
 _UNKNOWN = {*PLACEHOLDERS.values(), *FILES.values(), *NUMBERS.values(), "VALUE", "NAME"}
 """Words that stand for what only the user knows."""
+_WRITTEN = {"--report", "--save", "--model"}
+"""What another command that reads the same does not take over."""
 
 
 def words_of_action(action: Action, command: str, model: str = "", *, file: bool = False) -> str:
@@ -86,10 +88,27 @@ def command_of_action(
         action = _of_reading(action, "load")
     verb, options, joint_file = _parts(action, command, model, file=file)
     words = [word for option in options for word in shlex.split(option)]
-    unknown = any(word in _UNKNOWN or word.partition("=")[2] in _UNKNOWN for word in words)
-    if not words or joint_file or unknown or verb not in ("load", command):
+    if not words or joint_file:
         return ""
-    return f"jointid {shlex.join(with_options(typed, words))}"
+    if any(word in _UNKNOWN or word.partition("=")[2] in _UNKNOWN for word in words):
+        return f"add {' '.join(words)}"
+    if verb not in ("load", command):
+        typed = _for_another(typed, command, verb)
+    return f"jointid {shlex.join(with_options(typed, words))}" if typed else ""
+
+
+def _for_another(typed: Sequence[str], command: str, verb: str) -> list[str]:
+    """The words of another command that reads the same; none where it reads nothing."""
+    if verb not in ("identify", "compare") or command not in ("identify", "compare"):
+        return []
+    taken = set(OPTIONS[verb].values()) - _WRITTEN
+    pairs = _pairs(typed[1:])
+    kept = [
+        words
+        for words in pairs
+        if not words[0].startswith("-") or words[0].partition("=")[0] in taken
+    ]
+    return [verb, *(word for pair in kept for word in pair if word is not None)]
 
 
 def with_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:

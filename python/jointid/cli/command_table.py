@@ -77,8 +77,8 @@ _TABLE = {
     ),
     "explain": (
         "say what a finding means, and what to do about it",
-        "jointid.cli.explain:add_explain",
-        "jointid.cli.explain:explain",
+        "jointid.cli.explaining:add_explain",
+        "jointid.cli.explaining:explain",
     ),
     "info": (
         "show what a recording holds",

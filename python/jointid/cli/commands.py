@@ -30,12 +30,13 @@ if TYPE_CHECKING:
 def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
     from jointid.base.files import make_folder
-    from jointid.cli.demo import demonstrate
+    from jointid.cli.demonstration import demo as demonstration
+    from jointid.identification.identification import identify as identified
     from jointid.report.saving import save_report
 
     check_output_folder("output", arguments.output)
-    demonstration = demonstrate()
-    estimate = demonstration.estimate
+    kuka = demonstration()
+    estimate = identified(kuka.recording, kuka.joint)
     make_folder(arguments.output)
     saved = arguments.output / "estimate.json"
     estimate.save(saved)
@@ -44,7 +45,7 @@ def demo(arguments: argparse.Namespace) -> None:
         estimate,
         arguments.output / "report.html",
         action=wording.of_command,
-        recordings=demonstration.recording,
+        recordings=kuka.recording,
     )
     if arguments.json:
         print(estimate.to_json())
@@ -52,7 +53,7 @@ def demo(arguments: argparse.Namespace) -> None:
     print(wording.of_answer(estimate, verbose=arguments.verbose))
     published = ", ".join(
         f"{name} {nominal:g} {estimate.parameters[name].unit}"
-        for name, nominal in demonstration.nominal.items()
+        for name, nominal in kuka.published.items()
     )
     print(f"published: {published}")
     print(f"report: {page}   estimate: {saved}")

@@ -164,7 +164,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "approximate": "--approximate",
         "speed": "--speed",
     },
-    "explain": {"estimate": "ESTIMATE"},
+    "explain": {},
     "info": _READING,
 }
 """By command and argument."""

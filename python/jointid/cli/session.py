@@ -264,7 +264,7 @@ def _agreed(bench: Bench) -> bool:
 
 def _agreed_again(estimate: Estimate) -> bool:
     """Whether the user agrees that the joint moves with the identified values."""
-    print(Wording("run").of_report(estimate), file=sys.stderr)
+    print(Wording("run").of_answer(estimate, verbose=False), file=sys.stderr)
     return _yes("Move the joint with these values? Is the space free? [yes/no] ")
 
 

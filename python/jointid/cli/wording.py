@@ -114,7 +114,7 @@ class Wording:
 
     def of_answer(self, estimate: Estimate, *, verbose: bool) -> str:
         """An estimate in a few lines, or all of its report, with commands as advice."""
-        from jointid.estimate.answer import answer
+        from jointid.estimate.answers import answer
         from jointid.estimate.tables import text_report
 
         if verbose:

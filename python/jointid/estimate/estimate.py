@@ -241,11 +241,21 @@ class Estimate(Questions):
 
         return predict(self, recording)
 
-    def report(self) -> str:
-        """Return the estimate as text: parameters, quality of the fit, findings."""
-        from jointid.estimate.tables import text_report
+    def report(self, *, verbose: bool = False) -> str:
+        """Return the answer as text: verdict, values with standard errors, what to do.
 
-        return text_report(self)
+        Parameters
+        ----------
+        verbose : bool
+            Everything: systematic errors, intervals, quality of the fit, each finding whole. Default False.
+        """
+        if verbose:
+            from jointid.estimate.tables import text_report
+
+            return text_report(self)
+        from jointid.estimate.answers import answer
+
+        return answer(self)
 
     def _repr_html_(self) -> str:
         from jointid.estimate.html_tables import html_summary

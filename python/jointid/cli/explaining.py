@@ -44,7 +44,7 @@ def explain(arguments: argparse.Namespace) -> None:
 def _of_estimate(code: str, path: Path) -> list[str]:
     """What the findings with this code say in a saved estimate."""
     from jointid.cli.wording import Wording
-    from jointid.estimate.answer import explained
+    from jointid.estimate.answers import explained
     from jointid.joints.reading import load_estimate
 
     estimate = load_estimate(path, None)

@@ -1,0 +1,67 @@
+"""The demonstration: joint 1 of a KUKA KR300, from its log, which ships with the package."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from jointid.base.values import dataclass
+from jointid.joint.joint import Joint
+from jointid.recording.readers.loading import load
+from jointid.recording.recording import Recording
+
+# Published with the log by its authors (Weigand et al.).
+PUBLISHED = {"viscous": 2050.0, "coulomb": 355.0}
+# Known signals of the log, from the authors' model of the whole robot. Gravity does not act on a vertical axis.
+COLUMNS = {"coriolis": "model_coriolis_torque_Nm", "pose": "model_inertia_kgm2"}
+TERMS = {"coriolis": "known", "pose": "inertia"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Demonstration:
+    """What `jointid demo` identifies.
+
+    Attributes
+    ----------
+    recording : Recording
+        Joint 1 of a KUKA KR300, with the Coriolis torque and the inertia over the pose of its authors' model.
+    joint : Joint
+        What is known of it, and the model.
+    published : mapping of str to float
+        Values by the authors of the log (SI).
+    """
+
+    recording: Recording
+    joint: Joint
+    published: Mapping[str, float]
+
+
+def data_folder() -> Path:
+    """Folder with the demonstration's recordings and joint files."""
+    installed = Path(__file__).resolve().parents[1] / "data"
+    if installed.is_dir():
+        return installed
+    return Path(__file__).resolve().parents[3] / "examples" / "data"  # run from the source folder
+
+
+def demo() -> Demonstration:
+    """Return the recording and the joint of ``jointid demo``.
+
+    Returns
+    -------
+    Demonstration
+
+    Examples
+    --------
+    >>> kuka = jid.demo()
+    >>> estimate = jid.identify(kuka.recording, kuka.joint)
+    >>> round(estimate["coulomb"].value), round(kuka.published["coulomb"])
+    (366, 355)
+    """
+    folder = data_folder()
+    recording = load(folder / "kr300_joint1.csv.gz", extra=COLUMNS)
+    joint = Joint.load(folder / "kr300_joint1.toml")
+    model = joint.model.replace(terms=TERMS)
+    return Demonstration(
+        recording=recording, joint=joint.replace(model=model), published=dict(PUBLISHED)
+    )
