@@ -196,7 +196,7 @@ LIBRARY = {
         "shlex",
         "signal",
     ),
-    "zlib",
+    *("string", "tomllib", "zlib"),
 }
 COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
     "identify": (["identify", "RUN", "--quiet"], IDENTIFYING, 245),

@@ -1,10 +1,12 @@
 """README.md is short, and its numbers are those that the program prints."""
 
+import json
 import re
+import runpy
 from pathlib import Path
 
 import pytest
-from documents import read, run_python_blocks
+from documents import ROOT, read, run_python_blocks
 
 import jointid as jid
 
@@ -42,3 +44,13 @@ def test_its_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_it_says_that_no_real_drive_was_tried() -> None:
     assert "Never tried on real hardware" in README
+
+
+def test_its_picture_shows_what_is_identified_now() -> None:
+    drawn = json.loads(read("docs/pictures/friction_maps.json"))
+    script = runpy.run_path(str(ROOT / "tools" / "pictures.py"))
+    found = {title: script["numbers"](each) for title, each in script["estimates"]().items()}
+    assert found.keys() == drawn.keys()
+    for title, rows in found.items():
+        for row, shown in zip(rows, drawn[title], strict=True):
+            assert row == pytest.approx(shown, rel=0.01), title
