@@ -110,18 +110,16 @@ def test_an_ending_without_a_reader_is_refused(
     )
 
 
-def test_a_missing_package_is_named_with_its_extra(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def without(path: Path) -> CsvTable:
         raise ModuleNotFoundError(name="asammdf.blocks")
 
-    reader = Reader(endings=(".mf4",), open=without, package="asammdf", extra="mdf")
+    reader = Reader(endings=(".mf4",), open=without, package="asammdf")
     monkeypatch.setattr(registry, "readers", lambda: iter([reader]))
     path = written(tmp_path / "run.mf4", lines("t,q"))
     assert refusal(path) == (
         f"{path}: reading .mf4 files needs asammdf, which is not installed; "
-        "pip install 'jointid[mdf]' or save the file as .csv"
+        "pip install asammdf or save the file as .csv"
     )
 
 

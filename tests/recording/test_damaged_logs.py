@@ -211,6 +211,6 @@ def test_without_the_packages_the_message_names_the_extra(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     assert (
-        f"reading .mcap files needs {package}, which is not installed; pip install 'jointid[ros]'"
+        f"reading .mcap files needs {package}, which is not installed; pip install mcap rosbags"
         in refusal(path)
     )

@@ -329,7 +329,7 @@ def test_without_h5py_the_message_names_the_extra(
     monkeypatch.setitem(sys.modules, "h5py", None)
     path = tmp_path / "a.h5"
     path.write_bytes(b"x")
-    assert "reading .h5 files needs h5py, which is not installed; pip install 'jointid[hdf5]'" in (
+    assert "reading .h5 files needs h5py, which is not installed; pip install h5py" in (
         refusal(path)
     )
     path = tmp_path / "a.mat"

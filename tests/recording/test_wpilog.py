@@ -113,7 +113,7 @@ def test_the_package_is_named_where_it_is_missing(
 ) -> None:
     monkeypatch.setitem(sys.modules, "wpiutil", None)
     (tmp_path / "a.wpilog").write_bytes(b"WPILOG")
-    assert "pip install 'jointid[wpilib]'" in refusal(tmp_path / "a.wpilog")
+    assert "pip install robotpy-wpiutil" in refusal(tmp_path / "a.wpilog")
 
 
 def test_what_wpilib_writes_is_read(tmp_path: Path) -> None:

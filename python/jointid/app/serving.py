@@ -40,7 +40,7 @@ def serve(opened: Callable[[str], object], *, port: int = 0, largest: int = LARG
         if (error.name or "").partition(".")[0] != "nicegui":
             raise
         raise InputError(
-            "the page needs nicegui, which is not installed", remedy="pip install 'jointid[app]'"
+            "the page needs nicegui, which is not installed", remedy="pip install nicegui"
         ) from None
     from jointid.app.guard import Guard, new_token
     from jointid.app.page import build

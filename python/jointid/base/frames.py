@@ -26,7 +26,7 @@ def data_frame(
     except ModuleNotFoundError as error:
         raise InputError(
             "a data frame needs the package pandas",
-            remedy="install it with: pip install 'jointid[pandas]'",
+            remedy="pip install pandas",
         ) from error
     frame = pd.DataFrame(table)
     return frame if index is None else frame.set_index(index)

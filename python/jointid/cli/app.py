@@ -17,7 +17,7 @@ def add_app(command: CommandParser) -> None:
     """Add the command's grammar."""
     command.epilog = (
         "The page is served to this machine alone, at an address with a token that changes with each start. It needs "
-        "the extra app: pip install 'jointid[app]'."
+        "NiceGUI: pip install nicegui."
     )
     command.add_argument("--port", type=int, default=0, help="default: a free one")
     command.add_argument("--no-browser", action="store_true", help="print the address only")

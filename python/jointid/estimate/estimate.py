@@ -275,7 +275,7 @@ class Estimate(Questions):
         Raises
         ------
         InputError
-            pandas is not installed; the extra `jointid[pandas]` installs it.
+            pandas is not installed.
 
         Examples
         --------

@@ -315,7 +315,7 @@ class Recording(Parts):
         Raises
         ------
         InputError
-            pandas is not installed; the extra `jointid[pandas]` installs it.
+            pandas is not installed.
 
         Examples
         --------

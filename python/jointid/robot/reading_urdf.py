@@ -44,7 +44,7 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
             "reading a robot needs pinocchio",
             argument="path",
             value=path.name,
-            remedy="install the extra: pip install 'jointid[robot]'",
+            remedy="pip install pin",
         ) from None
     if joints is not None and (isinstance(joints, str) or not isinstance(joints, Sequence)):
         raise InputError("a list of names is expected", argument="joints", value=joints)

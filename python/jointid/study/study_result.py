@@ -136,7 +136,7 @@ class Study:
         Raises
         ------
         InputError
-            pandas is not installed; the extra `jointid[pandas]` installs it.
+            pandas is not installed.
         """
         return data_frame(tables.columns(self))
 

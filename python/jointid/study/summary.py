@@ -87,7 +87,7 @@ class Summary:
         Raises
         ------
         InputError
-            pandas is not installed; the extra `jointid[pandas]` installs it.
+            pandas is not installed.
         """
         return data_frame([_record(cell) for cell in self.cells])
 

@@ -85,7 +85,7 @@ def _parquet(study: Study) -> bytes:
     except ModuleNotFoundError as error:
         raise InputError(
             "Parquet files need the package pyarrow",
-            remedy="install it with: pip install 'jointid[parquet]'",
+            remedy="pip install pyarrow",
         ) from error
     sink = pa.BufferOutputStream()
     mixed = {name: _one_kind(values) for name, values in columns(study).items()}

@@ -12,4 +12,4 @@ def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> 
     return Hdf5Table(path, part)
 
 
-READER = Reader(endings=(".h5", ".hdf5"), open=_opened, package="h5py", extra="hdf5", part="group")
+READER = Reader(endings=(".h5", ".hdf5"), open=_opened, package="h5py", part="group")

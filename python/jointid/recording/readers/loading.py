@@ -324,7 +324,7 @@ def table_of(
         raise InputError(
             f"reading {_form(file, reader)} needs {package}, which is not installed",
             place=str(file),
-            remedy=(f"pip install 'jointid[{reader.extra}]'", "save the file as .csv"),
+            remedy=(f"pip install {reader.install or package}", "save the file as .csv"),
         ) from None
     if len(table.headers) > MOST_COLUMNS:
         raise InputError(

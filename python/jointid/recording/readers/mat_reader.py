@@ -147,7 +147,7 @@ def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> 
         raise InputError(
             "a MATLAB 7.3 file (HDF5) needs h5py, which is not installed",
             place=str(path),
-            remedy=("pip install 'jointid[hdf5]'", "in MATLAB save it with '-v7'"),
+            remedy=("pip install h5py", "in MATLAB save it with '-v7'"),
         ) from None
 
 

@@ -14,5 +14,9 @@ def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> 
 
 
 READER = Reader(
-    endings=(".mcap",), open=_opened, package=("mcap", "rosbags"), extra="ros", part="topic"
+    endings=(".mcap",),
+    open=_opened,
+    package=("mcap", "rosbags"),
+    install="mcap rosbags",
+    part="topic",
 )

@@ -263,4 +263,4 @@ def _damage() -> tuple[type[Exception], ...]:
     )
 
 
-READER = Reader(endings=(".parquet",), open=ParquetTable, package="pyarrow", extra="parquet")
+READER = Reader(endings=(".parquet",), open=ParquetTable, package="pyarrow")

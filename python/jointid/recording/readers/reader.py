@@ -20,8 +20,8 @@ class Reader:
         keywords `part` (a name, or None) and `kind` (of the joint, or None).
     package : str or tuple of str
         Packages that `open` imports and that are not installed with jointid. Default: none.
-    extra : str
-        Extra of jointid that installs these packages. Default: none.
+    install : str
+        What pip installs to bring these packages. Default: the one that is missing.
     part : str
         The argument of `load` that names a part of such a file: ``"topic"`` or ``"group"``. Default: none.
     folder : tuple of str
@@ -31,7 +31,7 @@ class Reader:
     endings: tuple[str, ...]
     open: Callable[..., Table]
     package: str | tuple[str, ...] = ""
-    extra: str = ""
+    install: str = ""
     part: str = ""
     folder: tuple[str, ...] = ()
 

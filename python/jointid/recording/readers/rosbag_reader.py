@@ -21,7 +21,7 @@ READER = Reader(
     endings=(".bag", ".db3"),
     open=_opened,
     package=("rosbags", "mcap", "lz4", "zstandard"),
-    extra="ros",
+    install="mcap rosbags",
     part="topic",
     folder=(".db3", ".mcap", ".db3.zstd", ".mcap.zstd"),
 )

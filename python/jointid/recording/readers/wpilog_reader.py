@@ -147,4 +147,6 @@ def _held(samples: _Samples, stamps: Any) -> list[str]:
     return [str(texts[k]) if k >= 0 else _IDLE for k in places.tolist()]
 
 
-READER = Reader(endings=(".wpilog",), open=WpilogTable, package="wpiutil", extra="wpilib")
+READER = Reader(
+    endings=(".wpilog",), open=WpilogTable, package="wpiutil", install="robotpy-wpiutil"
+)
