@@ -248,8 +248,15 @@ def _next_motion() -> Callable[..., object]:
     return motion_after
 
 
+def _friction_image() -> Callable[..., object]:
+    """Load what draws an estimate in a notebook."""
+    from jointid.report.notebook import friction_image
+
+    return friction_image
+
+
 # The rooms stand one above the other, and here all is seen.
-join(next_motion=_next_motion)
+join(next_motion=_next_motion, friction_image=_friction_image)
 
 
 def _load(name: str) -> object:

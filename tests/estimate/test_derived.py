@@ -101,8 +101,8 @@ def test_each_direction_has_its_own() -> None:
     for side in ("positive", "negative"):
         expected = value[f"coulomb_{side}"] + value[f"static_{side}"]
         assert found[f"breakaway_{side}"].value == expected
-    assert "breakaway friction, positive" in estimate.report()
-    assert "static_positive (above Coulomb)" in estimate.report()
+    assert "breakaway friction, positive" in estimate.report(verbose=True)
+    assert "static_positive (above Coulomb)" in estimate.report(verbose=True)
 
 
 def test_what_a_model_lacks_is_not_derived() -> None:
@@ -132,7 +132,7 @@ def test_a_parameter_at_a_bound_leaves_no_error(estimate: jid.Estimate) -> None:
 def test_every_table_shows_them(estimate: jid.Estimate) -> None:
     found = estimate.derived
     shown = {"breakaway": "= coulomb + static", "Stribeck velocity": "= 1/√stribeck"}
-    for text in (estimate.report(), estimate._repr_html_(), html_report(estimate)):
+    for text in (estimate.report(verbose=True), estimate._repr_html_(), html_report(estimate)):
         assert "static (above Coulomb)" in text
         for name, formula in shown.items():
             assert name in text

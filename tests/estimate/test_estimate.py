@@ -46,7 +46,7 @@ def test_json_holds_everything(estimate: jid.Estimate) -> None:
             assert after is None
         else:
             assert before == after, item.name
-    assert again.report() == estimate.report()
+    assert again.report(verbose=True) == estimate.report(verbose=True)
 
 
 @pytest.mark.parametrize(
@@ -64,11 +64,11 @@ def test_json_that_is_none_is_refused(text: str, message: str) -> None:
 
 
 def test_report_shows_values_and_warnings(estimate: jid.Estimate, robot: jid.Estimate) -> None:
-    text = estimate.report()
+    text = estimate.report(verbose=True)
     for name in estimate.parameters:
         assert name in text
     assert "no warnings" in text
-    assert "inertia_varies" in robot.report()
+    assert "inertia_varies" in robot.report(verbose=True)
     assert "coulomb" in robot._repr_html_()
 
 

@@ -103,7 +103,7 @@ def read(text: str) -> jid.Estimate | None:
 
 
 def pages(estimate: jid.Estimate) -> list[str]:
-    estimate.report()
+    estimate.report(verbose=True)
     return [report.html_report(estimate), estimate._repr_html_()]
 
 
@@ -216,14 +216,16 @@ def test_an_estimate_saved_before_is_still_read() -> None:
     assert [warning.code for warning in estimate.warnings] == [
         *("signal_lag", "model_too_rich", "undetermined", "few_windows"),
     ]
-    assert "leave the column out" in estimate.report()
-    assert jid.Estimate.from_json(estimate.to_json()).report() == estimate.report()
+    assert "leave the column out" in estimate.report(verbose=True)
+    assert jid.Estimate.from_json(estimate.to_json()).report(verbose=True) == estimate.report(
+        verbose=True
+    )
 
 
 def test_no_control_character_reaches_a_terminal() -> None:
     estimate = read(damaged(("joint", "name"), '"a\\u001b[2Jb\\rc\\u009b"'))
     assert estimate is not None
-    assert estimate.report().startswith("jointid estimate — a\ufffd[2Jb\ufffdc\ufffd\n")
+    assert estimate.report(verbose=True).startswith("jointid estimate — a\ufffd[2Jb\ufffdc\ufffd\n")
 
 
 def test_a_file_is_read_and_named(tmp_path: Path) -> None:

@@ -341,11 +341,11 @@ def test_the_page_begins_with_it() -> None:
 
 
 def test_text_and_numbers_have_it() -> None:
-    lines = estimate().report().splitlines()
+    lines = estimate().report(verbose=True).splitlines()
     assert lines[:3] == [f"jointid estimate — {estimate().joint.name}", "", "verdict: usable"]
     moved = Finding(code="inertia_varies", title="it varies", parameters=("static",))
     found = with_findings(moved)
-    shown = found.report().splitlines()[2:6]
+    shown = found.report(verbose=True).splitlines()[2:6]
     assert [line.partition(", to ± ")[0] for line in shown] == [
         "verdict: usable with care",
         "  compensation: usable with care (static)",

@@ -98,7 +98,7 @@ def test_one_speed_tells_a_sum(speed: float) -> None:
     assert together.value == pytest.approx(3.0 + 0.7 * speed, rel=0.01)
     assert together.interval[1] - together.interval[0] < 0.1
     assert f"{together.formula} is {together.value:.4g} ±" in found.verdict.reasons[0]
-    assert "coulomb_and_viscous" in found.report()
+    assert "coulomb_and_viscous" in found.report(verbose=True)
 
 
 @pytest.mark.parametrize("constant", [0.0, -2.0])
@@ -130,7 +130,7 @@ def test_each_purpose_says_how_good(noise: float) -> None:
     assert share < found.within["compensation"] < 0.1 * noise
     off = max(abs(found[name].value / true - 1.0) for name, true in truth.items())
     assert off < found.within["monitoring"] < noise
-    text = found.report()
+    text = found.report(verbose=True)
     assert f"compensation: usable, to ± {100.0 * found.within['compensation']:.2g} %" in text
     assert jid.Estimate.from_json(found.to_json()).verdict == found.verdict
     assert found.verdict.uses["simulation"].within == found.within["simulation"]

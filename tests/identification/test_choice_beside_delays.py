@@ -111,7 +111,9 @@ def test_a_sum_that_is_known_says_where_its_width_is_from(held: jid.Recording) -
     half = 0.5 * (both.interval[1] - both.interval[0])
     assert half == pytest.approx(2.0 * np.hypot(both.stderr, both.systematic_total), rel=0.1)
     assert both.interval[0] < 38.0 < both.interval[1]
-    (line,) = [each for each in found.report().splitlines() if each.startswith("coulomb_sum")]
+    (line,) = [
+        each for each in found.report(verbose=True).splitlines() if each.startswith("coulomb_sum")
+    ]
     assert "(lag)" in line
 
 

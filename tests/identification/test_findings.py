@@ -265,7 +265,7 @@ def test_information_is_no_warning(well_excited: jid.Recording) -> None:
     estimate = separable(make(well_excited))
     assert [found.code for found in estimate.findings] == ["gaps"]
     assert estimate.warnings == ()
-    assert "info (gaps): 1 gap(s)" in estimate.report()
+    assert "info (gaps): 1 gap(s)" in estimate.report(verbose=True)
     make, _ = DEFECTS["constant sensor"]
     assert found_in(separable(make(well_excited)), "constant_signal").severity == "blocking"
 
@@ -325,7 +325,7 @@ def test_a_check_is_a_file_and_a_line(
     estimate = separable(well_excited)
     assert [found.code for found in estimate.warnings] == ["wobble"]
     sentence = "the base wobbles in 1 recording(s); inspect the bolts"
-    assert f"warning (wobble): {sentence}" in estimate.report()
+    assert f"warning (wobble): {sentence}" in estimate.report(verbose=True)
     assert sentence in html_report(estimate)
     assert sentence in estimate._repr_html_()
     again = jid.Estimate.from_json(estimate.to_json())

@@ -99,9 +99,9 @@ def test_a_single_recording_is_not_named() -> None:
 
 def test_the_title_says_how_many_recordings_there_are() -> None:
     two = jid.identify(RUNS[:2])
-    assert two.report().startswith("jointid estimate — run_0 and 1 more recording\n")
+    assert two.report().startswith("run_0 and 1 more recording: ")
     of_joint = jid.identify(RUNS[:3], jid.Joint(name="wrist"))
-    assert of_joint.report().startswith("jointid estimate — wrist, 3 recordings\n")
+    assert of_joint.report().startswith("wrist, 3 recordings: ")
     assert jid.identify(RUNS[0]).report().startswith("jointid estimate — run_0\n")
 
 

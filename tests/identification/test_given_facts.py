@@ -43,8 +43,8 @@ def test_a_part_is_what_a_fact_at_its_limits_does(run: jid.Recording, fact: str)
     assert p.largest_part == "given"
     assert p.interval is not None
     assert p.interval[1] - p.value < 0.1 * p.systematic["given"]  # it holds if the facts are right
-    assert "(given)" in found.report()
-    assert f"{fact} ± 5 %" in found.report()
+    assert "(given)" in found.report(verbose=True)
+    assert f"{fact} ± 5 %" in found.report(verbose=True)
 
 
 def test_several_facts_add_as_squares(run: jid.Recording) -> None:
@@ -86,6 +86,6 @@ def test_an_estimate_keeps_them(run: jid.Recording, tmp_path: Path) -> None:
     found = jid.identify(run, joint, search="separable")
     found.save(tmp_path / "estimate.json")
     read = jid.Estimate.load(tmp_path / "estimate.json")
-    assert read.report() == found.report()
+    assert read.report(verbose=True) == found.report(verbose=True)
     assert read.parameters["coulomb"].systematic == found.parameters["coulomb"].systematic
     assert read.joint == found.joint

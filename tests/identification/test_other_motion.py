@@ -9,7 +9,6 @@ from defects import saturated_torque
 
 import jointid as jid
 from jointid.base.advice import Action
-from jointid.cli.command_line import main
 from jointid.identification.warnings.motion_advice import _short
 
 THESIS = jid.thesis_joint()
@@ -77,18 +76,6 @@ def test_a_torque_that_was_cut_off_is_limited_below(repo: Path) -> None:
 def test_the_advice_survives_a_file(poor: jid.Recording) -> None:
     estimate = jid.identify(poor)
     assert jid.Estimate.from_json(estimate.to_json()).findings == estimate.findings
-
-
-def test_the_command_line_names_its_own_files(
-    shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    joint, saved = tmp_path / "joint.toml", tmp_path / "first.json"
-    THESIS.save(joint)
-    file = str(shared_data / "simulated" / "poorly_excited.csv.gz")
-    assert main(["identify", file, "--joint", str(joint), "--save", str(saved), "--quiet"]) == 0
-    command = f"jointid design {joint} --after {saved} --position=LOW,HIGH --velocity=SPEED"
-    printed = capsys.readouterr()
-    assert f"{command} --duration 6 --output motion.toml" in printed.out + printed.err
 
 
 @pytest.mark.parametrize("value", [1.12469, -0.348472977, 0.0009999, 81.1092779, 3.0, -1.2])

@@ -25,7 +25,7 @@ def test_it_agrees_on_a_clean_log_with_the_right_values() -> None:
     for name, true in TRUE.items():
         assert check.values[name].value == pytest.approx(true, rel=0.02)
         assert check.values[name].stderr < 0.02 * true
-    assert "plain least squares agrees" in estimate.report()
+    assert "plain least squares agrees" in estimate.report(verbose=True)
 
 
 def in_a_turn(run: Recording) -> Recording:

@@ -53,7 +53,7 @@ def test_a_strain_wave_joint_is_found_by_the_plainest_call(home: jid.Estimate) -
     assert home.selection is not None
     assert home.selection.model == home.settings["model"] == home.joint.model.name == "stribeck"
     assert home.parameters["sensor_gain"].value == pytest.approx(2.4, rel=0.01)
-    (line,) = [each for each in home.report().splitlines() if each.startswith("chosen")]
+    (line,) = [each for each in home.report(verbose=True).splitlines() if each.startswith("chosen")]
     wanted = r"stribeck misses 0\.2\d+ % of the held-out torque, coulomb_viscous 4\.11 %"
     assert re.search(wanted, line)
     assert line.split(maxsplit=1)[1] in home._repr_html_()

@@ -200,7 +200,7 @@ def test_the_errors_that_a_warning_states_are_those_of_the_table(
     )
     estimate = separable(run, joint)
     found = warned(estimate, "undetermined").message
-    printed = {line.split()[0]: line for line in estimate.report().splitlines() if line}
+    printed = {line.split()[0]: line for line in estimate.report(verbose=True).splitlines() if line}
     stated = re.findall(r"(\w+) has a standard error of ([\d.]+ %)", found)
     assert stated
     for name, share in stated:

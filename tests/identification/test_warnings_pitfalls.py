@@ -36,7 +36,7 @@ def test_reversed_torque_is_reported_and_no_crash(method: Any) -> None:
     assert {p.at_bound for p in estimate.parameters.values()} == {"min"}
     assert "at_bound" in {warning.code for warning in estimate.warnings}
     assert "poor_fit" in {warning.code for warning in estimate.warnings}
-    assert "poor_fit" in estimate.report()
+    assert "poor_fit" in estimate.report(verbose=True)
     assert jid.Estimate.from_json(estimate.to_json()).free == ()
 
 

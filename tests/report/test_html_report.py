@@ -75,7 +75,8 @@ def test_no_link_leads_to_a_picture_that_is_not_there() -> None:
 
 def test_another_interface_words_the_advice(robot: jid.Estimate) -> None:
     page = html_report(robot, lambda action: f"<{action.kind}>")
-    assert "; &lt;record&gt;; or &lt;inspect&gt; <a href" in page
+    assert "<br>do: &lt;record&gt;" in page
+    assert "or &lt;inspect&gt;" in page
 
 
 def test_the_page_is_written_whole(robot: jid.Estimate, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
+from jointid.base.joining import joined
 from jointid.base.values import dataclass
 from jointid.estimate.cross_check import CrossCheck
 from jointid.estimate.delays import Delay
@@ -260,7 +261,8 @@ class Estimate(Questions):
     def _repr_html_(self) -> str:
         from jointid.estimate.html_tables import html_summary
 
-        return str(html_summary(self))
+        picture = joined("friction_image")(self) if self.windows.start.size else ""
+        return f"{html_summary(self)}{picture}"
 
     def to_pandas(self) -> pd.DataFrame:
         """Return the parameters and derived quantities as a data frame, one row each.

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, table
+from jointid.estimate.answers import purposes
 from jointid.estimate.derived import DerivedValue
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
@@ -91,10 +92,16 @@ def html_findings(
 def _finding(found: Finding, pictures: Mapping[str, str], action: Callable[[Action], str]) -> Html:
     parts: list[Html | str] = [
         element("b", found.code),
-        f" ({found.severity}): {found.worded(action)}",
+        f" ({found.severity}): {found.title}",
     ]
     if found.code in pictures:
         parts += [" ", element("a", "picture", href=f"#{pictures[found.code]}")]
+    first, *others = [what for what in map(action, found.advice) if what] or [""]
+    if first:
+        parts += [element("br"), f"do: {first}"]
+    rest = "; ".join([found.details] * bool(found.details) + [f"or {each}" for each in others])
+    if rest:
+        parts += [element("br"), element("small", rest)]
     return element("li", *parts, class_=found.severity)
 
 
@@ -107,7 +114,11 @@ def html_summary(estimate: Estimate) -> Html:
     )
     if estimate.selection is not None:
         caption += f"; chosen: {estimate.selection.sentence}"
-    title = element("b", f"jointid estimate — {subject(estimate)}")
+    lines = [f"{subject(estimate)}: {estimate.verdict.level}", *purposes(estimate.verdict)]
     return element(
-        "div", title, html_table(estimate), element("p", caption), html_findings(estimate)
+        "div",
+        element("p", element("b", lines[0]), *(f"; {each.strip()}" for each in lines[1:])),
+        html_table(estimate),
+        element("p", caption),
+        html_findings(estimate),
     )

@@ -1,6 +1,6 @@
 """Formatting of numbers in tables and messages."""
 
-import numpy as np
+import math
 
 _FAR_BELOW = 1e-3  # errors: such a value is nothing
 
@@ -22,10 +22,11 @@ def number(value: float) -> str:
 
 
 def two_digits(value: float) -> str:
-    """Two significant digits without an exponent: 110, not 1.1e+02."""
-    if not np.isfinite(value) or value < 1e-4:
+    """Two significant digits without an exponent: 110, not 1.1e+02; 1.0, not 1."""
+    if not math.isfinite(value) or value < 1e-4:
         return f"{value:.2g}"
-    return str(np.format_float_positional(float(f"{value:.1e}"), trim="-"))
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{float(f'{mantissa}e{exponent}'):.{max(0, 1 - int(exponent))}f}"
 
 
 def rounded(value: float, stderr: float) -> str:
