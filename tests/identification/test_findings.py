@@ -326,7 +326,9 @@ def test_a_check_is_a_file_and_a_line(
     assert [found.code for found in estimate.warnings] == ["wobble"]
     sentence = "the base wobbles in 1 recording(s); inspect the bolts"
     assert f"warning (wobble): {sentence}" in estimate.report(verbose=True)
-    assert sentence in html_report(estimate)
+    page = html_report(estimate)
+    assert "the base wobbles in 1 recording(s)" in page
+    assert "do: inspect the bolts" in page
     assert sentence in estimate._repr_html_()
     again = jid.Estimate.from_json(estimate.to_json())
     assert again.findings == estimate.findings

@@ -102,7 +102,7 @@ def test_the_title_says_how_many_recordings_there_are() -> None:
     assert two.report().startswith("run_0 and 1 more recording: ")
     of_joint = jid.identify(RUNS[:3], jid.Joint(name="wrist"))
     assert of_joint.report().startswith("wrist, 3 recordings: ")
-    assert jid.identify(RUNS[0]).report().startswith("jointid estimate — run_0\n")
+    assert jid.identify(RUNS[0]).report().startswith("run_0: ")
 
 
 @pytest.mark.parametrize("factor", [0.5, 1.6, -1.0])

@@ -11,6 +11,8 @@ from jointid.base.advice import Action
 from jointid.base.values import dataclass
 
 Severity = Literal["info", "warning", "blocking"]
+TITLE = 90
+"""Characters of a title at most: with the severity before it, it is one line."""
 
 
 @dataclass(frozen=True, slots=True)

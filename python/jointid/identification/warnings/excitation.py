@@ -40,6 +40,8 @@ class Lack:
     ----------
     quantity : str
         Its name: what is missing is the same for parameters with the same one.
+    short : str
+        What is missing, in a few words.
     text : str
         What there is, in figures, and what is needed.
     motion : str
@@ -51,6 +53,7 @@ class Lack:
     """
 
     quantity: str
+    short: str
     text: str
     motion: str
     measured: Mapping[str, Measured]
@@ -110,6 +113,7 @@ class Excitation:
         text = f"the log has {windows} windows for {free} parameters"
         return Lack(
             "windows",
+            f"{windows} windows are too few",
             text,
             "more motion",
             {"windows": Measured(float(windows)), "free_parameters": Measured(float(free))},
@@ -156,20 +160,23 @@ class Excitation:
             )
             measured["duration.factor"] = Measured(float(_two(needed / duration)))
             motion = f"a motion in which {name} shows more, or one with less noise"
-        return Lack("duration", text, motion, measured, needed)
+        return Lack("duration", "noise or a short log", text, motion, measured, needed)
 
     def noise(self) -> Lack:
         """What is missing where the velocity's noise hides the inertia: resolution."""
         share = self.evidence.residuals.noise_share
         text = f"noise makes up {percent(share)} of the change of the velocity over a window"
         motion = "the position with a finer resolution"
-        return Lack("velocity_noise", text, motion, {"velocity_noise": Measured(share)})
+        return Lack(
+            "velocity_noise", "noisy velocity", text, motion, {"velocity_noise": Measured(share)}
+        )
 
     def _both_ways(self, name: str) -> Lack | None:
         if self.reversals < _REVERSALS and not name.endswith(("_positive", "_negative")):
             count = self.reversals
             return Lack(
                 "reversals",
+                f"{count} of {_REVERSALS} reversals",
                 f"the log has {count} reversal{'s' * (count != 1)}, and {_REVERSALS} or more are needed",
                 "motion in both directions, with several reversals",
                 {
@@ -180,6 +187,7 @@ class Excitation:
         if self.rarer < _DIRECTION:
             return Lack(
                 "direction",
+                "motion in one direction",
                 f"the log moves in one direction during {100.0 * (1.0 - self.rarer):.0f} % of the time",
                 "as much motion in one direction as in the other",
                 {"direction": Measured(1.0 - self.rarer)},
@@ -193,6 +201,7 @@ class Excitation:
         unit = self._unit(rate=True)
         return Lack(
             "speed_range",
+            "too few speeds",
             f"the log's speeds are {_two(slow)} to {_two(fast)} {unit}, and a wider range is needed, e.g. "
             f"{_two(0.2 * fast)} to {_two(fast)}",
             f"motion at several speeds, e.g. {_two(0.2 * fast)} to {_two(fast)} {unit}",
@@ -211,6 +220,7 @@ class Excitation:
         unit = self._unit(rate=True)
         return Lack(
             "top_speed",
+            "slow motion only",
             f"at the log's top speed, {_two(fast)} {unit}, viscous friction is {percent(share)} of the torque: faster "
             "motion is needed",
             f"faster motion than {_two(fast)} {unit}",
@@ -226,6 +236,7 @@ class Excitation:
         if share < _SLOW:
             return Lack(
                 "slow_motion",
+                "too little slow motion",
                 f"{percent(share)} of the windows are slower than {_two(2.0 * slow)} {unit}, where static friction "
                 "shows",
                 f"slow motion through zero speed, below {_two(2.0 * slow)} {unit}",
@@ -234,6 +245,7 @@ class Excitation:
         if fast < 2.0 * slow:
             return Lack(
                 "top_speed",
+                "slow motion only",
                 f"the log's top speed is {_two(fast)} {unit}, and static friction decays at {_two(slow)}",
                 f"faster motion, above {_two(2.0 * slow)} {unit}",
                 {"speed.fast": Measured(fast, unit), "speed.decay": Measured(slow, unit)},
@@ -254,6 +266,7 @@ class Excitation:
             return None
         return Lack(
             "acceleration",
+            "little acceleration",
             f"acceleration takes {percent(share)} of the log's torque, and {percent(_ACCELERATION)} is needed",
             "harder acceleration",
             {"acceleration": Measured(share), "acceleration.needed": Measured(_ACCELERATION)},
@@ -278,12 +291,14 @@ class Excitation:
         if share >= _LOAD:
             return Lack(
                 "load_range",
+                "the load hardly varies",
                 f"{WEAK_READING}, which varies by {_two(spread)} {unit}, noise apart",
                 "motion of the link through a wider range of gravity torque",
                 {"load_range": Measured(spread, unit), "load_range.share": Measured(share)},
             )
         return Lack(
             "load_range",
+            "the load hardly varies",
             f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, and {of} "
             f"needs {percent(_LOAD)}",
             "motion of the link through a wider range of gravity torque",
@@ -306,6 +321,7 @@ class Excitation:
             return None
         return Lack(
             "travel",
+            f"{_below(self.travel, needed)} of {_two(needed)} rad travelled",
             f"the log's angles cover {_below(self.travel, needed)} rad, and {_two(needed)} rad are needed",
             f"motion through {_two(needed)} rad or more",
             {"travel": Measured(self.travel, "rad"), "travel.needed": Measured(needed, "rad")},

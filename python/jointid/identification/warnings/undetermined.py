@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from jointid.base.advice import Action
 from jointid.base.values import dataclass
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import TITLE, Finding, Measured
 from jointid.estimate.intervals import NORMAL
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent, two_digits
@@ -19,13 +19,10 @@ from jointid.identification.warnings.no_friction import without_friction
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="a 95 % interval wider than ±4 % (a gain's: ±1 %, where the load hardly varies), or a value that moves by "
-    "more than three times its error by chance when the windows are halved or doubled; and the log has too little "
-    "of what this parameter needs: a range of speeds, slow motion, reversals, load, acceleration, travel, or time; "
-    "or a gain of the other sign that fits as well; or an inertia that is hidden by a noisy velocity. Where the log "
-    "has enough, the cause is another: a misfit of the model, which has its own finding",
-    advice="fix the parameter, or record what is missing: the finding says how much there is"
-    f"{DESIGNED}",
+    meaning="the 95 % interval is wider than ±4 % (a gain's: ±1 %), or the value depends on the length of the windows; "
+    "and the log has too little of what the parameter needs: speeds, slow motion, reversals, load, acceleration, "
+    "travel or time. Also an inertia that a noisy velocity hides, and a gain of the other sign that fits as well",
+    advice=f"record what is missing, or fix the parameter{DESIGNED}",
 )
 
 # A parameter is not well determined where its 95 % interval is wider than this to either side, or when other windows
@@ -49,6 +46,7 @@ _SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
+    short: str
     text: str
     measured: Mapping[str, Measured]
 
@@ -63,9 +61,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     texts = [", and ".join(each.text for each in found) for found in reasons.values()]
     shown = list(dict.fromkeys(texts))[:_SHOWN]
     more = sum(text not in shown for text in texts)
-    cause = "not well determined by this recording: " + "; ".join(shown)
+    details = shown
     if more:
-        cause += f"; and {more} more parameter{'s' * (more > 1)}"
+        details.append(f"and {more} more parameter{'s' * (more > 1)}")
     measured = {
         name: number
         for found in reasons.values()
@@ -75,17 +73,33 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if more:
         measured["more_parameters"] = Measured(float(more))
     for (first, second), correlation in _worst_pairs(evidence.correlations, reasons):
-        cause += f"; {first} and {second} are indistinguishable (correlation {correlation:.3f})"
+        details.append(
+            f"{first} and {second} are indistinguishable (correlation {correlation:.3f})"
+        )
         measured[f"{first}.{second}.correlation"] = Measured(correlation)
     for lack in lacks.values():
-        cause += f"; {lack.text}"
+        details.append(lack.text)
         measured |= lack.measured
     yield UNDETERMINED.finding(
-        cause,
+        _title(
+            [found[0].short for found in reasons.values()], [each.short for each in lacks.values()]
+        ),
         *_advice(evidence, reasons, lacks, guessed is not None),
+        details="; ".join(details),
         evidence=measured,
         parameters=tuple(name for name in evidence.parameters if name in reasons),
     )
+
+
+def _title(values: Sequence[str], missing: Sequence[str]) -> str:
+    """The values and what the recording lacks for them, as many as a title holds."""
+    for count in range(min(_FEW, len(values)), 0, -1):
+        more = " and others" if len(values) > count else ""
+        lack = f" ({' and '.join(missing[:2])})" if missing else ""
+        title = f"not determined: {', '.join(values[:count])}{more}{lack}"
+        if len(title) <= TITLE:
+            break
+    return title if len(title) <= TITLE else f"not determined: {values[0]}{more} ({missing[0]})"
 
 
 def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, Lack]]:
@@ -242,7 +256,7 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
             if share > HIDES
             else f"the noise of the velocity makes inertia about {percent(share)} too small, whatever the windows"
         )
-        return [_Reason(text, {})]
+        return [_Reason("inertia", text, {})]
     if p.stderr is None:
         return []
     if evidence.torques.is_nothing(p):
@@ -262,7 +276,7 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
             f"{p.name}.shift": Measured(shift / scale),
             f"{p.name}.shift_over_chance": Measured(shift / chance),
         }
-        reasons.append(_Reason(text, measured))
+        reasons.append(_Reason(f"{p.name} ± {percent(shift / scale)}", text, measured))
     return reasons
 
 
@@ -271,18 +285,16 @@ def _uncertain(p: ParameterEstimate, evidence: Evidence) -> _Reason:
     scale = scale_of(p, evidence)
     error = p.stderr or 0.0
     relative = scale == abs(p.value) and scale > 0.0
-    text = (
-        f"{p.name} has a standard error of {percent(error / scale) if relative else _with_unit(p)}"
-        if error < 10.0 * scale
-        else f"{p.name} is not excited"
-    )
+    size = percent(error / scale) if relative else _with_unit(p)
+    excited = error < 10.0 * scale
+    text = f"{p.name} has a standard error of {size}" if excited else f"{p.name} is not excited"
     measured = {
         f"{p.name}.stderr": Measured(error / scale) if relative else Measured(error, p.unit)
     }
     if evidence.torques.is_friction(p.name):
         share = evidence.torques.of_all_friction(p.name, _half_width(p))
         measured[f"{p.name}.share"] = Measured(share)
-    return _Reason(text, measured)
+    return _Reason(f"{p.name} ± {size}" if excited else p.name, text, measured)
 
 
 def _half_width(p: ParameterEstimate) -> float:
@@ -308,7 +320,7 @@ def _guessed_sign(evidence: Evidence) -> _Reason | None:
     if gain is None or not gain.vary or not evidence.guessed_sign:
         return None
     sign = "negative" if gain.value > 0.0 else "positive"
-    return _Reason(f"a {sign} sensor_gain fits almost as well", {})
+    return _Reason("the sign of sensor_gain", f"a {sign} sensor_gain fits almost as well", {})
 
 
 CHECK = Check(_find, (UNDETERMINED,))
