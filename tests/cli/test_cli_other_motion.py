@@ -16,8 +16,9 @@ TRUE = THESIS.with_parameters(TRUTH)
 LAW = jid.AdaptiveRobust(**jid.control_estimates(TRUE))
 SENSORS = jid.Sensors(torque_noise=0.2)
 QUICK = ["--evaluations", "300", "--rehearsals", "40", "--quiet"]
-# What only the user knows.
-FILLED = {"LOW,HIGH": "-60deg,60deg", "SPEED": "3.4"}
+WIDER = (
+    "jointid design --after first.json --position=-60deg,60deg --velocity 3.4 --output motion.toml"
+)
 MOTIONS = {
     "too slow": jid.Trajectory.thesis(math.radians(60.0), cycle=120.0, duration=30.0),
     "too short a range": jid.Trajectory.thesis(math.radians(3.0), cycle=3.0, duration=6.0),
@@ -43,11 +44,13 @@ def test_the_printed_command_designs_the_motion_that_is_missing(
     words = ["identify", "first.csv", "--joint", "joint.toml", "--save", "first.json", "--quiet"]
     assert main(words) == 0
     printed = "".join(capsys.readouterr())
-    assert "warning (undetermined)" in printed
-    (command,) = set(re.findall(r"jointid design .*? --output motion\.toml", printed))
-    for unknown, value in FILLED.items():
-        command = command.replace(unknown, value)
-    assert "..." not in command
+    assert "warning: not determined: " in printed
+    commands = re.findall(r"do: (jointid design .*)", printed)
+    if name != "no reversal":  # how wide or fast it may be is for the user to say
+        assert not commands
+        assert "do: record " in printed
+        commands = [WIDER]
+    (command,) = commands
     assert main([*shlex.split(command)[1:], *QUICK]) == 0
     design = jid.load_design("motion.toml")
     second = jid.simulate(TRUE, LAW, design.trajectory, sensors=SENSORS, seed=7)
@@ -61,3 +64,39 @@ def test_the_printed_command_designs_the_motion_that_is_missing(
     both = jid.Estimate.load("both.json")
     for parameter, true in TRUTH.items():
         assert both.parameters[parameter].value == pytest.approx(true, rel=0.01), parameter
+
+
+@pytest.mark.slow
+def test_the_demos_first_command_improves_its_weakest_value(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo"]) == 0
+    printed = capsys.readouterr().out
+    assert len(printed.splitlines()) <= 16
+    assert all(len(line) <= 100 for line in printed.splitlines())
+    command = re.search(r"do: (jointid .*)", printed)
+    assert command is not None
+    assert main([*shlex.split(command[1])[1:], "--quiet"]) == 0
+    before = jid.Estimate.load("demo/estimate.json")
+    design = jid.load_design("motion.toml")
+    recording = jid.simulate(
+        design.joint, design.controller, design.trajectory, sensors=design.sensors, seed=3
+    )
+    after = jid.identify(recording, model="coulomb_viscous")
+    for name in ("inertia", "coulomb", "viscous"):
+        assert after[name].stderr < before[name].stderr, name
+        assert after[name].value == pytest.approx(design.joint.parameters[name].value, rel=0.05)
+
+
+@pytest.mark.parametrize("model", ["coulomb_viscous", "stribeck", "stribeck_general"])
+def test_every_model_of_the_demo_designs_what_to_record_next(
+    model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    kuka = jid.demo()
+    known = kuka.joint.model.replace(name=model)
+    jid.identify(kuka.recording, kuka.joint.replace(model=known)).save("first.json")
+    command = ["design", "--after", "first.json", "--position=0,0.8", "--velocity", "0.4"]
+    assert main([*command, "--torque", "2200", "--output", "motion.toml", *QUICK]) == 0
+    assert jid.load_design("motion.toml").trajectory.duration > 0.0

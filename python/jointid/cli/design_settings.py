@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,9 +37,25 @@ def joint_and_bench(path: Path) -> tuple[Joint, Bench | None]:
     return bench.joint, bench
 
 
-def limits_of(arguments: argparse.Namespace, joint: Joint, bench: Bench | None) -> MotionLimits:
-    """The limits of the options; where there is none, the session's, or the joint's."""
-    given: dict[str, Any] = {}
+def advised_motion(estimate: Estimate) -> dict[str, Any]:
+    """What the estimate's findings advise to record: limits and duration, without what only the user knows."""
+    for found in estimate.findings:
+        for action in found.advice:
+            if action.designs:
+                limits = action.arguments.get("limits", {})
+                known = {name: value for name, value in limits.items() if value is not ...}
+                return {**action.arguments, "limits": known}
+    return {}
+
+
+def limits_of(
+    arguments: argparse.Namespace,
+    joint: Joint,
+    bench: Bench | None,
+    advised: Mapping[str, Any] | None = None,
+) -> MotionLimits:
+    """The limits of the options; where there is none, the session's, the joint's, or those advised."""
+    given: dict[str, Any] = {} if bench is not None else dict(advised or {})
     for name in _LIMITS:
         text = getattr(arguments, name)
         if text is not None:

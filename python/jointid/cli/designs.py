@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
 _PICTURES = (".png", ".pdf", ".svg")
+_DURATION = 12.0  # s
 
 
 def add_design(design: argparse.ArgumentParser) -> None:
@@ -26,12 +27,14 @@ def add_design(design: argparse.ArgumentParser) -> None:
         "examples:\n"
         "  jointid design joint.toml --duration 12 --output motion.toml\n"
         "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
-        "  jointid design joint.toml --after estimate.json --duration 6 --output motion.toml\n"
+        "  jointid design --after estimate.json --output motion.toml\n"
         "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
         "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
         'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
     )
-    design.add_argument("joint", type=Path, help="joint file (.toml)")
+    design.add_argument(
+        "joint", type=Path, nargs="?", help="joint file (.toml); default: the joint of --after"
+    )
     design.add_argument(
         "--after",
         type=Path,
@@ -42,13 +45,13 @@ def add_design(design: argparse.ArgumentParser) -> None:
         "--after-joint", metavar="NAME", help="of the estimates of several joints: which one"
     )
     design.add_argument(
-        "--duration", type=decimal, default=12.0, help="of the motion [s] (default 12)"
+        "--duration", type=decimal, help="of the motion [s] (default 12; with --after: as advised)"
     )
     for name, shown, explanation in (
         (
             "--position",
             "LOW,HIGH",
-            "window [rad], or as -60deg,60deg; default: nine tenths of the file's",
+            "window [rad], or as -60deg,60deg; default: nine tenths of the file's; with --after: as recorded",
         ),
         (
             "--velocity",
@@ -153,6 +156,7 @@ def design(arguments: argparse.Namespace) -> int:
 def _designed(arguments: argparse.Namespace) -> Design:
     """The design of a command line."""
     from jointid.cli.design_settings import (
+        advised_motion,
         controller_after,
         controller_for,
         joint_and_bench,
@@ -165,8 +169,16 @@ def _designed(arguments: argparse.Namespace) -> Design:
     from jointid.design.design_search import DesignSearch
     from jointid.design.designing import design_excitation
 
-    joint, bench = joint_and_bench(arguments.joint)
-    limits = limits_of(arguments, joint, bench)
+    estimate = _estimate(arguments)
+    if arguments.joint is not None:
+        joint, bench = joint_and_bench(arguments.joint)
+    elif estimate is not None:
+        joint, bench = estimate.joint, None
+    else:
+        raise InputError("a joint file or --after is needed", argument="joint")
+    advised = {} if estimate is None else advised_motion(estimate)
+    limits = limits_of(arguments, joint, bench, advised.get("limits", {}))
+    duration = arguments.duration or advised.get("duration", _DURATION)
     budget = {
         "evaluations": arguments.evaluations,
         "joints": arguments.joints,
@@ -180,7 +192,6 @@ def _designed(arguments: argparse.Namespace) -> Design:
     period = arguments.control_period
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
-    estimate = _estimate(arguments)
     sensors = sensors_for(arguments.sensor, limits, joint, bench)
     with MotionProgress(enabled=not arguments.quiet) as progress:
         settings: dict[str, Any] = {
@@ -194,10 +205,10 @@ def _designed(arguments: argparse.Namespace) -> Design:
         if estimate is None:
             controller = controller_for(arguments, joint, bench)
             settings |= {"controller": controller, "sensors": sensors}
-            return design_excitation(joint, limits, arguments.duration, **settings)
+            return design_excitation(joint, limits, duration, **settings)
         settings["controller"] = controller_after(arguments, estimate.joint, bench)
         settings["sensors"] = sensors_after(arguments.sensor, sensors, estimate)
-        found: Design = estimate.next_motion(limits, arguments.duration, joint=joint, **settings)
+        found: Design = estimate.next_motion(limits, duration, joint=joint, **settings)
         return found
 
 

@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.design.asked import free_parameters
 from jointid.design.balance_noise import assumed_sensors
+from jointid.design.default_law import default_controller
 from jointid.design.design import COMPLETE, CRITERIA, Design
 from jointid.design.design_search import DesignProgress, DesignSearch
 from jointid.design.expectation import expected_errors, what_limits
@@ -27,7 +29,8 @@ from jointid.design.rehearsal import Rehearsal, rehearse
 from jointid.design.stated import check_gain, check_length, check_signs, check_stated
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
-from jointid.simulation.plant import control_estimates, torque_limit
+from jointid.simulation.peaks import Peaks
+from jointid.simulation.plant import torque_limit
 from jointid.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -42,9 +45,7 @@ _CONTRADICTED = 1.25  # times the error that the information tells: it does not 
 _OVERSTATED = 1.5  # times the error counted; less may be the luck of few rehearsals
 _USUAL = math.radians(20.0)  # of the thesis's motion [rad]
 _CYCLE = 6.0  # the same [s]
-_ROBUST = 0.03  # of the torque limit: the robust term of a controller that is chosen here
 _SAME_TORQUE = 1.01  # 8 A of current are 159.984 of 160 N·m
-_STIFF = 80.0  # 1/s: of a controller that is chosen here
 
 
 def design_excitation(
@@ -159,6 +160,17 @@ def design_excitation(
     return _Designing(situation, settings, callback).design(nominal)
 
 
+@dataclass(frozen=True, slots=True)
+class _Final:
+    """A motion as it may be recorded: what it reaches, why it may not be, its rehearsals, what is minimised."""
+
+    trajectory: Trajectory
+    peaks: Peaks
+    problem: str
+    rehearsal: Rehearsal
+    worth: float
+
+
 class _Designing:
     """One design: the judges, the search, the choice among what it finds."""
 
@@ -191,28 +203,24 @@ class _Designing:
             self._worth(motion, each) for motion, each in zip(motions, rehearsals, strict=True)
         ]
         chosen = motions[int(np.argmin(worth))]
-        trajectory, peaks, problem = held_by_all(situation, chosen, settings.seed, settings.threads)
-        rehearsal = rehearse(
-            situation,
-            trajectory,
-            self._values[0],
-            settings.rehearsals,
-            first=1000,
-            threads=settings.threads,
-        )
+        final = self._held(chosen)
+        if usual is not None and chosen is not usual:
+            # Few rehearsals may flatter a motion; all of them, at the limits that it keeps, decide.
+            final = min(final, self._held(usual), key=lambda each: (bool(each.problem), each.worth))
+        trajectory, rehearsal = final.trajectory, final.rehearsal
         judgements = self._fine.judge(trajectory.core)
         errors = expected_errors(situation, judgements, self._values, rehearsal)
         weakest = max(errors, key=lambda name: errors[name].relative)
         made = Design(
-            status=COMPLETE if not problem else "limits exceeded",
-            reason=problem,
+            status=COMPLETE if not final.problem else "limits exceeded",
+            reason=final.problem,
             trajectory=trajectory,
             joint=nominal,
             believed=dict(situation.ranges.ranges),
             controller=situation.controller,
             sensors=situation.sensors,
             limits=situation.limits,
-            peaks=peaks,
+            peaks=final.peaks,
             parameters=errors,
             reference={} if usual is None else self._relative(rehearsals[-1].rms()),
             criterion=situation.criterion,
@@ -225,6 +233,21 @@ class _Designing:
             limited_by="",
         )
         return replace(made, limited_by=what_limits(made, situation, judgements[0]))
+
+    def _held(self, motion: Trajectory) -> _Final:
+        """Return a motion that many joints keep the limits with, and all its rehearsals."""
+        situation, settings = self._situation, self._settings
+        trajectory, peaks, problem = held_by_all(situation, motion, settings.seed, settings.threads)
+        rehearsal = rehearse(
+            situation,
+            trajectory,
+            self._values[0],
+            settings.rehearsals,
+            first=1000,
+            threads=settings.threads,
+        )
+        worth = self._worth(trajectory, rehearsal)
+        return _Final(trajectory, peaks, problem, rehearsal, worth)
 
     def _counting(self, judge: _core.Excitation) -> tuple[str, ...]:
         """Return the wanted parameters that some motion determines for the nominal joint; all if none."""
@@ -358,26 +381,6 @@ def _judged(judge: _core.Excitation, motion: Trajectory) -> list[_core.MotionJud
 def _with_model(joint: Joint) -> Joint:
     """Return the joint with a model that has a name: the richest that is usual, where it has none."""
     return joint if joint.model.named else joint.replace(model=joint.model.replace(name="stribeck"))
-
-
-def default_controller(nominal: Joint, torque: float) -> Controller:
-    """Return a law that believes a joint, or one without a model where none compensates its friction.
-
-    Parameters
-    ----------
-    nominal : Joint
-        With values.
-    torque : float
-        The limit of the drive's torque, of which the robust term has a small part [N·m].
-    """
-    try:
-        law = _core.AdaptiveRobust(
-            **control_estimates(nominal), friction_velocity="reference", torque_feedback=False
-        )
-    except InputError:
-        inertia = nominal.known_inertia or 1.0
-        return _core.Pd(stiffness=inertia * _STIFF * _STIFF, damping=2.0 * inertia * _STIFF)
-    return law.replace(robust_torque=min(law.robust_torque, _ROBUST * torque))
 
 
 def _matrix(known: Known | None, names: tuple[str, ...]) -> Array:

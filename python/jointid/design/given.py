@@ -16,6 +16,7 @@ from jointid.design.unseen import unseen_friction
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import NORMAL, half_widths
 from jointid.joint.joint import Joint
+from jointid.joint.own_terms import INERTIA
 from jointid.joint.parameters import Parameter
 from jointid.problem.constant_torque import undivided
 
@@ -108,17 +109,32 @@ def given_by(estimate: Estimate) -> Given:
     held |= {each.offset for each in undivided(estimate.free)}
     # A recording's own parameter, "coulomb[0]", will not be that of the next one.
     own = {name for name in estimate.free if "[" in name}
+    own |= {key for term in estimate.joint.model.resolved.terms.each for key in term.keys}
     names = tuple(
         name for name in estimate.parameters if name in {*estimate.free, *assumed} - held - own
     )
     table = estimate.joint.parameters
     values = {name: estimate.parameters[name].value for name in names} | assumed
+    if "inertia" in values:
+        values["inertia"] += _own_inertia(estimate)
     friction = float(np.max(np.abs(estimate.windows.friction), initial=0.0))
     return Given(
         known=Known(names=names, information=_information(estimate, names, held, {*assumed, *own})),
         values=np.array([values[name] for name in names]),
         bounds={name: (table[name].min, table[name].max) for name in names if name in table},
         scale={name: friction for name in names if any(part in name for part in _SIGNED)},
+    )
+
+
+def _own_inertia(estimate: Estimate) -> float:
+    """The mean inertia of the own terms, whose signals no design knows [kg·m² or kg]."""
+    terms = estimate.joint.model.resolved.terms.each
+    means = estimate.settings.get("mean_inertia", {})
+    return sum(
+        estimate.parameters[key].value * means.get(term.signal, 0.0)
+        for term in terms
+        if term.kind in INERTIA
+        for key in term.keys
     )
 
 
@@ -199,4 +215,9 @@ def joint_of(estimate: Estimate, given: Given, facts: Joint | None) -> Joint:
             max=known.max,
             vary=name in given.names,
         )
-    return base.replace(parameters=table, model=own.model, torque_offset=own.torque_offset)
+    for term in own.model.resolved.terms.each:
+        for key in term.keys:
+            table.pop(key, None)
+    # Own torques are left out, own inertias are in the inertia: no signal of theirs is simulated.
+    model = own.model.replace(terms={}) if own.model.resolved.terms else own.model
+    return base.replace(parameters=table, model=model, torque_offset=own.torque_offset)

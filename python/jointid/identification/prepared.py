@@ -47,6 +47,7 @@ from jointid.identification.search.search import Search
 from jointid.identification.search.stated_bounds import known_parameters
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
+from jointid.joint.own_terms import INERTIA
 from jointid.joint.parameters import Parameter
 from jointid.problem.constant_torque import balanced
 from jointid.problem.problem import Problem
@@ -209,6 +210,7 @@ class Prepared:
             "model": str(choice.model.resolved),
             "terms": list(choice.terms),
             "dropped": choice.dropped,
+            **_of_own_inertia(problem),
             "residual": choice.residual,
             **_of_gain(choice, penalty),
             "windows": penalty.window_duration,
@@ -229,6 +231,16 @@ def _of_instant(instant: SensorInstant | None) -> dict[str, Any]:
     return (
         {"sensor_before_step": instant.applied} if instant is not None and instant.applied else {}
     )
+
+
+def _of_own_inertia(problem: Problem) -> dict[str, Any]:
+    """The mean of each signal that is an inertia, for what knows the joint without the recordings."""
+    means = {
+        own.signal: float(np.mean([np.mean(run.extra[own.signal]) for run in problem.recordings]))
+        for own in problem.choice.model.resolved.terms.each
+        if own.kind in INERTIA and not own.rate
+    }
+    return {"mean_inertia": means} if means else {}
 
 
 def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:

@@ -1,0 +1,30 @@
+"""The controller of a design for which none is stated."""
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.joint.joint import Joint
+from jointid.simulation.arguments import Controller
+from jointid.simulation.plant import control_estimates
+
+_ROBUST = 0.03  # of the torque limit: the robust term
+_STIFF = 80.0  # 1/s
+
+
+def default_controller(nominal: Joint, torque: float) -> Controller:
+    """Return a law that believes a joint, or one without a model where none compensates its friction.
+
+    Parameters
+    ----------
+    nominal : Joint
+        With values.
+    torque : float
+        The limit of the drive's torque, of which the robust term has a small part [N·m].
+    """
+    try:
+        law = _core.AdaptiveRobust(
+            **control_estimates(nominal), friction_velocity="reference", torque_feedback=False
+        )
+    except InputError:
+        inertia = nominal.known_inertia or 1.0
+        return _core.Pd(stiffness=inertia * _STIFF * _STIFF, damping=2.0 * inertia * _STIFF)
+    return law.replace(robust_torque=min(law.robust_torque, _ROBUST * torque))
