@@ -109,13 +109,13 @@ def test_a_motor_side_without_a_gear_ratio_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = ["identify", str(SHORTENED / "tx40_200_hz.csv.gz"), "--joints", "1", "--quiet"]
-    said = "add --gear-ratio RATIO"
+    said = "motor_side"
     page = tmp_path / "page.html"
     assert main([*line, "--report", str(page)]) == 0
     assert said in capsys.readouterr().out
     assert "no gear ratio is known: the values are on the motor" in page.read_text("utf-8")
     assert main([*line, "--gear-ratio", "32"]) == 0
-    assert "no gear ratio" not in capsys.readouterr().out
+    assert "motor_side" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", LOGS)

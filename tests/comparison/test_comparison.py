@@ -224,7 +224,7 @@ def test_several_recordings_are_compared_by_recording() -> None:
     assert found.winner == "stribeck"
     assert found.settings["folds"] == 3
     assert found.settings["held_out"] == "recording"
-    assert "3 folds, one recording held out in each" in found.report()
+    assert "3 folds, one recording held out in each" in found.report(verbose=True)
     assert len(found.estimate.settings["recordings"]) == 3
 
 
@@ -280,7 +280,7 @@ def test_a_symmetric_model_is_the_same_however_it_is_stated() -> None:
 
 def test_a_report_has_no_control_characters() -> None:
     joint = jid.Joint(name="a\x1b[2Jb")
-    report = jid.compare_models(simulated(3), joint, models="coulomb_viscous", folds=2).report()
+    report = jid.compare_models(simulated(3), joint, models="coulomb_viscous", folds=2).report(verbose=True)
     assert "\x1b" not in report
     assert "a\ufffd[2Jb" in report
 
@@ -311,7 +311,7 @@ def test_same_bits_again(comparison: jid.Comparison, well_excited: jid.Recording
 
 
 def test_report_json_and_html(comparison: jid.Comparison) -> None:
-    text = comparison.report()
+    text = comparison.report(verbose=True)
     assert "5 folds, one block of the recording held out in each" in text
     assert "winner: stribeck" in text
     document = json.loads(comparison.to_json())
@@ -446,9 +446,9 @@ def test_causes_are_looked_for_of_the_winner_alone(
     assert compared.estimate.findings == alone.findings
     assert compared.estimate.parameters == alone.parameters
     for finding in alone.warnings:
-        assert f"{finding.severity} ({finding.code}): {finding.cause}" in compared.report()
+        assert f"{finding.severity} ({finding.code}): {finding.cause}" in compared.report(verbose=True)
     for line in alone.verdict.lines():
-        assert line in compared.report()
+        assert line in compared.report(verbose=True)
 
 
 def test_a_comparison_of_useless_values_says_so(well_excited: jid.Recording) -> None:
@@ -463,7 +463,7 @@ def test_a_comparison_of_useless_values_says_so(well_excited: jid.Recording) -> 
     )
     blocking = [found for found in comparison.estimate.findings if found.severity == "blocking"]
     assert "implausible_units" in {found.code for found in blocking}
-    lines = comparison.report().splitlines()
+    lines = comparison.report(verbose=True).splitlines()
     for found in blocking:
         assert f"not usable ({found.code}): {found.cause}" in lines
     first = f"Use none: {blocking[0].cause}."

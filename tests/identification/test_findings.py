@@ -329,7 +329,7 @@ def test_a_check_is_a_file_and_a_line(
     page = html_report(estimate)
     assert "the base wobbles in 1 recording(s)" in page
     assert "do: inspect the bolts" in page
-    assert sentence in estimate._repr_html_()
+    assert "do: inspect the bolts" in estimate._repr_html_()
     again = jid.Estimate.from_json(estimate.to_json())
     assert again.findings == estimate.findings
     assert "| `wobble` | warning | the base wobbles | bolt it down |" in findings_page()

@@ -205,7 +205,13 @@ def compare(arguments: argparse.Namespace) -> int:
             callback=progress,
         )
     refused = _write(comparison.estimate, arguments, comparison)
-    print(comparison.to_json() if arguments.json else comparison.report())
+    wording = Wording.of(arguments)
+    saved = "" if wording.saved == "ESTIMATE" else wording.saved
+    print(
+        comparison.to_json()
+        if arguments.json
+        else comparison.report(wording.of_command, saved, verbose=arguments.verbose)
+    )
     _say_written(refused, arguments)
     return _exit_code(refused, arguments)
 

@@ -17,6 +17,13 @@ if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
 _SLOW = 0.01  # of the peak speed
+_IN_HEADLINE = ("name", "kind", "samples", "duration [s]", "sample period [s]", "gaps", "velocity")
+_LESS = (  # what -v brings
+    "fingerprint",
+    "stamps scatter by [s]",
+    "slower than 1 % of the peak speed [%]",
+    "velocity later than the position by [s]",
+)
 
 
 def info(arguments: argparse.Namespace) -> None:
@@ -36,11 +43,21 @@ def info(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(json.dumps(contents, indent=1, ensure_ascii=False))
         return
+    print(_headline(recording))
+    print(*map(_signal_line, contents["signals"].items()), sep="\n")
     for label, value in contents.items():
-        if label == "signals":
-            print("signals:", *map(_signal_line, value.items()), sep="\n")
-        else:
+        if label not in (*_IN_HEADLINE, "signals") and (arguments.verbose or label not in _LESS):
             print(f"{label}: {value}")
+
+
+def _headline(recording: Recording) -> str:
+    """What it is, in a line."""
+    velocity = "derived from the position" if recording.velocity_derived else "recorded"
+    gaps = f", {len(recording.gaps)} gaps" if recording.gaps else ""
+    return (
+        f"{recording.name or 'recording'}: {recording.kind}, {len(recording)} rows over {recording.duration:.6g} s, "
+        f"one every {1e3 * recording.sample_period:.4g} ms{gaps}; velocity {velocity}"
+    )
 
 
 def _signal_line(signal: tuple[str, Mapping[str, Any]]) -> str:

@@ -175,10 +175,12 @@ def _designed(arguments: argparse.Namespace) -> Design:
     elif estimate is not None:
         joint, bench = estimate.joint, None
     else:
-        raise InputError("a joint file or --after is needed", argument="joint")
+        raise InputError("missing: joint (a file), or an estimate for --after")
     advised = {} if estimate is None else advised_motion(estimate)
     limits = limits_of(arguments, joint, bench, advised.get("limits", {}))
-    duration = arguments.duration or advised.get("duration", _DURATION)
+    duration = arguments.duration
+    if duration is None:
+        duration = advised.get("duration", _DURATION)
     budget = {
         "evaluations": arguments.evaluations,
         "joints": arguments.joints,

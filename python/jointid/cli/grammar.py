@@ -181,6 +181,7 @@ def add_info(info: CommandParser) -> None:
     info.help_later(recording, lambda: f"recording: {file_kinds()}")
     reading_arguments(info)
     info.add_argument("--json", action="store_true", help="print JSON")
+    verbose_argument(info)
 
 
 def _identification_arguments(command: CommandParser) -> None:

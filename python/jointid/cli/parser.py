@@ -11,7 +11,7 @@ from jointid.cli.exit_codes import BAD_INPUT
 
 TYPE_CHECKING = False  # as in typing, which `jointid --help` does without
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from typing import Any, NoReturn
 
 # What argparse says in the terms of a programmer.
@@ -79,10 +79,21 @@ class CommandParser(argparse.ArgumentParser):
         try:
             known, unknown = super().parse_known_args(args, namespace)
         except argparse.ArgumentError as error:
+            if error.argument_name == "COMMAND":
+                self.error(self._unknown_command(args))
             self.error(": ".join(filter(None, (error.argument_name, error.message))))
         if unknown:  # said here, where the command and its options are known
             self.error(self._unknown(unknown))
         return known, unknown
+
+    def _unknown_command(self, arguments: Sequence[str]) -> str:
+        """What is said of a word that is no command."""
+        from jointid.recording.signals import closest
+
+        word = next((each for each in arguments if not each.startswith("-")), "")
+        close = closest(word, HELP)
+        known = f"did you mean {close}?" if close else f"there are {', '.join(HELP)}"
+        return f"there is no command {word}; {known}"
 
     def _unknown(self, arguments: list[str]) -> str:
         """What is said of arguments that no option takes; of options, the first."""

@@ -67,7 +67,9 @@ def add_sweep(sweep: CommandParser) -> None:
         help="a setting to sweep, such as ga.population, windows, method, sensors.torque_noise",
     )
     sweep.add_argument(
-        "--trials", type=whole, default=10, help="trials of each combination (default 10)"
+        "--trials",
+        type=whole,
+        help="trials of each combination (default: 10 of a simulation or a random search, 1 otherwise)",
     )
     for name, explanation in (
         ("--ga", "default, thesis or thesis_code"),
@@ -92,7 +94,10 @@ def add_sweep(sweep: CommandParser) -> None:
         help="fix a parameter (SI)",
     )
     sweep.add_argument(
-        "--standard-errors", action="store_true", help="compute standard errors for each trial"
+        "--standard-errors",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="of each trial (default: they are computed)",
     )
     sweep.add_argument(
         "--tracking",

@@ -104,10 +104,8 @@ class Wording:
         """How to get another motion: designed after the saved estimate, where that needs no more of the user."""
         from jointid.cli.next_motion import runs_as_printed
 
-        if not runs_as_printed(action):
+        if self.saved == "ESTIMATE" or not runs_as_printed(action):
             return f"record {action.text}"
-        if self.saved == "ESTIMATE":
-            return f"record {action.text} (--save estimate.json: jointid design can plan it)"
         of_joint = ["--after-joint", self.joint] if self.joint else []
         words = ["design", "--after", self.saved, *of_joint, "--output", "motion.toml"]
         return f"jointid {shlex.join(words)}"

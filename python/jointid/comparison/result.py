@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.base.frames import data_frame
 from jointid.base.values import dataclass
+from jointid.estimate.answers import COLUMNS, cut, findings, purposes
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import residual_text
+from jointid.estimate.wording import rounded, two_digits
 from jointid.joint.model import Model
 
 if TYPE_CHECKING:
@@ -22,6 +26,7 @@ SCHEMA = 1
 _PLAIN = (
     *("model", "parameters", "score", "stderr", "fold_scores", "penalty", "eligible", "reason"),
 )
+_SHOWN = 6  # models in an answer
 HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", "remark")
 
 
@@ -95,8 +100,36 @@ class Comparison:
         scores = ", ".join(f"{row.model} {100.0 * row.score:.3g} %" for row in self.rows)
         return f"Comparison({scores}; winner {self.winner})"
 
-    def report(self) -> str:
-        """Return the comparison as text: a line for each model, then the winner and the reason."""
+    def report(
+        self, action: Callable[[Action], str] = str, saved: str = "", *, verbose: bool = False
+    ) -> str:
+        """Return the comparison as text: the winner, a line for each model, the winner's verdict and findings.
+
+        Parameters
+        ----------
+        action : callable
+            Words an action. Default: as at a Python prompt.
+        saved : str
+            The file that has the winner's estimate. Default: there is none.
+        verbose : bool
+            Everything: penalties, folds, what was not compared. Default False.
+        """
+        if verbose:
+            return self._whole()
+        first = f"{self._title()}: {self.winner} predicts held-out motion best"
+        names = max(len(row.model) for row in self.rows[:_SHOWN])
+        lines = [first if len(first) <= COLUMNS else f"{self.winner} predicts held-out motion best"]
+        for row in sorted(self.rows, key=lambda each: each.score)[:_SHOWN]:
+            score = _percent_with_error(row.score, row.stderr)
+            lines.append(cut(f"  {row.model.ljust(names)}  {score.rjust(12)}  {row.reason}"))
+        if len(self.rows) > _SHOWN:
+            lines.append(f"  and {len(self.rows) - _SHOWN} more models")
+        verdict = self.estimate.verdict
+        lines += [f"{self.winner}: {verdict.level}", *purposes(verdict)]
+        lines += findings(self.estimate.findings, action, most=1, saved=saved)
+        return printable("\n".join(lines))
+
+    def _whole(self) -> str:
         table = [HEAD, *self.cells()]
         widths = [max(len(row[column]) for row in table) for column in range(len(HEAD))]
         lines = [f"jointid comparison — {self._title()}", ""]
@@ -202,6 +235,12 @@ class Comparison:
             )
             for row in self.rows
         ]
+
+
+def _percent_with_error(share: float, stderr: float) -> str:
+    if not 0.0 < stderr < math.inf:
+        return f"{100.0 * share:.3g} %"
+    return f"{rounded(100.0 * share, 100.0 * stderr)} ± {two_digits(100.0 * stderr)} %"
 
 
 def _row(row: ComparedModel) -> dict[str, Any]:

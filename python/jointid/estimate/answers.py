@@ -105,12 +105,12 @@ def findings(
     rest = [each.code for each in serious[most:]]
     if rest:
         follow = " may follow from it" if blocking else ""
-        lines.append(_cut(f"{len(rest)} more{follow}: {_listed(rest)}"))
+        lines.append(cut(f"{len(rest)} more{follow}: {_listed(rest)}"))
     elif not serious:
         lines.append("no warnings")
     notes = [each.code for each in found if each.severity == "info"]
     if notes:
-        lines.append(_cut(f"notes: {_listed(notes)}"))
+        lines.append(cut(f"notes: {_listed(notes)}"))
     if serious or notes:
         codes = [each.code for each in shown] or notes
         lines.append(f"why: jointid explain {codes[0]} {saved}".rstrip())
@@ -140,5 +140,6 @@ def _listed(codes: Sequence[str]) -> str:
     return ", ".join(names[:_NAMED]) + more
 
 
-def _cut(line: str) -> str:
+def cut(line: str) -> str:
+    """A line of at most `COLUMNS`."""
     return line if len(line) <= COLUMNS else line[: COLUMNS - 1] + "…"

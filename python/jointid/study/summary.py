@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,12 +13,17 @@ from jointid.base.error_text import printable
 from jointid.base.errors import InputError
 from jointid.base.frames import data_frame
 from jointid.base.html import Html, element, table
+from jointid.estimate.wording import rounded, two_digits
 from jointid.study.row import REFUSED, Row
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from jointid.study.study_result import Study
+
+
+_SHOWN = 10  # cells in a text
+_ALIKE = 1e-4  # of a value: so much do searches differ that found the same minimum
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +44,8 @@ class CellSummary:
         Median.
     mean, spread : dict of str to float
         Of each parameter over the trials; the spread is the standard deviation [SI].
+    stderr : dict of str to float
+        Median standard error of each parameter [SI]; empty where none was computed.
     bias, scatter : dict of str to float
         Mean error and spread, relative to the truth; empty if it is not known.
     success : float or None
@@ -56,10 +63,16 @@ class CellSummary:
     penalty: float
     mean: dict[str, float]
     spread: dict[str, float]
+    stderr: dict[str, float]
     bias: dict[str, float]
     scatter: dict[str, float]
     success: float | None
     tracking: dict[str, float]
+
+    @property
+    def differ(self) -> bool:
+        """Whether the trials differ by more than a converged search does."""
+        return any(self.spread[name] > _ALIKE * abs(mean) for name, mean in self.mean.items())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,14 +105,25 @@ class Summary:
         return data_frame([_record(cell) for cell in self.cells])
 
     def __str__(self) -> str:
-        header, body = summary_texts(self)
+        header, body = summary_texts(self.best(_SHOWN))
         widths = [max(len(line[i]) for line in [header, *body]) for i in range(len(header))]
         lines = [
             "  ".join(text.rjust(width) for text, width in zip(line, widths, strict=True))
             for line in [header, *body]
         ]
+        if len(self.cells) > _SHOWN:
+            lines.append(
+                f"the best {_SHOWN} of {len(self.cells)}; to_pandas() and --table have all"
+            )
         lines += summary_notes(self)
         return printable("\n".join(line.rstrip() for line in lines))
+
+    def best(self, count: int) -> Summary:
+        """Return the cells with the most successes or, where the truth is not known, the smallest penalties."""
+        if len(self.cells) <= count:
+            return self
+        ordered = sorted(self.cells, key=lambda each: (-(each.success or 0.0), each.penalty))
+        return replace(self, cells=tuple(ordered[:count]))
 
     def to_html(self) -> str:
         """Return what `print` shows, as HTML for a notebook."""
@@ -156,6 +180,11 @@ def _cell(study: Study, number: int, rows: Sequence[Row], within: float) -> Cell
         penalty=float(np.median([row.penalty for row in done])) if done else math.nan,
         mean={name: _mean(v) for name, v in values.items()},
         spread={name: _deviation(v) for name, v in values.items()},
+        stderr={
+            name: float(np.median([row.stderr[name] for row in done if name in row.stderr]))
+            for name in values
+            if any(name in row.stderr for row in done)
+        },
         bias={name: _mean(r) for name, r in ratios.items()},
         scatter={name: _deviation(r) for name, r in ratios.items()},
         success=float(np.all(near, axis=0).sum()) / len(rows) if near else None,
@@ -186,13 +215,13 @@ def _record(cell: CellSummary) -> dict[str, Any]:
     record: dict[str, Any] = dict(cell.labels)
     for name in ("trials", "refused", "converged", "penalty", "success"):
         record[name] = getattr(cell, name)
-    for kind in ("mean", "spread", "bias", "scatter"):
+    for kind in ("mean", "spread", "stderr", "bias", "scatter"):
         record |= {f"{name}_{kind}": value for name, value in getattr(cell, kind).items()}
     return record | {f"tracking_{name}": value for name, value in cell.tracking.items()}
 
 
 def summary_texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
-    """Return header and lines; a parameter as bias ± scatter [%] if its truth is known, else mean ± spread."""
+    """Return header and lines; a parameter as bias ± scatter [%] of a known truth, or as value ± error."""
     cells = summary.cells
     swept = list(cells[0].labels) if cells else []
     names = _varying(cells)
@@ -255,9 +284,13 @@ def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
 def _parameter(cell: CellSummary, name: str) -> str:
     if name in cell.bias:
         return f"{100.0 * cell.bias[name]:+.2f}" + _after(100.0 * cell.scatter[name], ".2f")
-    if name in cell.mean:
-        return f"{cell.mean[name]:.4g}" + _after(cell.spread[name], ".2g")
-    return ""
+    if name not in cell.mean:
+        return ""
+    # The spread of trials that end in one minimum is rounding, and no error.
+    error = max(cell.stderr.get(name, 0.0), cell.spread.get(name, 0.0) if cell.differ else 0.0)
+    if not 0.0 < error < math.inf:
+        return f"{cell.mean[name]:.4g}"
+    return f"{rounded(cell.mean[name], error)} ± {two_digits(error)}"
 
 
 def _after(spread: float, form: str) -> str:

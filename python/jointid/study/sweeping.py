@@ -99,12 +99,15 @@ class StudyBrokenError(RuntimeError):
         self.study = study
 
 
+_TRIALS = 10  # where they differ
+
+
 def sweep(
     subject: Recording | Sequence[Recording] | Scenario,
     joint: Joint | None = None,
     *,
     grid: Mapping[str, Any] | None = None,
-    trials: int = 10,
+    trials: int | None = None,
     model: Model | ModelName | Mapping[str, Any] | None = None,
     parameters: Mapping[str, Any] | None = None,
     search: Search | Method | None = None,
@@ -114,7 +117,7 @@ def sweep(
     mask_standstill: bool = True,
     shift: Mapping[str, float] | None = None,
     min_speed: float | None = None,
-    standard_errors: bool = False,
+    standard_errors: bool = True,
     tracking: bool = False,
     truth: Mapping[str, float] | None = None,
     executor: Executor | None = None,
@@ -136,8 +139,9 @@ def sweep(
         `identify` (``"windows"``, ``"model"``, ``"model.FIELD"``, …), of the search ``"method"``, ``"ga"``
         and ``"ga.FIELD"``, fixed parameters ``"parameters.NAME"``, and of a scenario its fields,
         ``"sensors.FIELD"``, ``"controller.FIELD"``, ``"truth.NAME"``. Default: one cell.
-    trials : int
-        Number for each combination. Default 10.
+    trials : int, optional
+        Number for each combination. Default: 10 where trials differ (a scenario's noise, a random search), and 1
+        where they do not.
     model, parameters, residual, windows, torque_hold, mask_standstill, shift, min_speed
         As in `identify`, for all cells, except that a model without a name is "coulomb_viscous".
     search : Search or str, optional
@@ -146,7 +150,7 @@ def sweep(
         this process, and 1 for each trial in an executor. A grid over "ga" or a field of it means the method
         "ga", unless one is stated. Callback, checkpoint and resume are refused.
     standard_errors : bool
-        Whether to compute standard errors, which takes some milliseconds more per trial. Default False.
+        Whether to compute standard errors, which takes some milliseconds per trial. Default True.
     tracking : bool
         Whether to simulate again with the identified and with the true parameters; for a scenario whose
         controller compensates friction. Default False.
@@ -198,6 +202,8 @@ def sweep(
     work = work_of(subject, joint, grid, Search.of(search), common, standard_errors, tracking)
     if work.threads == 0 and executor is not None:
         work = replace(work, threads=1)
+    if trials is None:
+        trials = _TRIALS if work.trials_differ else 1
     trials = whole_number("trials", trials, 1, 10**9)
     whole_number("seed", work.seed + trials - 1, 0, 2**64 - 1)
     if callback is not None and not callable(callback):

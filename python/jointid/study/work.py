@@ -56,6 +56,14 @@ class Work:
         """Seed of the first trial."""
         return self.search.seed
 
+    @property
+    def trials_differ(self) -> bool:
+        """Whether the noise of a simulation or a random search tells two trials apart."""
+        if isinstance(self.subject, Scenario):
+            return True
+        methods = {each.search(self.search, self.seed, 1).chosen_method for each in self.cells}
+        return methods != {"separable"}
+
     def ordered(self, trials: int, done: Iterable[Place]) -> list[Place]:
         """Return the remaining trials; those that share a recording or a penalty follow each other."""
         left = set(itertools.product(range(len(self.cells)), range(trials))) - set(done)
