@@ -280,7 +280,9 @@ def test_a_symmetric_model_is_the_same_however_it_is_stated() -> None:
 
 def test_a_report_has_no_control_characters() -> None:
     joint = jid.Joint(name="a\x1b[2Jb")
-    report = jid.compare_models(simulated(3), joint, models="coulomb_viscous", folds=2).report(verbose=True)
+    report = jid.compare_models(simulated(3), joint, models="coulomb_viscous", folds=2).report(
+        verbose=True
+    )
     assert "\x1b" not in report
     assert "a\ufffd[2Jb" in report
 
@@ -446,7 +448,9 @@ def test_causes_are_looked_for_of_the_winner_alone(
     assert compared.estimate.findings == alone.findings
     assert compared.estimate.parameters == alone.parameters
     for finding in alone.warnings:
-        assert f"{finding.severity} ({finding.code}): {finding.cause}" in compared.report(verbose=True)
+        assert f"{finding.severity} ({finding.code}): {finding.cause}" in compared.report(
+            verbose=True
+        )
     for line in alone.verdict.lines():
         assert line in compared.report(verbose=True)
 

@@ -131,7 +131,7 @@ def _own_inertia(estimate: Estimate) -> float:
     terms = estimate.joint.model.resolved.terms.each
     means = estimate.settings.get("mean_inertia", {})
     return sum(
-        estimate.parameters[key].value * means.get(term.signal, 0.0)
+        estimate.parameters[key].value * float(means.get(term.signal, 0.0))
         for term in terms
         if term.kind in INERTIA
         for key in term.keys

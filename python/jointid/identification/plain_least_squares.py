@@ -354,7 +354,7 @@ def _shifted(rows: _Rows, signal: int, delays: Array) -> Array:
 def _best_delay(rows: _Rows, regressors: Array, signal: int, less: Array) -> float:
     """The delay of the target that leaves clearly less, or 0."""
     basis = np.linalg.qr(regressors)[0]
-    grid = _STEP * np.arange(-_STEPS, _STEPS + 1)
+    grid: Array = _STEP * np.arange(-_STEPS, _STEPS + 1, dtype=np.float64)
     targets = _shifted(rows, signal, grid) - less[:, None]
     sizes = np.linalg.norm(targets - basis @ (basis.T @ targets), axis=0)
     best = int(np.argmin(sizes))
