@@ -25,15 +25,19 @@ class _Bar:
         self._stream = stream if stream is not None else sys.stderr
         self._enabled = enabled and self._stream.isatty()
         self._drawn = 0.0
+        self._began = time.monotonic()
 
-    def _draw(self, share: float, text: str) -> None:
-        """Draw, at most ten times a second."""
+    def _draw(self, share: float, text: str, resumed: float = 0.0) -> None:
+        """Draw, at most ten times a second; `resumed` is the share that was done before."""
         now = time.monotonic()
         if not self._enabled or now - self._drawn < _PERIOD:
             return
         from jointid.cli.terminal import columns_of
 
         self._drawn = now
+        if share > resumed:
+            left = (now - self._began) * (1.0 - share) / (share - resumed)
+            text = f"about {left:.0f} s left, {text}"
         full = round(_WIDTH * min(1.0, share))
         line = f"{'█' * full}{'·' * (_WIDTH - full)} {text}"
         # A line that goes on in the next one could not be drawn over.
@@ -142,13 +146,11 @@ class StudyProgress(_Bar):
 
     def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
         super().__init__(enabled=enabled, stream=stream)
-        self._began = time.monotonic()
         self._first: int | None = None
 
     def __call__(self, step: StudyStep) -> None:
-        """Show the trials that are done, and how long the others will take."""
+        """Show the trials that are done."""
         if self._first is None:
             self._first = step.number - len(step.rows)
-        rate = (step.number - self._first) / max(time.monotonic() - self._began, 1e-6)
-        left = (step.total - step.number) / max(rate, 1e-6)
-        self._draw(step.number / step.total, f"trial {step.number}/{step.total}, {left:.0f} s left")
+        text = f"trial {step.number}/{step.total}"
+        self._draw(step.number / step.total, text, self._first / step.total)

@@ -13,6 +13,7 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.files import make_folder
+from jointid.base.notebook import Shown
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
 from jointid.hardware.bench.bench import Bench
@@ -55,7 +56,7 @@ class BenchRun:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Commissioning:
+class Commissioning(Shown):
     """Result of a commissioning.
 
     Attributes

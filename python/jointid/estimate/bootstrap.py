@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.error_text import printable
+from jointid.base.notebook import Shown
 from jointid.base.text_table import aligned
 from jointid.base.values import dataclass
 from jointid.estimate.wording import number, percent, two_digits
@@ -49,7 +50,7 @@ class BootstrapParameter:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Bootstrap:
+class Bootstrap(Shown):
     """A block bootstrap of an estimate.
 
     Attributes

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from jointid.base.advice import Action
+from jointid.base.notebook import Shown
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Measured
 from jointid.estimate.wording import percent, signed_percent
@@ -135,7 +136,7 @@ class Cause:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Causes:
+class Causes(Shown):
     """What an attribution found.
 
     Attributes

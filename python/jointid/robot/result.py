@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
+from jointid.base.notebook import Shown
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.problem.window_table import WindowTable
@@ -59,7 +60,7 @@ class RobotJoint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RobotEstimate:
+class RobotEstimate(Shown):
     """Friction and inertia of a whole robot.
 
     Attributes

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
+from jointid.base.notebook import Shown
 from jointid.base.text_table import aligned
 from jointid.base.values import dataclass
 from jointid.joint.joint import Joint
@@ -31,7 +32,7 @@ MODELS = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ServoComparison:
+class ServoComparison(Shown):
     """Models and the errors of their rollouts on held-out runs.
 
     Attributes

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.base.notebook import Shown
 from jointid.base.schema import read_text
 from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding
@@ -26,7 +27,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ServoEstimate:
+class ServoEstimate(Shown):
     """A servo as identified.
 
     Attributes

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.notebook import Shown
 from jointid.base.text_table import aligned
 from jointid.base.values import dataclass
 from jointid.joint.checks import positive_number
@@ -67,7 +68,7 @@ class RunRollout:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Rollout:
+class Rollout(Shown):
     """All runs, simulated.
 
     Attributes
