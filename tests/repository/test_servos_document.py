@@ -6,6 +6,8 @@ import pytest
 from documents import read, run_python_blocks
 
 import jointid as jid
+from jointid.identification.warnings.table import table_rows
+from jointid.servo.finding_types import TYPES
 
 
 def test_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -27,3 +29,7 @@ def test_its_joint_file_is_read(tmp_path: Path) -> None:
     commented = text.replace("# resistance", "resistance").replace("# duty_scale", "duty_scale")
     path.write_text(commented, encoding="utf-8")
     assert jid.Joint.load(path).voltage is not None
+
+
+def test_its_table_is_that_of_the_findings() -> None:
+    assert table_rows(TYPES.values()) in read("docs/servos.md")

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.advice import Action
-from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import rounded, two_digits
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.attempt import Asked, Attempt, attempted
 from jointid.robot.delays import TorqueDelay, torque_delay
+from jointid.robot.finding_types import TYPES
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import told_shift, torque_shift
 
@@ -75,29 +77,31 @@ def delays_told(found: Aligned) -> Iterator[Finding]:
     """Findings of the delay that was taken away, and of what is certain and left."""
     attempt, left = found.attempt, found.left
     if found.chosen and attempt.delay.any():
-        yield _told("delay_removed", "info", attempt.delay, found)
+        yield _told("delay_removed", attempt.delay, found)
     if left.certain and np.abs(left.taken).max() >= _SMALL:
-        yield _told("signal_lag", "warning", np.zeros_like(left.taken), found)
+        yield _told("signal_lag", np.zeros_like(left.taken), found)
 
 
-def _told(code: str, severity: Severity, away: Array, found: Aligned) -> Finding:
+def _told(code: str, away: Array, found: Aligned) -> Finding:
     attempt, left = found.attempt, found.left
     names, period = attempt.robot.names, _period(attempt)
     which = away if away.any() else left.taken
     alike = bool(np.all(which == which[0]))
-    parts: list[str] = []
+    titles, details = [], []
     evidence: dict[str, Measured] = {}
     for joint in [0] if alike else np.flatnonzero(which).tolist():
         rest = left.value if alike else float(left.joints[joint])
         error = left.stderr if alike else float(left.errors[joint])
         # The value is what was taken away and what the balance still shows.
         value = float(away[joint]) + rest
-        low, high = (1e3 * (abs(value) + side * _NORMAL * error) for side in (-1, 1))
+        low, high = (1e3 * (abs(value) + sign * _NORMAL * error) for sign in (-1, 1))
         of_joint = "" if alike else f" of {names[joint]}"
-        parts.append(
-            f"the torque{of_joint} is {'late' if value > 0.0 else 'early'} by {1e3 * abs(value):.3g} ± "
-            f"{1e3 * error:.2g} ms ({abs(value) / period:.1f} sample periods; with 95 % between {low:.2f} and "
-            f"{high:.2f} ms) against the position"
+        side = "late" if value > 0.0 else "early"
+        size = f"{rounded(1e3 * abs(value), 1e3 * error)} ± {two_digits(1e3 * error)} ms"
+        titles.append(f"the torque{of_joint} is {side} by {size}")
+        details.append(
+            f"{f'{names[joint]}: ' * (not alike)}{abs(value) / period:.1f} sample periods against the position, with "
+            f"95 % between {low:.2f} and {high:.2f} ms"
         )
         prefix = "" if alike else f"{names[joint]}."
         evidence |= {
@@ -105,25 +109,27 @@ def _told(code: str, severity: Severity, away: Array, found: Aligned) -> Finding
             f"{prefix}lag_error": Measured(error, "s"),
             f"{prefix}lag_periods": Measured(value / period),
         }
-    cause, whole = " and ".join(parts), attempt.delay + left.taken
+    more = f", and {len(titles) - 1} more" if len(titles) > 1 else ""
+    whole = attempt.delay + left.taken
     advice: tuple[Action, ...] = ()
     early = -float(whole[0]) / period
     if alike and abs(early - 0.5) < _HALF and not next(iter(attempt.looks.values())).torque_held:
         text = "if the torque is a command that is held between samples"
         advice = (Action("call", {"torque_hold": "zoh"}, text=text, function="load_robot"),)
     if away.any():
-        cause += "; it was shifted before the identification"
+        details.append("it was shifted before the identification")
     elif found.chosen:
-        cause += ": the position is late or coarse, the torque early, or the gear gives way"
+        details.append("the position is late or coarse, the torque early, or the gear gives way")
         text = "the position's filter and resolution, and both clocks"
         advice = (Action("inspect", text=text),)
     else:
-        cause += (
-            " after the stated shift" if attempt.delay.any() else ""
-        ) + ", which biases the values"
+        after = " after the stated shift" if attempt.delay.any() else ""
+        details.append(f"that is what is left{after}, and it biases the values")
         shift = {"shift": told_shift(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
-    return Finding(code=code, severity=severity, evidence=evidence, title=cause, advice=advice)
+    return TYPES[code].finding(
+        titles[0] + more, *advice, details="; ".join([*titles[1:], *details]), evidence=evidence
+    )
 
 
 def _short(delay: Array, left: TorqueDelay) -> Array:

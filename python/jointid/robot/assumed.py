@@ -10,6 +10,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.attempt import Attempt
+from jointid.robot.finding_types import TYPES
 from jointid.robot.robot import Robot
 
 _FAR = 2.0  # times the URDF's range: no joint moves so far
@@ -35,20 +36,14 @@ def assumptions_told(
         taken = [run.names[column] for column in columns]
         if columns == list(range(robot.n)) and not set(taken) & set(robot.names):
             pairs = zip(robot.names, taken, strict=True)
-            yield Finding(
-                code="joints_in_order",
-                severity="info",
-                title="the recording does not name the URDF's joints; they are taken in order: "
-                + ", ".join(f"{name} is {each}" for name, each in pairs),
+            yield TYPES["joints_in_order"].finding(
+                "the recording does not name the URDF's joints, which are taken in order",
+                details=", ".join(f"{name} is {each}" for name, each in pairs),
             )
             break
     yield from _locked(recordings, robot)
     if not np.any(robot.tree.gravity):
-        yield Finding(
-            code="no_gravity",
-            severity="info",
-            title="no gravity acts on this robot, as it was given",
-        )
+        yield TYPES["no_gravity"].finding("no gravity acts on this robot, as given")
     yield from _units(recordings, robot, attempt)
 
 
@@ -61,12 +56,11 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
             if name in run.names
         ]
         if spans and max(spans) > _MOVES:
-            yield Finding(
-                code="locked_joint_moves",
+            yield TYPES["locked_joint_moves"].finding(
+                f"{name} moves by {max(spans):.3g} and is not one of the robot's joints",
+                Action("inspect", text=f"the list of the robot's joints, which lacks {name}"),
+                details="it is taken to stand at 0",
                 evidence={"range": Measured(max(spans))},
-                title=f"{name} moves by {max(spans):.3g} in the recording and is left out of the robot's joints, "
-                "which has it stand at 0",
-                advice=(Action("inspect", text=f"joints, which lack {name}"),),
             )
 
 
@@ -93,12 +87,11 @@ def _units(
         if apart:
             assert ratio is not None
             reasons.append(f"its recorded velocity is {ratio:.3g} times that of its position")
-        yield Finding(
-            code="implausible_unit",
+        yield TYPES["implausible_unit"].finding(
+            f"the {signal} of {name} is probably in degrees, not radians",
+            Action("inspect", text=f"the unit of the {signal} of {name}"),
+            details="; ".join(reasons),
             evidence={"range": Measured(moved, "rad")},
-            title=f"{name}'s {signal} is probably in degrees and was taken for radians: "
-            + ", and ".join(reasons),
-            advice=(Action("inspect", text=f"the unit of the {signal} of {name}"),),
         )
 
 

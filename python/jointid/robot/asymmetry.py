@@ -8,9 +8,10 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
-from jointid.estimate.wording import percent
+from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.robot.attempt import Attempt
 from jointid.robot.columns import DIFFERENCE
+from jointid.robot.finding_types import TYPES, titled
 from jointid.robot.looked_rows import LookedRows
 from jointid.robot.models import AUTO, modelled
 
@@ -37,13 +38,11 @@ def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
         if not (np.isfinite(error) and large):
             continue
         if share.certainty > _BETTER and explained > _EXPLAINED:
-            yield Finding(
-                code="asymmetric_friction",
+            size = f"{rounded(2.0 * abs(value), 2.0 * error)} ± {two_digits(2.0 * error)} {unit}"
+            yield TYPES["asymmetric_friction"].finding(
+                titled(f"viscous friction of {name} differs between the directions", size),
+                Action("call", {"model": modelled(AUTO, True)}, function="identify_robot"),
+                details=f"the difference is {size}; it explains {percent(explained)} of the joint's squared residual "
+                "in motion that was held out",
                 evidence={"difference": Measured(value, unit), "explained": Measured(explained)},
-                title=f"the viscous friction of {name} differs between the directions by "
-                f"{2.0 * abs(value):.3g} ± {2.0 * error:.2g} {unit}; that explains "
-                f"{percent(explained)} of its squared residual in stretches of motion that it was not taken from",
-                advice=(
-                    Action("call", {"model": modelled(AUTO, True)}, function="identify_robot"),
-                ),
             )

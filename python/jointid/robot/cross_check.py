@@ -13,6 +13,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import number, percent
 from jointid.robot.attempt import Asked, Attempt
 from jointid.robot.columns import DIFFERENCE
+from jointid.robot.finding_types import TYPES
 from jointid.robot.plain_motion import PlainSignals
 from jointid.robot.second_look import SETTINGS, Looked, looked_again
 
@@ -197,28 +198,34 @@ def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
         return
     apart = {name: each for name, each in found.parameters.items() if each.agrees is False}
     worse = {name: each for name, each in found.residuals.items() if _much_worse(*each)}
-    texts = []
+    title, texts = "", []
     if apart:
+        name, first = next(iter(apart.items()))
+        title = f"finds {name} {number(first.second or 0.0)}, not {number(first.value)}"
         shown = [
-            f"{name} {number(c.value)}, not {number(c.second or 0.0)}" for name, c in apart.items()
+            f"{name} {number(c.second or 0.0)}, not {number(c.value)}" for name, c in apart.items()
         ]
         more = f" and {len(apart) - _SHOWN} more" if len(apart) > _SHOWN else ""
-        texts.append(f"finds other values ({'; '.join(shown[:_SHOWN])}{more})")
+        texts.append(f"it finds other values: {', '.join(shown[:_SHOWN])}{more}")
     advice: tuple[Action, ...] = (
         Action("call", {"min_speed": slow}, text="where it is the friction at low speed"),
     )
     if worse:
         joint, (ours, second) = max(worse.items(), key=lambda each: each[1][0] / each[1][1])
-        texts.append(
-            f"leaves {percent(second)} of the torque of {joint} where these values leave {percent(ours)}"
-        )
+        title = f"leaves {percent(second)} of the torque of {joint}, not {percent(ours)}"
+        texts.append(f"it {title}")
         advice = ()
-    yield Finding(
-        code="cross_check",
-        severity="blocking",
+    yield TYPES["cross_check"].finding(
+        f"the second look {title}",
+        *advice,
+        Action("inspect", text="the time stamps and the logger"),
+        details="; ".join(
+            (
+                "the second look is a plain filtered least squares of the signals as recorded",
+                *texts,
+                "the handling of time stamps, gaps, delays or slow motion is not right for this recording",
+            )
+        ),
         parameters=tuple(apart) if not worse else (),
         evidence={f"{name}.second": Measured(each.second or 0.0) for name, each in apart.items()},
-        title=f"a plain filtered least squares of the signals as recorded {' and '.join(texts)}: the handling of time "
-        "stamps, gaps, delays or slow motion is not right for this recording",
-        advice=(*advice, Action("inspect", text="the time stamps and the logger")),
     )

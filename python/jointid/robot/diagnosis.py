@@ -18,6 +18,7 @@ from jointid.estimate.wording import percent
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.attempt import Asked, Attempt, attempted
 from jointid.robot.error_candidates import ZERO, SmallError, refined, small_errors
+from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.findings import FRICTION, doubtful_joints
 from jointid.robot.naming import named_error, named_fact
 from jointid.robot.robot import Robot
@@ -221,44 +222,34 @@ def _summary(
     before, after = attempt.estimate.relative_residual, last.estimate.relative_residual
     evidence = {"before": Measured(before), "after": Measured(after)}
     facts = "this fact" if len(causes) == 1 else "these facts"
+    unexplained = f"unexplained: {percent(before)}, {percent(after)} when corrected"
     codes = sorted({each.code for each in gone})
     found = []
     calls = [each.arguments for cause in causes for each in cause.advice if each.function == _ROBOT]
     if len(causes) > 1 and calls:
         found.append(
-            Finding(
-                code="several_wrong_facts",
-                severity="info",
+            TYPES["several_wrong_facts"].finding(
+                f"{len(causes)} given facts are wrong ({unexplained})",
+                Action("call", {k: v for each in calls for k, v in each.items()}, function=_ROBOT),
                 evidence=evidence,
-                title=f"{len(causes)} given facts are wrong; with all of them corrected {percent(after)} of the torque "
-                f"stays unexplained instead of {percent(before)}",
-                advice=(
-                    Action(
-                        "call", {k: v for each in calls for k, v in each.items()}, function=_ROBOT
-                    ),
-                ),
             )
         )
     if codes:
         found.append(
-            Finding(
-                code="consequences",
-                severity="info",
+            TYPES["consequences"].finding(
+                f"{len(gone)} more warnings follow from {facts} ({unexplained})",
+                details=f"{', '.join(codes)}: gone when {facts} {'is' if len(causes) == 1 else 'are'} corrected",
                 parameters=tuple(name for each in gone for name in each.parameters),
                 evidence=evidence,
-                title=f"{len(gone)} further warnings ({', '.join(codes)}) only follow from {facts}: with "
-                f"{'it' if len(causes) == 1 else 'them'} corrected they are gone, and {percent(after)} of the torque "
-                f"stays unexplained instead of {percent(before)}",
             )
         )
     poor = [name for name, joint in last.estimate.joints.items() if joint.relative_residual > _POOR]
     if poor:
         found.append(
-            Finding(
-                code="more_wrong_facts",
-                severity="warning",
+            TYPES["more_wrong_facts"].finding(
+                f"more than {facts} is wrong: {listed(poor)} would still fit badly",
+                Action("inspect", text=f"the given facts of {listed(poor)}"),
                 evidence=evidence,
-                title=f"with {facts} corrected, {' and '.join(poor)} still fit badly: more than {facts} is wrong",
             )
         )
     return found

@@ -11,8 +11,9 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.objections import LARGE
 from jointid.estimate.statistics import distance_from_bound
-from jointid.estimate.wording import number, percent, two_digits
+from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.identification.inference.purposes import Torques
+from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.inertia import FREE, InertiaColumns
 from jointid.robot.result import RobotEstimate, RobotJoint
 
@@ -23,6 +24,7 @@ _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
 FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
+_LEFT_OUT = "such motion says nothing about friction and is left out"
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
@@ -63,23 +65,21 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
     shares = {name: joint.residuals.standing for name, joint in estimate.joints.items()}
     for name, share in shares.items():
         if share > _MOSTLY:
-            yield Finding(
-                code="standing",
+            yield TYPES["standing"].finding(
+                f"{name} stands still, sticks or is too slow {percent(share)} of the time",
+                Action("record", text=f"more motion of {name}"),
+                details=_LEFT_OUT,
                 parameters=_all_of(estimate.joints[name]),
                 evidence={"left_out": Measured(share)},
-                title=f"{name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
-                "information about friction and is left out",
-                advice=(Action("record", text="more motion"),),
             )
     some = {name: share for name, share in shares.items() if _STANDING < share <= _MOSTLY}
     if some:
-        shown = ", ".join(f"{name} {percent(share)}" for name, share in some.items())
-        yield Finding(
-            code="standing",
+        most = max(some, key=lambda name: some[name])
+        yield TYPES["standing"].finding(
+            f"joints stand still, stick or are too slow at times, {most} {percent(some[most])} of it",
+            details=f"{', '.join(f'{name} {percent(share)}' for name, share in some.items())}; {_LEFT_OUT}",
             severity="info",
             evidence={name: Measured(share) for name, share in some.items()},
-            title=f"joints stand still, stick or are too slow, which carries no information about friction and is left "
-            f"out: {shown} of the time",
         )
 
 
@@ -90,14 +90,15 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> I
             continue
         if torques.is_nothing(p):
             continue
-        error = "by any amount" if np.isinf(p.stderr) else f"by {two_digits(p.stderr)} {p.unit}"
-        yield Finding(
-            code="undetermined",
+        what = f"{name.replace('_', ' ')} of {joint.name}"
+        known = np.isfinite(p.stderr)
+        yield TYPES["undetermined"].finding(
+            f"{what} is uncertain: {rounded(p.value, p.stderr)} ± {two_digits(p.stderr)} {p.unit}"
+            if known
+            else f"{what} is not determined: any value fits",
+            Action("record", text=f"more and faster motion of {joint.name}"),
             parameters=(f"{joint.name}.{name}",),
-            evidence={"stderr": Measured(p.stderr, p.unit)} if np.isfinite(p.stderr) else {},
-            title=f"{name.replace('_', ' ')} of {joint.name} may be off {error} (standard error); its value is "
-            f"{number(p.value)} {p.unit}",
-            advice=(Action("record", text="more and faster motion of this joint"),),
+            evidence={"stderr": Measured(p.stderr, p.unit)} if known else {},
         )
     held = [name for name in FRICTION if name in joint.parameters]
     held = [name for name in held if joint.parameters[name].at_bound is not None]
@@ -109,28 +110,31 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> I
         alike = [name for name, share in held_by.items() if (share <= LARGE) == small]
         if alike:
             largest = percent(max(held_by[name] for name in alike))
-            yield Finding(
-                code="at_bound",
+            what = f"{listed([name.replace('_', ' ') for name in alike])} of {joint.name}"
+            yield TYPES["at_bound"].finding(
+                f"{what} is 0, its bound: at most {largest} of its friction"
+                if small
+                else f"{what} would be negative and is held at 0",
+                *(() if small else (_looked_at(joint),)),
+                details="" if small else "the model or a given fact is wrong",
                 severity="info" if small else "warning",
                 parameters=tuple(f"{joint.name}.{name}" for name in alike),
                 evidence={f"{joint.name}.{name}.share": Measured(held_by[name]) for name in alike},
-                title=f"{' and '.join(alike)} of {joint.name} "
-                + (
-                    f"is 0, its bound: it is at most {largest} of the joint's friction"
-                    if small
-                    else "would be negative, and is held at 0: the model or a given fact is wrong"
-                ),
             )
     residual = joint.relative_residual
     if residual > _POOR:
         freed = Action("call", {"inertia": FREE}, function="identify_robot")
-        yield Finding(
-            code="poor_fit",
+        yield TYPES["poor_fit"].finding(
+            f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
+            *(() if estimate.inertia == FREE else (freed,)),
+            _looked_at(joint),
             parameters=_all_of(joint),
             evidence={"relative_residual": Measured(residual)},
-            title=f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
-            advice=() if estimate.inertia == FREE else (freed,),
         )
+
+
+def _looked_at(joint: RobotJoint) -> Action:
+    return Action("inspect", text=f"unit, sign and gear ratio of {joint.name}")
 
 
 def _all_of(joint: RobotJoint) -> tuple[str, ...]:
@@ -140,40 +144,32 @@ def _all_of(joint: RobotJoint) -> tuple[str, ...]:
 def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Finding]:
     names = estimate.robot.names
     if columns.dropped:
-        shown = ", ".join(names[each] for each in columns.dropped)
-        yield Finding(
-            code="merged_inertia",
-            severity="info",
-            title=f"no motion separates the rotor inertia of {shown} from the links' inertias; the base parameters "
-            "contain it",
+        shown = listed([names[each] for each in columns.dropped])
+        yield TYPES["merged_inertia"].finding(
+            f"the rotor inertia of {shown} is part of the links' inertias",
+            details="no motion separates the two; the base parameters contain it",
         )
     if columns.fixed:
-        shown = ", ".join(names[each] for each in columns.fixed)
-        yield Finding(
-            code="merged_inertia",
-            severity="info",
-            title=f"no motion separates the scale of the link that {shown} moves from rotor inertias and other scales; "
-            "it stays at 1",
-            advice=(Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),),
+        shown = listed([names[each] for each in columns.fixed])
+        yield TYPES["merged_inertia"].finding(
+            f"the scale of the link that {shown} moves stays at 1",
+            Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),
+            details="no motion separates it from rotor inertias and other scales",
         )
     if estimate.consistent is False:
-        yield Finding(
-            code="impossible_inertia",
-            severity="warning",
-            title="there are links that no body can be: friction and the torque of motion may be right, single "
-            "inertial parameters are not",
-            advice=(Action("call", {"inertia": FREE}, function="identify_robot"),),
+        yield TYPES["impossible_inertia"].finding(
+            "no bodies can have the inertial parameters of some links",
+            Action("call", {"inertia": FREE}, function="identify_robot"),
+            details="friction and the torque of motion may be right, single inertial parameters are not",
         )
     for joint in estimate.joints.values():
         scale = joint.parameters.get("inertia_scale")
         if scale is not None and scale.stderr and _far(scale.value, scale.stderr):
-            yield Finding(
-                code="scaled_inertia",
-                severity="info",
+            size = f"{rounded(scale.value, scale.stderr)} ± {two_digits(scale.stderr)}"
+            yield TYPES["scaled_inertia"].finding(
+                f"the link that {joint.name} moves has {size} times the URDF's inertia",
                 parameters=(f"{joint.name}.inertia_scale",),
                 evidence={"scale": Measured(scale.value), "stderr": Measured(scale.stderr)},
-                title=f"the link that {joint.name} moves has {scale.value:.3g} ± {two_digits(scale.stderr)} times the "
-                "URDF's inertial parameters",
             )
 
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
-from jointid.estimate.wording import percent, two_digits
+from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.robot.error_candidates import CENTRE, LINK, PAYLOAD, TILT, TORQUE, ZERO, SmallError
+from jointid.robot.finding_types import TYPES, listed, titled
 from jointid.robot.inertia import FREE, SCALED
 from jointid.robot.robot import Robot
 from jointid.robot.wrong_facts import WrongFact
@@ -19,25 +20,21 @@ from jointid.robot.zeros import Zeros
 def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
     """The finding that the recording counts from another pose than the URDF."""
     turned = [
-        f"{name} by {np.rad2deg(angle):+.0f} degrees"
+        f"{name} {np.rad2deg(angle):+.0f}°"
         for name, angle in zip(robot.names, zeros.offsets, strict=True)
         if angle
     ]
-    return Finding(
-        code="turned_zero",
-        severity="warning",
-        evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
-        title=f"the recording counts {' and '.join(turned)} from another zero than the URDF: with the URDF's inertias "
-        f"{percent(zeros.before)} of the torque stays unexplained without these offsets, and {percent(zeros.after)} "
-        "with them; they are taken into account",
-        advice=(
-            Action(
-                "call",
-                {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
-                text="if that is so",
-                function="Robot.from_urdf",
-            ),
+    return TYPES["turned_zero"].finding(
+        titled("joints have another zero than in the URDF", listed(turned)),
+        Action(
+            "call",
+            {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
+            text="if that is so",
+            function="Robot.from_urdf",
         ),
+        details=f"the offsets are {', '.join(turned)}, and are taken into account; with the URDF's inertias "
+        f"{percent(zeros.before)} of the torque stays unexplained without them, {percent(zeros.after)} with them",
+        evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
 
@@ -45,18 +42,24 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
     """The finding that one fact, if it were otherwise, would explain most of what is left; `shown`: of which joint."""
     first, *others = wrong.joints
     both = " and ".join(wrong.joints)
-    coupling = f"motor {first} turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
+    coupling = (
+        f"motor {first} probably turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
+    )
     texts = {
-        "swapped_joints": f"the columns of {both} are probably exchanged",
-        "swapped_torques": f"the torques of {both} are probably exchanged",
-        "wrong_sign": f"{first} probably turns the other way: its position and torque have the wrong sign, or its gear "
-        f"ratio{_or_other(wrong)}",
-        "wrong_motion_sign": f"{first} is probably recorded with its position of the wrong sign, and its torque of the "
-        "right one",
-        "wrong_torque_sign": f"the torque of {first} probably has the wrong sign",
-        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, more is "
-        f"explained{_or(wrong)}",
+        "swapped_joints": (f"the columns of {both} are probably exchanged", ""),
+        "swapped_torques": (f"the torques of {both} are probably exchanged", ""),
+        "wrong_sign": (
+            f"{first} probably turns the other way",
+            f"its position and torque have the wrong sign, or its gear ratio{_or_other(wrong)}; ",
+        ),
+        "wrong_motion_sign": (
+            f"the position of {first} probably has the wrong sign",
+            "its torque has the right one; ",
+        ),
+        "wrong_torque_sign": (f"the torque of {first} probably has the wrong sign", ""),
+        "wrong_coupling": (coupling, f"another coupling was given{_or(wrong)}; "),
     }
+    title, details = texts[wrong.kind]
     advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
     if wrong.kind == "wrong_sign":
         advice = (_call({"directions": _plain(wrong.robot.directions)}),)
@@ -69,14 +72,13 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
     if wrong.kind == "wrong_torque_sign":
         advice = (_call({"torque_scales": _plain(wrong.robot.torque_scales)}),)
     if wrong.kind == "wrong_coupling":
-        advice = (_call({"couplings": {first: {others[0]: wrong.coupling}}}),)
-    return Finding(
-        code=wrong.kind,
-        severity="warning",
+        advice = (_call({"couplings": _coupled(wrong.robot)}),)
+    before, after = percent(wrong.before), percent(wrong.after)
+    return TYPES[wrong.kind].finding(
+        titled(title, f"unexplained: {before}, {after} when corrected"),
+        *advice,
+        details=f"{details}{before} of the torque of {shown} stays unexplained as it is, {after} when it is corrected",
         evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
-        title=f"{texts[wrong.kind]}: {percent(wrong.before)} of the torque of {shown} stays unexplained as it is, "
-        f"and {percent(wrong.after)} so",
-        advice=advice,
     )
 
 
@@ -89,17 +91,18 @@ def named_error(error: SmallError, names: Sequence[str]) -> Finding:
     names : sequence of str
         Of the joints.
     """
-    text, evidence, advice = _WORDED[error.kind](
+    title, details, evidence, advice = _WORDED[error.kind](
         error, "" if error.joint is None else names[error.joint]
     )
-    also = "".join(f", or {_NOUNS[kind].format(names[joint or 0])}" for kind, joint in error.others)
-    return Finding(
-        code=error.kind,
-        severity="warning",
+    others = [f"or {_NOUNS[kind].format(names[joint or 0])}" for kind, joint in error.others]
+    held_out = (
+        f"that explains {percent(error.share)} of the squared residual in motion that was held out"
+    )
+    return TYPES[error.kind].finding(
+        title,
+        *advice,
+        details="; ".join(filter(None, (*others, details, held_out))),
         evidence={**evidence, "share": Measured(error.share)},
-        title=f"{text}{also}; that explains {percent(error.share)} of the squared residual in stretches of motion that "
-        "it was not taken from",
-        advice=advice,
     )
 
 
@@ -112,7 +115,8 @@ _NOUNS = {
     PAYLOAD: "the link that {} moves carries a body",
 }
 
-_Worded = tuple[str, dict[str, Measured], tuple[Action, ...]]
+_Worded = tuple[str, str, dict[str, Measured], tuple[Action, ...]]
+"""Title, details, evidence, advice."""
 
 
 def _tilted(error: SmallError, _: str) -> _Worded:
@@ -121,9 +125,9 @@ def _tilted(error: SmallError, _: str) -> _Worded:
     across = np.linalg.norm(np.cross(before, gravity))
     degrees = float(np.rad2deg(np.arctan2(across, before @ gravity)))
     spread = float(np.rad2deg(np.linalg.norm(error.errors)))
-    text = f"gravity is not where it is said to be: the base is tilted by {degrees:.1f} ± {two_digits(spread)} degrees"
     return (
-        text,
+        f"the base is tilted by {_with_error(degrees, spread)} degrees",
+        "gravity is not where the facts say",
         {"tilt": Measured(degrees, "deg"), "tilt_error": Measured(spread, "deg")},
         (_call({"gravity": [round(float(each), 3) for each in gravity]}),),
     )
@@ -134,52 +138,55 @@ def _moved(error: SmallError, name: str) -> _Worded:
     offsets = error.robot.zero_offsets or ()
     value = offsets[joint] - (error.given.zero_offsets or (0.0,) * len(offsets))[joint]
     degrees, of_degrees = np.rad2deg(value), np.rad2deg(spread)
-    text = f"the zero of {name} is off: the URDF's angle is {degrees:+.2f} ± {two_digits(of_degrees)} degrees from it"
-    evidence = {"offset": Measured(value, "rad"), "offset_error": Measured(spread, "rad")}
-    return text, evidence, (_call({"zero_offsets": [round(each, 5) for each in offsets]}),)
+    return (
+        f"the zero of {name} is off by {_with_error(degrees, of_degrees)} degrees",
+        "the URDF's angle is the recorded one plus that",
+        {"offset": Measured(value, "rad"), "offset_error": Measured(spread, "rad")},
+        (_call({"zero_offsets": [round(each, 5) for each in offsets]}),),
+    )
 
 
 def _torque(error: SmallError, name: str) -> _Worded:
     value, spread = float(error.values[0]), float(error.errors[0])
-    text = (
-        f"the torque of {name} is {100.0 * abs(value):.1f} ± {two_digits(100.0 * spread)} % too {_side(value)}, beside "
-        "what the links' weight and the other joints say: its torque constant or gear ratio is probably wrong"
+    return (
+        f"the torque of {name} is {_with_error(100.0 * abs(value), 100.0 * spread)} % too {_side(value)}",
+        "the links' weight and the other joints say so; its torque constant or gear ratio is probably wrong",
+        {"scale": Measured(1.0 + value), "scale_error": Measured(spread)},
+        (_call({"torque_scales": _plain(error.robot.torque_scales)}),),
     )
-    evidence = {"scale": Measured(1.0 + value), "scale_error": Measured(spread)}
-    return text, evidence, (_call({"torque_scales": _plain(error.robot.torque_scales)}),)
 
 
 def _link(error: SmallError, name: str) -> _Worded:
     value, spread = 1.0 + float(error.values[0]), float(error.errors[0])
-    text = (
-        f"the link that {name} moves is not as in the URDF: {value:.3g} ± {two_digits(spread)} times its inertial "
-        "parameters fit"
+    return (
+        f"the link that {name} moves has {_with_error(value, spread)} times the URDF's inertia",
+        "mass, centre of mass and inertia are scaled together",
+        {"scale": Measured(value), "stderr": Measured(spread)},
+        (Action("call", {"inertia": SCALED}, function="identify_robot"),),
     )
-    evidence = {"scale": Measured(value), "stderr": Measured(spread)}
-    return text, evidence, (Action("call", {"inertia": SCALED}, function="identify_robot"),)
 
 
 def _centre(error: SmallError, name: str) -> _Worded:
     mass = float(error.robot.tree.inertias[error.joint or 0, 0])
-    way = 1e3 * error.values / mass if mass else error.values
-    text = (
-        f"the centre of mass of the link that {name} moves is not where the URDF has it, by "
-        f"({', '.join(f'{each:.0f}' for each in way)}) mm in the link's frame"
+    offset = 1e3 * error.values / mass if mass else error.values
+    shown = ", ".join(f"{each:.0f}" for each in offset)
+    return (
+        f"the centre of mass of the link that {name} moves is off by ({shown}) mm",
+        "x, y and z in the link's frame, from where the URDF has it",
+        {axis: Measured(float(each) * 1e-3, "m") for axis, each in zip("xyz", offset, strict=True)},
+        _freed(),
     )
-    evidence = {
-        axis: Measured(float(each) * 1e-3, "m") for axis, each in zip("xyz", way, strict=True)
-    }
-    return text, evidence, _freed()
 
 
 def _carried(error: SmallError, name: str) -> _Worded:
     mass, spread = float(error.values[0]), float(error.errors[0])
     place = ", ".join(f"{each:.2f}" for each in error.values[1:] / mass)
-    text = (
-        f"the link that {name} moves carries {mass:.2f} ± {two_digits(spread)} kg that the URDF does not know, at "
-        f"({place}) m in its frame"
+    return (
+        f"the link that {name} moves carries {_with_error(mass, spread)} kg that is not in the URDF",
+        f"at ({place}) m in the link's frame",
+        {"mass": Measured(mass, "kg"), "mass_error": Measured(spread, "kg")},
+        _freed(),
     )
-    return text, {"mass": Measured(mass, "kg"), "mass_error": Measured(spread, "kg")}, _freed()
 
 
 _WORDED = {
@@ -190,6 +197,23 @@ _WORDED = {
     CENTRE: _centre,
     PAYLOAD: _carried,
 }
+
+
+def _with_error(value: float, error: float) -> str:
+    return f"{rounded(value, error)} ± {two_digits(error)}"
+
+
+def _coupled(robot: Robot) -> dict[str, dict[str, float]]:
+    """All couplings, by motor and joint: those that are stated replace all that were."""
+    return {
+        motor: {
+            joint: float(share)
+            for joint, share in zip(robot.names, robot.couplings[number], strict=True)
+            if share != (joint == motor)
+        }
+        for number, motor in enumerate(robot.names)
+        if robot.coupled[number]
+    }
 
 
 def _or(wrong: WrongFact) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import two_digits
 from jointid.robot.bodies import possible
+from jointid.robot.finding_types import TYPES
 from jointid.robot.possible_bodies import nearest_possible
 from jointid.robot.result import RobotEstimate
 
@@ -55,13 +56,13 @@ def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
     """The finding that no bodies have the identified base parameters."""
     if estimate.consistent is not False or estimate.impossible_by is None:
         return
-    yield Finding(
-        code="impossible_inertia",
+    distance = two_digits(estimate.impossible_by)
+    yield TYPES["impossible_inertia"].finding(
+        f"no bodies can have these base parameters, by {distance} standard errors",
+        details="that is the distance of all of them together from the nearest that bodies can have; friction and the "
+        "torque of motion may be right, single inertial parameters are not",
         severity="info",
         evidence={"distance": Measured(estimate.impossible_by)},
-        title="no bodies have these base parameters: the nearest that bodies can have are "
-        f"{two_digits(estimate.impossible_by)} standard errors away, all of them together; friction and the torque of "
-        "motion may be right, single inertial parameters are not",
     )
 
 

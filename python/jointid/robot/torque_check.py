@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
-from jointid.estimate.wording import number, percent
+from jointid.estimate.wording import percent
 from jointid.problem.magnitude import BETTER, CLEAR, is_magnitude, is_one_sided, without
 from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.inertia import InertiaColumns
 from jointid.robot.plain_motion import PlainSignals
 from jointid.robot.plain_regression import Block, Columns
@@ -218,19 +219,16 @@ def _unsigned(
     if not folded:
         return None
     names = [robot.names[joint] for joint in folded]
-    return Finding(
-        code="unsigned_torque",
-        severity="blocking",
+    return TYPES["unsigned_torque"].finding(
+        f"the torque of {listed(names)} is never negative: it has lost its sign",
+        Action(
+            "inspect",
+            text="the driver's signed value (of a servo that has none, the sign of its position error)",
+        ),
+        details="the joints move both ways, and the magnitude fits a torque that changes its sign"
+        + (f"; it is so for {', '.join(names)}" if len(names) > 1 else ""),
         parameters=() if len(folded) == robot.n else tuple(f"{name}.coulomb" for name in names),
         evidence={name: Measured(float(lowest[j])) for name, j in zip(names, folded, strict=True)},
-        title=f"the torque of {', '.join(names)} is never negative, although the joints move both ways and the "
-        "magnitude fits a torque that changes its sign: it is recorded without its sign",
-        advice=(
-            Action(
-                "inspect",
-                text="the driver's signed value (of a servo that has none, the sign of its position error)",
-            ),
-        ),
     )
 
 
@@ -253,45 +251,38 @@ def _scales(robot: Robot, factors: Mapping[int, float]) -> list[float]:
 def _scaled(robot: Robot, given: Mapping[int, _Factor], common: float) -> Finding:
     """The torques, multiplied by one factor or reversed, are those of the URDF's links."""
     if 1.0 / _FAR < abs(common) < _FAR:
-        return Finding(
-            code="reversed_torques",
-            severity="blocking",
-            evidence={"factor": Measured(common)},
-            title="all torques have the opposite sign of what the URDF's links weigh",
-            advice=(
-                Action(
-                    "call",
-                    {"torque_scales": _scales(robot, dict.fromkeys(range(robot.n), -1.0))},
-                    function="Robot.from_urdf",
-                ),
+        return TYPES["reversed_torques"].finding(
+            "all torques have the opposite sign of what the URDF's links weigh",
+            Action(
+                "call",
+                {"torque_scales": _scales(robot, dict.fromkeys(range(robot.n), -1.0))},
+                function="Robot.from_urdf",
             ),
+            evidence={"factor": Measured(common)},
         )
     each = {j: given[j].value if j in given and given[j].sure else common for j in range(robot.n)}
     size = abs(common)
-    times = f"{1.0 / size:.2g} times less" if size < 1.0 else f"{size:.2g} times more"
-    sign = ", and have the opposite sign" if common < 0.0 else ""
+    times = f"{1.0 / size:.2g} times smaller" if size < 1.0 else f"{size:.2g} times larger"
+    sign = ", and reversed" if common < 0.0 else ""
+    left = percent(float(np.sqrt(np.median([e.left for e in given.values()]))))
     what = (
         "they are probably currents, or of the motor's side of a gear"
         if size < 1.0
         else "they are probably in another unit, or the masses of the URDF are not the robot's"
     )
-    return Finding(
-        code="scaled_torques",
-        severity="blocking",
+    return TYPES["scaled_torques"].finding(
+        f"all torques are about {times} than the URDF's links weigh{sign}",
+        Action(
+            "call",
+            {"torque_scales": _scales(robot, each)},
+            text="so that they weigh what the URDF says, until the factors are known",
+            function="Robot.from_urdf",
+        ),
+        details=f"{what}; with one factor for each joint the URDF explains all but {left} of them",
         evidence={
             "factor": Measured(common),
             **{robot.names[j]: Measured(each[j]) for j in given if given[j].sure},
         },
-        title=f"the torques are about {times} than the links of the URDF weigh{sign}; with one factor a joint the URDF "
-        f"explains all but {percent(float(np.sqrt(np.median([e.left for e in given.values()]))))} of them: {what}",
-        advice=(
-            Action(
-                "call",
-                {"torque_scales": _scales(robot, each)},
-                text="so that they weigh what the URDF says, until the factors are known",
-                function="Robot.from_urdf",
-            ),
-        ),
     )
 
 
@@ -302,23 +293,20 @@ def _reversed(robot: Robot, torques_too: bool) -> Finding:
     if not torques_too:  # a direction turns the torque with the position
         found["torque_scales"] = [-each for each in robot.torque_scales or (1.0,) * robot.n]
     with_torques = " and torques" if torques_too else ""
-    return Finding(
-        code="reversed_positions",
-        severity="blocking",
-        title=f"all positions{with_torques} have the opposite sign of the URDF's axes: only so the links weigh what "
-        "was measured",
-        advice=(Action("call", found, function="Robot.from_urdf"),),
+    return TYPES["reversed_positions"].finding(
+        f"all positions{with_torques} have the opposite sign of the URDF's axes",
+        Action("call", found, function="Robot.from_urdf"),
+        details="only with the other sign do the links weigh what was measured",
     )
 
 
 def _in_degrees(signals: Sequence[PlainSignals], robot: Robot) -> Finding:
     moved = np.max([np.ptp(each.position, axis=1) for each in signals], axis=0)
     joint = int(np.argmax(np.where(robot.tree.prismatic, 0.0, moved)))
-    return Finding(
-        code="implausible_unit",
+    size = float(moved[joint])
+    return TYPES["implausible_unit"].finding(
+        f"positions are probably in degrees, not radians: {robot.names[joint]} moves by {size:.3g}",
+        Action("call", {"units": {"position": "deg"}}, function="load_robot"),
         severity="blocking",
-        evidence={"range": Measured(float(moved[joint]), "rad")},
-        title=f"the positions are probably in degrees and were taken for radians: {robot.names[joint]} moves by "
-        f"{number(float(moved[joint]))}",
-        advice=(Action("call", {"units": {"position": "deg"}}, function="load_robot"),),
+        evidence={"range": Measured(size, "rad")},
     )

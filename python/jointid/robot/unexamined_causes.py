@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
+from jointid.robot.finding_types import TYPES
 from jointid.robot.result import RobotEstimate, RobotJoint
 
 Array = NDArray[np.float64]
@@ -35,26 +36,32 @@ def unexamined(estimate: RobotEstimate, corrected: RobotEstimate) -> Iterator[Fi
     shares = {name: _structured(joint) for name, joint in estimate.joints.items()}
     left = [_structured(joint) for joint in corrected.joints.values()]
     explained = max(left) < _EXPLAINED * max(shares.values())
-    told = {name: share for name, share in shares.items() if share > 0.0}
-    if not told:
+    concerned = sorted(
+        (name for name in shares if shares[name] > 0.0), key=lambda name: -shares[name]
+    )
+    if not concerned:
         return
-    also = ", which the facts that are named explain" if explained else ""
-    shown = ", ".join(f"{name} {percent(share)}" for name, share in told.items())
-    yield Finding(
-        code="unexamined_causes",
+    worst, *others = concerned
+    more = f" and {len(others)} more" if others else ""
+    every = ", ".join(f"{name} {percent(shares[name])}" for name in concerned)
+    yield TYPES["unexamined_causes"].finding(
+        f"{percent(shares[worst])} of the torque of {worst}{more} is neither explained nor noise",
+        Action("inspect", text=f"{worst} as a single joint, for which more causes are examined"),
+        details="; ".join(
+            filter(
+                None,
+                (
+                    f"it is so for {every} of the torque" if others else "",
+                    "the named facts explain it" if explained else "",
+                    f"not examined for a robot: {', '.join(CAUSES)}",
+                ),
+            )
+        ),
         severity="info" if explained else "warning",
         parameters=tuple(
-            f"{name}.{key}" for name in told for key in estimate.joints[name].parameters
+            f"{name}.{key}" for name in concerned for key in estimate.joints[name].parameters
         ),
-        evidence={name: Measured(share) for name, share in told.items()},
-        title=f"what is left of the torque is no noise ({shown} of it){also}; not examined for a robot: "
-        f"{', '.join(CAUSES)}",
-        advice=(
-            Action(
-                "inspect",
-                text="each of these joints by itself, for which these causes are examined",
-            ),
-        ),
+        evidence={name: Measured(shares[name]) for name in concerned},
     )
 
 

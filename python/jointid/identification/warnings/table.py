@@ -4,7 +4,9 @@ python -m jointid.identification.warnings.table > docs/findings.md
 """
 
 import sys
+from collections.abc import Iterable
 
+from jointid.identification.warnings.check import FindingType
 from jointid.identification.warnings.registry import finding_types
 
 _HEAD = """# Findings
@@ -28,11 +30,14 @@ This table is written from the checks in `python/jointid/identification/warnings
 
 def findings_page() -> str:
     """The page: a row a code, in the order in which findings are listed."""
-    rows = (
-        f"| `{each.code}` | {each.severity} | {each.meaning} | {each.advice} |\n"
-        for each in finding_types().values()
+    return _HEAD + table_rows(finding_types().values())
+
+
+def table_rows(types: Iterable[FindingType]) -> str:
+    """Rows of a page's table, one for each code."""
+    return "".join(
+        f"| `{each.code}` | {each.severity} | {each.meaning} | {each.advice} |\n" for each in types
     )
-    return _HEAD + "".join(rows)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,243 @@
+"""The table of a robot's findings: each code with its severity, its meaning, and what to do in general."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from jointid.identification.warnings.check import FindingType
+
+_LONGEST = 90  # characters of a title
+_COLUMNS = "check the order and the names of the columns"
+
+# In the order of docs/robots.md: what spoils everything first.
+TYPES = {
+    each.code: each
+    for each in (
+        FindingType(
+            code="scaled_torques",
+            severity="blocking",
+            meaning="all torques are smaller or larger than the URDF's links weigh, by a factor above 1.6 that hardly "
+            "differs between the joints: currents, or the motor's side of a gear. With a factor below 2.5, one link "
+            "with another weight must not explain it half as well",
+            advice="state the unit, the gear ratios or `torque_scales`",
+        ),
+        FindingType(
+            code="reversed_torques",
+            severity="blocking",
+            meaning="all torques have the opposite sign of what the URDF's links weigh",
+            advice="state `torque_scales`",
+        ),
+        FindingType(
+            code="reversed_positions",
+            severity="blocking",
+            meaning="all positions have the opposite sign of the URDF's axes, with or without the torques. The motion "
+            "of an arm that is its own mirror image does not show it",
+            advice="state `directions`",
+        ),
+        FindingType(
+            code="unsigned_torque",
+            severity="blocking",
+            meaning="a torque is never negative although the joint moves both ways; its magnitude fits the URDF, its "
+            "value does not",
+            advice="log the driver's signed value",
+        ),
+        FindingType(
+            code="implausible_unit",
+            meaning="a position or velocity is probably in degrees: a joint moves over twice the URDF's range, or the "
+            "two differ by 57 times; blocking where most joints move so far, or where the links weigh what was "
+            "measured in degrees only",
+            advice="state the unit of the signal",
+        ),
+        FindingType(
+            code="cross_check",
+            severity="blocking",
+            meaning="the second look has other values, or explains far more of the torque",
+            advice="check the time stamps and the logger, or leave slow motion out",
+        ),
+        FindingType(
+            code="swapped_joints",
+            meaning="the columns of two joints are probably exchanged. It is looked for where a joint's balance leaves "
+            "more than 5 % or friction would be negative",
+            advice=_COLUMNS,
+        ),
+        FindingType(
+            code="swapped_torques",
+            meaning="the torque columns of two joints are probably exchanged; looked for as `swapped_joints`",
+            advice=_COLUMNS,
+        ),
+        FindingType(
+            code="wrong_sign",
+            meaning="all signals of a joint have the wrong sign; looked for as `swapped_joints`. The mirror image of "
+            "an arm that moves in one plane fits as well: both joints that may turn the other way are then named",
+            advice="state `directions`",
+        ),
+        FindingType(
+            code="wrong_torque_sign",
+            meaning="the torque of a joint has the wrong sign; looked for as `swapped_joints`",
+            advice="state `torque_scales`",
+        ),
+        FindingType(
+            code="wrong_motion_sign",
+            meaning="the position of a joint has the wrong sign, its torque the right one; looked for as "
+            "`swapped_joints`",
+            advice="state `directions` and `torque_scales`",
+        ),
+        FindingType(
+            code="wrong_coupling",
+            meaning="a coupling of motors is missing or has another factor; looked for as `swapped_joints`. "
+            "Neighbouring joints with factors 0 and ±1, and exchanged rows and columns, are tried with free inertias. "
+            "A factor that makes friction negative counts only where the balance is much better with it",
+            advice="state `couplings`",
+        ),
+        FindingType(
+            code="tilted_base",
+            meaning="gravity is not where the facts say; the tilt is given with its error",
+            advice="state `gravity`",
+        ),
+        FindingType(
+            code="wrong_zero",
+            meaning="the zero of a joint is off by some degrees",
+            advice="state `zero_offsets`",
+        ),
+        FindingType(
+            code="wrong_torque_scale",
+            meaning="the torque of one joint is too high or too low compared with the links' weight and the other "
+            'joints, as a wrong torque constant makes it. With `inertia="free"` only joints that carry each other show '
+            "it, so nothing is said of the first joint. All torques too high by a small factor look like heavier links",
+            advice="state `torque_scales`",
+        ),
+        FindingType(
+            code="payload",
+            meaning='the last link carries a body that the URDF does not know; looked for unless `inertia="free"`',
+            advice='put it in the URDF, or identify with `inertia="free"`',
+        ),
+        FindingType(
+            code="wrong_centre",
+            meaning="the centre of mass of a link is not where the URDF has it; looked for unless "
+            "`inertia=\"free\"`. A centre along the next axis may be that link's or the next one's: both are named",
+            advice='correct the URDF, or identify with `inertia="free"`',
+        ),
+        FindingType(
+            code="wrong_inertia",
+            meaning='a link is heavier or lighter than in the URDF; looked for unless `inertia="free"`',
+            advice='correct the URDF, or identify with `inertia="scaled"`',
+        ),
+        FindingType(
+            code="more_wrong_facts",
+            meaning="joints fit badly even with the named facts corrected: more is wrong than was found",
+            advice="correct what is named, then identify again",
+        ),
+        FindingType(
+            code="several_wrong_facts",
+            severity="info",
+            meaning="facts are looked for one after the other, up to three, each with those before it corrected; here "
+            "is the call that corrects them all",
+            advice="state all of them",
+        ),
+        FindingType(
+            code="consequences",
+            severity="info",
+            meaning="warnings that are gone once the named facts are corrected; they are not listed one by one",
+            advice="nothing",
+        ),
+        FindingType(
+            code="turned_zero",
+            meaning="the log counts joints from another zero than the URDF, by a multiple of 90 degrees. The URDF's "
+            "inertias fit at least twice as well with it, and it is taken into account. A joint about the vertical has "
+            "no zero that gravity shows",
+            advice="state `zero_offsets`",
+        ),
+        FindingType(
+            code="signal_lag",
+            meaning="the torque is late or early against the position, and was not shifted",
+            advice="state `shift`, or check filters and clocks",
+        ),
+        FindingType(
+            code="delay_removed",
+            severity="info",
+            meaning="the torque was late or early against the position, and was shifted back before the identification",
+            advice="nothing, or state `shift`",
+        ),
+        FindingType(
+            code="unexamined_causes",
+            meaning="what is left of the torque is not noise: windows resemble those before them. Lists what is not "
+            'examined for a robot and makes the verdict "usable with care"; for information where the named facts '
+            "explain it",
+            advice="identify the joint by itself, which examines these causes",
+        ),
+        FindingType(
+            code="asymmetric_friction",
+            meaning="viscous friction differs between the directions; looked for where nothing else is wrong",
+            advice='identify with `model="auto:asymmetric"`',
+        ),
+        FindingType(
+            code="poor_fit",
+            meaning="the balance of a joint leaves more than 15 % of its torque unexplained",
+            advice='identify with `inertia="free"`; check units, signs and gear ratio of the joint',
+        ),
+        FindingType(
+            code="undetermined",
+            meaning="the standard error of a friction parameter exceeds a quarter of its value",
+            advice="record more and faster motion of the joint",
+        ),
+        FindingType(
+            code="at_bound",
+            meaning="friction would be negative and is held at 0; for information where it is at most a tenth of the "
+            "joint's friction",
+            advice="check the model and the given facts",
+        ),
+        FindingType(
+            code="standing",
+            meaning="joints stand still, stick or are too slow, which is left out; a warning above 35 % of the time",
+            advice="record more motion",
+        ),
+        FindingType(
+            code="locked_joint_moves",
+            meaning="a joint that `joints` leaves out moves in the recording",
+            advice="add it to `joints`",
+        ),
+        FindingType(
+            code="impossible_inertia",
+            meaning="no bodies can have these inertial parameters; for information with "
+            '`inertia="free"`, which says by how many standard errors',
+            advice='identify with `inertia="free"`',
+        ),
+        FindingType(
+            code="scaled_inertia",
+            severity="info",
+            meaning="a link's scale differs from 1",
+            advice="nothing, or correct the URDF",
+        ),
+        FindingType(
+            code="merged_inertia",
+            severity="info",
+            meaning="no motion separates a rotor's inertia or a link's scale from other inertias",
+            advice="nothing, or state `rotor_inertias`",
+        ),
+        FindingType(
+            code="joints_in_order",
+            severity="info",
+            meaning="the recording does not name the URDF's joints; they are taken in order",
+            advice="check the order",
+        ),
+        FindingType(
+            code="no_gravity",
+            severity="info",
+            meaning="no gravity acts on the robot, as given",
+            advice="nothing, or state `gravity`",
+        ),
+    )
+}
+
+
+def listed(names: Sequence[str], most: int = 3) -> str:
+    """Names as a title has them: the first, and how many more."""
+    if len(names) <= most:
+        return " and ".join(filter(None, (", ".join(names[:-1]), names[-1]))) if names else ""
+    return f"{', '.join(names[:most])} and {len(names) - most} more"
+
+
+def titled(what: str, numbers: str) -> str:
+    """A title with its numbers; without them where names are too long for both (the details have them)."""
+    whole = f"{what} ({numbers})"
+    return whole if len(whole) <= _LONGEST else what
