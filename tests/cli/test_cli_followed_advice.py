@@ -80,7 +80,7 @@ def test_the_advised_design_names_the_joint(
 ) -> None:
     saved = str(tmp_path / "arm.json")
     line = ["identify", str(FOREIGN / "tx40_200_hz.csv.gz"), "--joints", "4,6", "--save", saved]
-    assert main([*line, "--quiet"]) == 0
+    assert main([*line, "--quiet", "-v"]) == 0
     assert f"--after {saved} --after-joint 6 " in capsys.readouterr().out
 
 

@@ -35,9 +35,13 @@ def test_all_joints(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pat
         capsys, "identify", arm, "--joints", "all", "--report", page, "--save", saved
     )
     assert code == 0
-    assert out.startswith("jointid estimates — ")
+    assert out.startswith("robot, 2 joints: usable with care\n  1  usable with care  coulomb ")
     assert "joint 2's speed explains" in out
-    assert f"report: {page}" in out
+    assert out.endswith(f"report: {page}   estimate: {saved}\n")
+    lines = out.splitlines()
+    assert lines[4].startswith("joint 1: residuals of neighbouring windows correlate")
+    assert len(lines) <= 8 + 2
+    assert max(map(len, lines[:-1])) <= 100
     assert json.loads(saved.read_text(encoding="utf-8"))["joints"].keys() == {"1", "2"}
     text = page.read_text(encoding="utf-8")
     assert text.count("<svg ") == 4

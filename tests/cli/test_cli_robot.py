@@ -27,7 +27,7 @@ def test_one_command(shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFi
     log, urdf = shared_data / "tx40" / "tx40.csv.gz", shared_data / "tx40" / "tx40.urdf"
     page, saved = tmp_path / "arm.html", tmp_path / "arm.json"
     files = ("--report", str(page), "--save", str(saved))
-    line = ["identify", str(log), "--robot", str(urdf), "--facts", str(facts), *files]
+    line = ["identify", str(log), "--robot", str(urdf), "--facts", str(facts), "-v", *files]
     assert main(line) == 0
     out = capsys.readouterr().out
     assert "turned_zero" not in out  # it is a fact now
@@ -72,7 +72,7 @@ def test_the_facts_hold_a_joints_model(tmp_path: Path, capsys: pytest.CaptureFix
     log = tmp_path / "arm.csv"
     np.savetxt(log, table, delimiter=",", header=",".join(["time", *names]), comments="")
     facts.write_text('[joints.elbow]\nmodel = "coulomb_viscous:asymmetric"\n', encoding="utf-8")
-    line = ["identify", str(log), "--robot", str(path), "--facts", str(facts)]
+    line = ["identify", str(log), "--robot", str(path), "--facts", str(facts), "-v"]
     page = tmp_path / "arm.html"
     assert main([*line, "--save", str(saved), "--report", str(page)]) == 0
     assert "viscous_difference" in capsys.readouterr().out

@@ -69,10 +69,18 @@ def test_the_report_has_rollouts_and_the_joint_file_the_values(
 ) -> None:
     page, saved = tmp_path / "servo.html", tmp_path / "servo.toml"
     command = ["identify", folder / "runs", "--joint", folder / "servo.toml", "--rollout"]
-    assert not main([*map(str, command), "--report", str(page), "--save", str(saved)])
-    said = capsys.readouterr().out
-    assert "Rollouts" in said
-    assert "median" in said
+    files = ["--report", str(page), "--save", str(saved)]
+    assert not main([*map(str, command), *files])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "servo, 8 runs: usable"
+    assert lines[1].split()[:4] == ["torque_constant", "0.3581", "±", "0.0017"]
+    assert "median of 8 runs" in lines[-3]
+    estimate = tmp_path / "servo_estimate.json"
+    assert lines[-1] == f"report: {page}   estimate: {estimate}   joint file: {saved}"
+    assert jid.ServoEstimate.load(estimate).verdict.level == "usable"
+    assert len(lines) <= 16
+    assert not main([*map(str, command), *files, "-v"])
+    assert "Rollouts" in capsys.readouterr().out
     html = page.read_text(encoding="utf-8")
     assert html.count("<svg") == 8
     assert "k_t" in html

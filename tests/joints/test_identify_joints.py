@@ -174,7 +174,10 @@ def test_without_ratios_the_motors_side_is_told() -> None:
     assert {each.side for each in found.results.values()} == {"motor"}
     assert (
         "no gear ratio is known: the values of joints 1, 2 are on the motor's side"
-        in found.report()
+        in found.report(verbose=True)
+    )
+    assert found.report().startswith(
+        "robot, 2 joints: usable (at the motor, as no gear ratio is known)"
     )
 
 
@@ -195,7 +198,7 @@ def test_the_result_as_json(found: jid.JointEstimates, tmp_path: Path) -> None:
 
 
 def test_the_table(found: jid.JointEstimates) -> None:
-    lines = found.report().splitlines()
+    lines = found.report(verbose=True).splitlines()
     assert lines[0] == "jointid estimates — arm"
     assert lines[2].split()[:3] == ["joint", "model", "coulomb"]
     assert [line.split()[0] for line in lines[4:7]] == ["1", "2", "3"]

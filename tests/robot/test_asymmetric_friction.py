@@ -74,7 +74,7 @@ def test_it_is_saved_predicted_and_drawn(
     ahead, back = again.friction([[0.0, 1.0], [0.0, -1.0]])[:, 1]
     assert ahead + back == pytest.approx(2.0 * DIFFERENCE, rel=0.05)
     assert again.predict(run).relative_residual < 0.01
-    assert "viscous_difference" in found.report()
+    assert "viscous_difference" in found.report(verbose=True)
     assert found.bootstrap(20).parameters["elbow.viscous_difference"].interval is not None
 
 

@@ -93,7 +93,7 @@ def test_several_recordings_are_held_out_whole(path: Path) -> None:
     )
     assert found.settings["held_out"] == "recording"
     assert len(found.rows[0].fold_scores) == 3
-    assert "one recording held out" in found.report()
+    assert "one recording held out" in found.report(verbose=True)
     both = jid.compare_robot_models(
         runs, jid.Robot.from_urdf(path), models="coulomb_viscous", inertia="urdf", folds=2
     )
@@ -108,14 +108,14 @@ def test_the_simplest_of_equals_wins() -> None:
 
 
 def test_text_and_json_say_the_same(found: jid.RobotComparison) -> None:
-    text = found.report()
+    text = found.report(verbose=True)
     assert "winner: inertia urdf, stribeck" in text
     assert "chosen" in text
     document = json.loads(found.to_json())
     assert document["winner"] == {"inertia": "urdf", "model": "stribeck"}
     assert document["models"] == dict(found.models)
     again = jid.RobotEstimate.from_json(json.dumps(document["estimate"]))
-    assert again.report() == found.estimate.report()
+    assert again.report(verbose=True) == found.estimate.report(verbose=True)
     assert "<td>urdf</td>" in found._repr_html_()
 
 
@@ -146,6 +146,13 @@ def test_one_command(path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[s
     page, saved = tmp_path / "arm.html", tmp_path / "arm.json"
     line = ["compare", str(log), "--robot", str(path), "--inertia", "urdf", "--folds", "3"]
     assert main([*line, "--report", str(page), "--save", str(saved)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("small: inertia urdf, coulomb_viscous of 2 candidates, usable\n")
+    assert out.endswith(f"report: {page}   estimate: {saved}\n")
+    lines = out.splitlines()
+    assert len(lines) <= 8 + 2
+    assert max(map(len, lines[:-1])) <= 100
+    assert main([*line, "-v"]) == 0
     assert "winner: inertia urdf, coulomb_viscous" in capsys.readouterr().out
     assert "torque that the candidate was not fitted to" in page.read_text(encoding="utf-8")
     assert jid.RobotEstimate.load(saved).inertia == "urdf"

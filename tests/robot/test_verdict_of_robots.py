@@ -42,7 +42,7 @@ def noise(values: np.ndarray) -> np.ndarray:
 def test_a_good_arm_is_usable(robot: jid.Robot, run: jid.RobotRecording) -> None:
     found = jid.identify_robot(run, robot)
     assert found.verdict.level == "usable"
-    assert found.report().splitlines()[2] == "verdict: usable"
+    assert found.report().splitlines()[0] == "small: usable"
     assert json.loads(found.to_json())["verdict"] == found.verdict.document()
     assert jid.RobotEstimate.from_json(found.to_json()).verdict == found.verdict
 
@@ -117,4 +117,4 @@ def test_each_purpose_says_how_good(robot: jid.Robot, run: jid.RobotRecording) -
     found = jid.identify_robot(run, robot)
     assert 0.0 < found.within["compensation"] < 0.02
     assert found.verdict.uses["simulation"].within == found.within["simulation"]
-    assert "  compensation: usable, to ± " in found.report()
+    assert "  compensation to ± " in found.report()

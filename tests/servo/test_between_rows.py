@@ -35,7 +35,7 @@ def test_a_held_command_does_not_bias_the_motor(row: float) -> None:
     for name in ("torque_per_voltage", "back_emf", "torque_constant", "resistance", "inertia"):
         assert found[name] == pytest.approx(TRUTH.values[name], rel=0.01), name
     assert found.command_lag == pytest.approx(0.5 * row, rel=0.05)
-    assert "held between rows" in found.report()
+    assert "held between rows" in found.report(verbose=True)
 
 
 def test_a_duty_that_is_computed_is_held_too() -> None:
@@ -50,7 +50,7 @@ def test_a_duty_that_is_computed_is_held_too() -> None:
 def test_a_command_that_moves_evenly_is_not_taken_as_held() -> None:
     found = jid.identify_servo(bench_runs(TRUTH, seed=1), servo_joint())
     assert found.command_lag == 0.0
-    assert "nothing shows that it is held" in found.report()
+    assert "nothing shows that it is held" in found.report(verbose=True)
     # What could not be told apart is in the errors.
     assert "command" in found.parameters["torque_constant"].systematic
 

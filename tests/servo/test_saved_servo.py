@@ -16,7 +16,7 @@ def test_all_but_the_draws_is_read_back(tmp_path: Path, model: str) -> None:
     runs = bench_runs(Truth(), seed=4, runs=8)
     found = jid.identify_servo(runs, servo_joint(), model=jid.Model.parse(model))
     again = jid.ServoEstimate.load(found.save(tmp_path / "servo.json"))
-    assert again.report() == found.report()
+    assert again.report(verbose=True) == found.report(verbose=True)
     assert again.to_json() == found.to_json()
     assert np.array_equal(again.values, found.values)
     assert jid.rollout(again, runs).median == jid.rollout(found, runs).median

@@ -108,7 +108,7 @@ def test_without_free_runs_the_motor_is_said_to_be_unknown(runs: list[jid.Record
     assert found["torque_per_voltage"] == pytest.approx(
         TRUTH.values["torque_per_voltage"], rel=0.02
     )
-    assert "k_t" in found.report()
+    assert "k_t" in found.report(verbose=True)
 
 
 @pytest.mark.parametrize("given", ["resistance", "torque_constant", "both"])

@@ -56,10 +56,6 @@ def words_of_action(action: Action, command: str, model: str = "", *, file: bool
     if action.function in ("load", "load_robot", "identify_joints"):
         several = action.arguments.get("joints") == "all" and command != "identify"
         action = _of_reading(action, "identify" if several else "load")
-    if action.function == "Robot.from_urdf":
-        facts = ", ".join(f"{name} = {_fact(value)}" for name, value in action.arguments.items())
-        purpose = f" ({action.text})" if action.text else ""
-        return f"write {facts} in the file of --facts{purpose}"
     verb, options, joint_file = _parts(action, command, model, file=file)
     parts = [f"{verb} with {' '.join(options)}"] * bool(options)
     parts += [_in_joint_file(joint_file)] * bool(joint_file)
@@ -82,7 +78,7 @@ def command_of_action(
     model, file
         As those of `words_of_action`.
     """
-    if action.kind != "call" or action.function == "Robot.from_urdf":
+    if action.kind != "call" or action.function == "Robot.from_urdf" or not typed:
         return ""
     if action.function in ("load", "load_robot", "identify_joints"):
         action = _of_reading(action, "load")
@@ -117,6 +113,12 @@ def with_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:
     for option, value in _pairs(options):
         kept = [words for words in kept if not _same(words, option, value)]
         kept.append((option, value))
+    return [word for pair in kept for word in pair if word is not None]
+
+
+def without_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:
+    """Words of a command without some options and their values."""
+    kept = (pair for pair in _pairs(typed) if pair[0].partition("=")[0] not in options)
     return [word for pair in kept for word in pair if word is not None]
 
 
@@ -159,11 +161,6 @@ def _parts(
         elif not all(name in (*_TABLES, "model", "parameters") for name in action.arguments):
             speaker = other.get(action.function, action.function)
     return _VERBS[action.function], *_arguments(action.arguments, speaker, model)
-
-
-def _fact(value: Any) -> str:
-    """A fact of a robot as a facts file has it."""
-    return "..." if value is ... else str(value)
 
 
 def _of_reading(action: Action, function: str) -> Action:
@@ -262,7 +259,11 @@ def _arguments(
                 _parameter(key, entry, option_of(command, name)[0], options, joint_file)
         elif option := option_of(command, name)[0]:
             if isinstance(value, Mapping):
-                options += [option_with_value(option, key, entry) for key, entry in value.items()]
+                options += [  # a delay for each joint has no option
+                    option_with_value(option, key, entry)
+                    for key, entry in value.items()
+                    if not isinstance(entry, Mapping)
+                ]
             elif name == "models" and not isinstance(value, str):
                 options += [f"{option} {model}" for model in value]
             else:

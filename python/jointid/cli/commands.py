@@ -12,7 +12,13 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.joint_options import joint_file, joint_of, torque_needed
-from jointid.cli.outputs import check_output_folder, check_outputs, check_page, estimate_file
+from jointid.cli.outputs import (
+    check_output_folder,
+    check_outputs,
+    check_page,
+    estimate_file,
+    say_written,
+)
 from jointid.cli.reading import joints_wanted, load_all
 from jointid.cli.requirement import required
 from jointid.cli.wording import ADVICE, Wording
@@ -278,12 +284,9 @@ def _write(
 def _say_written(refused: str, arguments: argparse.Namespace) -> None:
     """Say after the report which files were written; JSON stands alone."""
     saved = estimate_file(arguments)
-    files = {"report": arguments.report, "estimate": saved}
-    if not refused and arguments.save != saved:
-        files["joint file"] = arguments.save
-    lines = [f"{kind}: {path}" for kind, path in files.items() if path is not None]
-    if lines and not arguments.json:
-        print("   ".join(lines))
+    joint = arguments.save if not refused and arguments.save != saved else None
+    if not arguments.json:
+        say_written(report=arguments.report, estimate=saved, joint_file=joint)
 
 
 def _exit_code(refused: str, arguments: argparse.Namespace) -> int:

@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 import argparse
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
 from jointid.cli.parser import CommandParser
+
+if TYPE_CHECKING:
+    from jointid.estimate.findings import Finding
+    from jointid.estimate.types_of_findings import FindingType
+
+Types = Mapping[str, "FindingType"]
+
+_JOINT, _ROBOT, _SERVO = "", "of a robot", "of a servo"
 
 
 def add_explain(explain: CommandParser) -> None:
@@ -22,37 +33,82 @@ def add_explain(explain: CommandParser) -> None:
 
 def explain(arguments: argparse.Namespace) -> None:
     """Print what a finding means and what to do; of an estimate, all that its finding says."""
-    from jointid.identification.warnings.registry import finding_types
-
-    types = finding_types()
-    code = arguments.code
+    types, code = _types(), arguments.code
     if code is None:
-        print("codes:", ", ".join(types))
+        for subject, codes in types.items():
+            print(f"codes {subject}".rstrip() + ":", ", ".join(codes))
         return
-    if code not in types:
+    known = list(dict.fromkeys(name for codes in types.values() for name in codes))
+    if code not in known:
         from jointid.joint.checks import suggestion
 
         raise InputError(
-            f"there is no such finding; {suggestion(code, types)}", argument="code", value=code
+            f"there is no such finding; {suggestion(code, known)}", argument="code", value=code
         )
+    subjects: Sequence[str] = list(types)
     if arguments.estimate is not None:
-        print(*_of_estimate(code, arguments.estimate), "", sep="\n")
-    print(f"{code} ({types[code].severity}): {types[code].meaning}")
-    print(f"  in general: {types[code].advice}")
+        subject, found = _findings_of(arguments.estimate)
+        subjects = [subject]
+        print(*_explained(code, found, arguments.estimate), "", sep="\n")
+    for subject in subjects:
+        if code in types[subject]:
+            each = types[subject][code]
+            print(f"{f'{code} {subject}'.rstrip()} ({each.severity}): {each.meaning}")
+            print(f"  in general: {each.advice}")
 
 
-def _of_estimate(code: str, path: Path) -> list[str]:
+def _types() -> dict[str, Types]:
+    """All types of findings, by what they are found of."""
+    from jointid.identification.warnings.registry import finding_types
+    from jointid.robot.finding_types import TYPES as OF_ROBOTS
+    from jointid.servo.finding_types import TYPES as OF_SERVOS
+
+    return {_JOINT: finding_types(), _ROBOT: OF_ROBOTS, _SERVO: OF_SERVOS}
+
+
+def _explained(code: str, found: Mapping[str, Sequence[Finding]], path: Path) -> list[str]:
     """What the findings with this code say in a saved estimate."""
     from jointid.cli.wording import Wording
     from jointid.estimate.answers import explained
-    from jointid.joints.reading import load_estimate
 
-    estimate = load_estimate(path, None)
-    found = [each for each in estimate.findings if each.code == code]
-    if not found:
+    lines: list[str] = []
+    for joint, each in found.items():
+        action = Wording("identify", saved=str(path), joint=joint).of_command
+        mine = [line for one in each if one.code == code for line in explained(one, action)]
+        lines += [*([f"joint {joint}"] if joint and mine else []), *mine]
+    if not lines:
+        codes = list(dict.fromkeys(one.code for each in found.values() for one in each))
         raise InputError(
-            f"the estimate has no such finding; it has {', '.join(e.code for e in estimate.findings) or 'none'}",
+            f"the estimate has no such finding; it has {', '.join(codes) or 'none'}",
             place=str(path),
         )
-    action = Wording("identify", saved=str(path)).of_command
-    return [line for each in found for line in explained(each, action)]
+    return lines
+
+
+def _findings_of(path: Path) -> tuple[str, dict[str, Sequence[Finding]]]:
+    """What a saved estimate is of, and its findings by joint, where it is of several."""
+    from jointid.base.schema import read_text
+    from jointid.joints.document import KIND as JOINTS
+    from jointid.joints.reading import load_estimate
+    from jointid.robot.document import KIND as ROBOT
+    from jointid.robot.result import RobotEstimate
+    from jointid.servo.document import KIND as SERVO
+    from jointid.servo.estimate import ServoEstimate
+
+    try:
+        document = json.loads(read_text(path))
+    except (ValueError, RecursionError):  # another reader says what is wrong
+        document = None
+    kind = document.get("kind") if isinstance(document, dict) else None
+    if kind == ROBOT:
+        return _ROBOT, {"": RobotEstimate.load(path).findings}
+    if kind == SERVO:
+        return _SERVO, {"": ServoEstimate.load(path).findings}
+    if kind == JOINTS and isinstance(document.get("joints"), dict):
+        usable = [name for name, each in document["joints"].items() if _identified(each)]
+        return _JOINT, {name: load_estimate(path, name).findings for name in usable}
+    return _JOINT, {"": load_estimate(path, None).findings}
+
+
+def _identified(joint: object) -> bool:
+    return isinstance(joint, dict) and joint.get("estimate") is not None

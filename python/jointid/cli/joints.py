@@ -11,11 +11,11 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.joint_options import facts_of, joint_file, with_facts
-from jointid.cli.outputs import check_folder, check_page
+from jointid.cli.outputs import check_folder, check_page, estimate_file, say_written
 from jointid.cli.progress import JointsProgress
 from jointid.cli.reading import as_given, gear_ratios, how_to_read
 from jointid.cli.requirement import required
-from jointid.cli.wording import ADVICE, Wording
+from jointid.cli.wording import Wording
 
 _MARK = "{joint}"
 _OF_ONE_JOINT = ("checkpoint", "resume", "selftest", "bootstrap", "causes")
@@ -89,27 +89,27 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
             callback=progress,
             **refinements(arguments),
         )
+    wording, saved = Wording.of(arguments), estimate_file(arguments)
     if arguments.report is not None:
-        save_report(found, arguments.report, action=ADVICE.of_action)
-    if arguments.save is not None:
-        found.save(arguments.save)
-    wording = Wording.of(arguments)
+        # A page words all joints alike, so that no command there can name the joint to design for.
+        save_report(found, arguments.report, action=replace(wording, saved="ESTIMATE").of_command)
+    if saved is not None:
+        found.save(saved)
     if arguments.json:
         print(found.to_json())
     else:
+        from jointid.joints.answers import answer
         from jointid.joints.tables import text_report
 
         def of_joint(action: Action, joint: str) -> str:
-            return replace(wording, joint=joint).of_action(action)
+            own = wording.joint_file.replace(_MARK, joint)
+            return replace(wording, joint=joint, joint_file=own).of_command(action)
 
-        print(text_report(found, action=of_joint, error=wording.of_error))
-        lines = [
-            f"{what}: {path}"
-            for what, path in (("report", arguments.report), ("estimates", arguments.save))
-            if path is not None
-        ]
-        if lines:
-            print("", *lines, sep="\n")
+        if arguments.verbose:
+            print(text_report(found, action=of_joint, error=wording.of_error))
+        else:
+            print(answer(found, of_joint, wording.of_error, wording.saved_file))
+        say_written(report=arguments.report, estimate=saved)
     if not len(found):
         return BAD_INPUT
     verdicts = {

@@ -23,6 +23,15 @@ def estimate_file(arguments: argparse.Namespace) -> Path | None:
     return page.with_name(f"{name}.json")
 
 
+def say_written(**files: Path | None) -> None:
+    """Say in one line which files were written, by what they are."""
+    written = [
+        f"{kind.replace('_', ' ')}: {path}" for kind, path in files.items() if path is not None
+    ]
+    if written:
+        print("   ".join(written))
+
+
 def check_outputs(arguments: argparse.Namespace) -> None:
     """Refuse before the work, not after it, what cannot be written.
 

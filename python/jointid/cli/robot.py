@@ -5,15 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
+from jointid.cli.advice import without_options
 from jointid.cli.arguments import refinements, with_terms
-from jointid.cli.outputs import check_folder, check_page
+from jointid.cli.outputs import check_folder, check_page, estimate_file, say_written
 from jointid.cli.reading import as_given, gear_ratios, how_to_read, joints_wanted
 from jointid.cli.requirement import required
-from jointid.cli.wording import ADVICE, Wording
+from jointid.cli.wording import Wording
 
 if TYPE_CHECKING:
     from jointid.robot.result import RobotEstimate
@@ -43,20 +45,25 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
     )
     draws = arguments.bootstrap
     drawn = found.bootstrap(draws, arguments.seed) if draws is not None else None
+    wording, saved = Wording.of(arguments), estimate_file(arguments)
     if arguments.report is not None:
-        save_report(found, arguments.report, action=ADVICE.of_action)
-    if arguments.save is not None:
-        found.save(arguments.save)
+        save_report(found, arguments.report, action=wording.of_command)
+    if saved is not None:
+        found.save(saved)
     if arguments.json:
         done = {} if drawn is None else {"bootstrap": drawn.document()}
         print(json.dumps(found.document() | done, indent=1, ensure_ascii=False, allow_nan=False))
     else:
+        from jointid.robot.answers import answer
         from jointid.robot.tables import text_report
 
-        print(text_report(found, action=Wording.of(arguments).of_action))
+        if arguments.verbose:
+            print(text_report(found, wording.of_command))
+        else:
+            print(answer(found, wording.of_command, wording.saved_file))
         if drawn is not None:
             print(f"\n{drawn.report()}")
-        _say_written(arguments)
+        say_written(report=arguments.report, estimate=saved)
     return required({"": found.verdict}, arguments)
 
 
@@ -64,6 +71,7 @@ def compare_whole_robot(arguments: argparse.Namespace) -> int:
     """Compare inertias and friction models of a robot by held-out torque."""
     from jointid.joint.model import Model
     from jointid.report.saving import save_report
+    from jointid.robot.answers import answer_of_comparison
     from jointid.robot.comparing import compare_robot_models
 
     _check(arguments)
@@ -77,14 +85,29 @@ def compare_whole_robot(arguments: argparse.Namespace) -> int:
         **refinements(arguments),
         **{name: given for name, given in asked.items() if given is not None},
     )
+    wording, saved = _of_identify(arguments, found.winner.inertia), estimate_file(arguments)
     if arguments.report is not None:
-        save_report(found, arguments.report, action=ADVICE.of_action)
-    if arguments.save is not None:
-        found.estimate.save(arguments.save)
-    print(found.to_json() if arguments.json else found.report())
-    if not arguments.json:
-        _say_written(arguments)
+        save_report(found, arguments.report, action=wording.of_command)
+    if saved is not None:
+        found.estimate.save(saved)
+    if arguments.json:
+        print(found.to_json())
+        return 0
+    if arguments.verbose:
+        print(found.report(verbose=True))
+    else:
+        print(answer_of_comparison(found, wording.of_command, wording.saved_file))
+    say_written(report=arguments.report, estimate=saved)
     return 0
+
+
+def _of_identify(arguments: argparse.Namespace, inertia: str) -> Wording:
+    """The wording of the command that identifies with the winner's inertia: what is advised is done by that."""
+    wording = Wording.of(arguments)
+    compared = ("--model", "--folds", "--inertia", "--report", "--save")
+    kept = without_options(wording.typed[1:], compared)
+    typed = ("identify", *kept, "--inertia", inertia)
+    return replace(wording, command="identify", typed=typed if wording.typed else ())
 
 
 def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, list[Any]]:
@@ -107,16 +130,6 @@ def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, 
         ]
     except InputError as error:
         raise as_given(error, arguments) from None
-
-
-def _say_written(arguments: argparse.Namespace) -> None:
-    lines = [
-        f"{what}: {path}"
-        for what, path in (("report", arguments.report), ("estimate", arguments.save))
-        if path is not None
-    ]
-    if lines:
-        print("", *lines, sep="\n")
 
 
 def saved_robot(path: Path) -> RobotEstimate | None:

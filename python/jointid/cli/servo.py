@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, with_terms
 from jointid.cli.joint_options import joint_of
-from jointid.cli.outputs import check_outputs
+from jointid.cli.outputs import check_outputs, estimate_file, say_written
 from jointid.cli.reading import as_given, how_to_read
 from jointid.cli.requirement import required
-from jointid.cli.wording import ADVICE, Wording
+from jointid.cli.wording import Wording
 
 if TYPE_CHECKING:
     from jointid.joint.joint import Joint
@@ -40,6 +40,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
         With a voltage drive.
     """
     from jointid.report.servo_page import save_servo_report
+    from jointid.servo.answers import answer
     from jointid.servo.identifying import identify_servo
     from jointid.servo.rolling_out import rollout
     from jointid.servo.tables import text_report
@@ -61,24 +62,23 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     )
     wanted = arguments.rollout or arguments.report is not None
     rolled = rollout(found, runs, threads=arguments.threads) if wanted else None
+    wording, saved = Wording.of(arguments), estimate_file(arguments)
     if arguments.report is not None:
-        save_servo_report(found, arguments.report, rolled, action=ADVICE.of_action)
-    if arguments.save is not None:
-        found.save(arguments.save)
+        save_servo_report(found, arguments.report, rolled, action=wording.of_command)
+    for path in {saved, arguments.save} - {None}:
+        found.save(path)
     if arguments.json:
         document = found.document() | ({} if rolled is None else {"rollout": rolled.document()})
         print(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
         return required({"": found.verdict}, arguments)
-    print(text_report(found, action=Wording.of(arguments).of_action))
-    if rolled is not None:
-        print(f"\nRollouts of the closed loop, against the logs\n{rolled.report()}")
-    written = [
-        f"{what}: {path}"
-        for what, path in (("report", arguments.report), ("saved", arguments.save))
-        if path is not None
-    ]
-    if written:
-        print("", *written, sep="\n")
+    if arguments.verbose:
+        print(text_report(found, wording.of_command))
+        if rolled is not None:
+            print(f"\nRollouts of the closed loop, against the logs\n{rolled.report()}")
+    else:
+        print(answer(found, wording.of_command, wording.saved_file, rolled))
+    joint_file = arguments.save if arguments.save != saved else None
+    say_written(report=arguments.report, estimate=saved, joint_file=joint_file)
     return required({"": found.verdict}, arguments)
 
 

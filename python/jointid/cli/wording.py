@@ -12,6 +12,7 @@ from jointid.base.error_text import on_one_line
 from jointid.base.errors import NOT_GIVEN, InputError
 from jointid.base.values import dataclass
 from jointid.cli.advice import command_of_action, option_with_value, words_of_action
+from jointid.cli.facts_advice import words_of_facts
 from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
 from jointid.cli.values import as_typed, behind_option, in_sentence
 
@@ -39,6 +40,8 @@ class Wording:
         The .json file that the command saves its estimate to. Default: it saves none.
     typed : tuple of str
         The words of the command line, the command first. Default: not known.
+    facts : str
+        The file with the facts of a robot. Default: there is none.
     joint : str
         The joint that is spoken of, of several in one file. Default: there is one.
     """
@@ -50,6 +53,7 @@ class Wording:
     saved: str = "ESTIMATE"
     joint: str = ""
     typed: tuple[str, ...] = ()
+    facts: str = ""
 
     @classmethod
     def of(cls, arguments: argparse.Namespace) -> Wording:
@@ -65,7 +69,13 @@ class Wording:
             str(getattr(arguments, "joint", None) or "the joint file"),
             "ESTIMATE" if saved is None else str(saved),
             typed=getattr(arguments, "typed", ()),
+            facts=str(getattr(arguments, "facts", None) or ""),
         )
+
+    @property
+    def saved_file(self) -> str:
+        """The file of the estimate, empty where none is written."""
+        return "" if self.saved == "ESTIMATE" else self.saved
 
     def of_error(self, error: InputError) -> str:
         """An error in one line: where, what, why, and what to do."""
@@ -86,6 +96,8 @@ class Wording:
                 "JOINT" if self.joint_file == "the joint file" else behind_option(self.joint_file)
             )
             return words_of_next_motion(action, joint, behind_option(self.saved), self.joint)
+        if action.function == "Robot.from_urdf":
+            return words_of_facts(action, self.facts)
         named = self.joint_file != "the joint file"
         words = words_of_action(action, self.command, self.model, file=named)
         return words.replace("the joint file", self.joint_file)
@@ -104,7 +116,7 @@ class Wording:
         """How to get another motion: designed after the saved estimate, where that needs no more of the user."""
         from jointid.cli.next_motion import runs_as_printed
 
-        if self.saved == "ESTIMATE" or not runs_as_printed(action):
+        if not self.saved_file or not runs_as_printed(action):
             return f"record {action.text}"
         of_joint = ["--after-joint", self.joint] if self.joint else []
         words = ["design", "--after", self.saved, *of_joint, "--output", "motion.toml"]
@@ -117,7 +129,7 @@ class Wording:
 
         if verbose:
             return text_report(estimate, self.of_command)
-        return answer(estimate, self.of_command, self.saved if self.saved != "ESTIMATE" else "")
+        return answer(estimate, self.of_command, self.saved_file)
 
     def _alternatives(self, remedies: tuple[str | Action, ...]) -> str:
         texts = [each if isinstance(each, str) else self.of_action(each) for each in remedies]

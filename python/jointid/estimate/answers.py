@@ -54,8 +54,8 @@ def purposes(verdict: Verdict) -> list[str]:
         if use.level == "not usable":
             said.append(f"{purpose}: not usable")
         elif use.within is not None:
-            size = f"± {percent(use.within)}" if use.within < 1.0 else "worse than ± 100 %"
-            said.append(f"{purpose} to {size}")
+            size = f"to ± {percent(use.within)}" if use.within < 1.0 else "worse than ± 100 %"
+            said.append(f"{purpose} {size}")
         else:
             said.append(f"{purpose}: {use.level}")
     known = any(use.within is not None for use in verdict.uses.values())
@@ -89,6 +89,32 @@ def values(parameters: Sequence[ParameterEstimate]) -> list[str]:
     if len(shown) < len(wanted):
         lines.append(f"  and {len(wanted) - len(shown)} more values")
     return lines
+
+
+def in_line(p: ParameterEstimate | None) -> str:
+    """A value with its name, error and unit, for a line of a joint that has others; nothing where there is none."""
+    if p is None:
+        return ""
+    if p.at_bound is not None:
+        return f"{p.name} {number(p.shown_value)} {p.unit} (bound)"
+    value, error, unit = value_with_error(p)
+    if p.stderr is not None and not np.isfinite(p.stderr):
+        error, unit = "± ∞", p.unit
+    return " ".join(filter(None, (p.name, value, error, unit)))
+
+
+def joint_lines(rows: Sequence[Sequence[str]]) -> list[str]:
+    """One line a joint: its cells in columns, without the last columns where a line would be too long."""
+    count = len(rows[0]) if rows else 0
+    for kept in range(count, 0, -1):
+        widths = [max(len(row[column]) for row in rows) for column in range(kept)]
+        lines = [
+            f"  {'  '.join(c.ljust(w) for c, w in zip(row, widths, strict=False))}".rstrip()
+            for row in rows
+        ]
+        if max(map(len, lines)) <= COLUMNS:
+            return lines
+    return [cut(f"  {row[0]}") for row in rows]
 
 
 def findings(

@@ -110,11 +110,18 @@ class JointEstimates(Mapping[str, Estimate]):
         """What the joints explain of each other's residuals, in words."""
         return tuple(text for each in self.results.values() for text in each.sentences())
 
-    def report(self) -> str:
-        """Return the table, the couplings and each joint's findings as text."""
+    def report(self, verbose: bool = False) -> str:
+        """Return the verdict, a line for each joint, and the first finding, as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to return everything: the table, the couplings, and each joint's findings. Default False.
+        """
+        from jointid.joints.answers import answer
         from jointid.joints.tables import text_report
 
-        return text_report(self)
+        return text_report(self) if verbose else answer(self)
 
     def document(self) -> dict[str, Any]:
         """Return the result in JSON types."""

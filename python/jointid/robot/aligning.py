@@ -127,6 +127,9 @@ def _told(code: str, away: Array, found: Aligned) -> Finding:
         details.append(f"that is what is left{after}, and it biases the values")
         shift = {"shift": told_shift(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
+        if not alike:
+            text = "the delays; without a stated shift each joint's is found and taken away"
+            advice += (Action("inspect", text=text),)
     return TYPES[code].finding(
         titles[0] + more, *advice, details="; ".join([*titles[1:], *details]), evidence=evidence
     )

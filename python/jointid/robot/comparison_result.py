@@ -83,8 +83,18 @@ class RobotComparison:
     estimate: RobotEstimate
     settings: Mapping[str, Any]
 
-    def report(self) -> str:
-        """Return the comparison as text: a line for each candidate, the residual of each joint, and the winner."""
+    def report(self, verbose: bool = False) -> str:
+        """Return the winner, a line for each joint, and the first finding, as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to return everything: a line for each candidate, and each joint's residual. Default False.
+        """
+        if not verbose:
+            from jointid.robot.answers import answer_of_comparison
+
+            return answer_of_comparison(self)
         title = f"jointid comparison — {self.estimate.robot.name or 'robot'}"
         lines = [title, "", *aligned([_HEAD, *self.cells()]), "", self.setting()]
         lines += ["", "held-out residual of each joint"]

@@ -222,7 +222,7 @@ def _summary(
     before, after = attempt.estimate.relative_residual, last.estimate.relative_residual
     evidence = {"before": Measured(before), "after": Measured(after)}
     facts = "this fact" if len(causes) == 1 else "these facts"
-    unexplained = f"unexplained: {percent(before)}, {percent(after)} when corrected"
+    unexplained = f"{percent(before)} unexplained, corrected {percent(after)}"
     codes = sorted({each.code for each in gone})
     found = []
     calls = [each.arguments for cause in causes for each in cause.advice if each.function == _ROBOT]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from jointid.identification.warnings.check import FindingType
+from jointid.estimate.types_of_findings import FindingType
 
 _LONGEST = 90  # characters of a title
 _COLUMNS = "check the order and the names of the columns"

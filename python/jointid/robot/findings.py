@@ -25,7 +25,7 @@ _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
 FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _LEFT_OUT = "such motion says nothing about friction and is left out"
-_RANK = {"blocking": 0, "warning": 1, "info": 2}
+RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
 def findings_of(
@@ -47,7 +47,7 @@ def findings_of(
         ),
         *_of_inertia(estimate, columns),
     ]
-    return replace(estimate, findings=tuple(sorted(found, key=lambda each: _RANK[each.severity])))
+    return replace(estimate, findings=tuple(sorted(found, key=lambda each: RANK[each.severity])))
 
 
 def doubtful_joints(estimate: RobotEstimate) -> list[int]:

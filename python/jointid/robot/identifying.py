@@ -21,6 +21,7 @@ from jointid.robot.asymmetry import asymmetry_told
 from jointid.robot.attempt import Asked, attempted
 from jointid.robot.cross_check import CrossCheck, cross_checked, disagreement, slow_motion
 from jointid.robot.diagnosis import diagnosed
+from jointid.robot.findings import RANK
 from jointid.robot.inertia import FREE, MODES, Inertia
 from jointid.robot.models import friction_models
 from jointid.robot.naming import turned_zeros
@@ -152,7 +153,7 @@ def identify_robot(
         rest = unexamined(attempt.estimate, diagnosis.corrected.estimate)
         findings = (*findings, *(uneven or rest))
         if attempt.zeros is not None and attempt.zeros.found:
-            findings = (turned_zeros(attempt.zeros, attempt.robot), *findings)
+            findings = (*findings, turned_zeros(attempt.zeros, attempt.robot))
     robot = attempt.robot
     settings = {
         "model": {name: joint.model for name, joint in estimate.joints.items()},
@@ -167,7 +168,7 @@ def identify_robot(
     }
     return replace(
         estimate,
-        findings=findings,
+        findings=tuple(sorted(findings, key=lambda each: RANK[each.severity])),
         cross_check=check,
         settings=settings,
         seconds=time.perf_counter() - started,

@@ -75,7 +75,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
         advice = (_call({"couplings": _coupled(wrong.robot)}),)
     before, after = percent(wrong.before), percent(wrong.after)
     return TYPES[wrong.kind].finding(
-        titled(title, f"unexplained: {before}, {after} when corrected"),
+        titled(title, f"{before} unexplained, corrected {after}"),
         *advice,
         details=f"{details}{before} of the torque of {shown} stays unexplained as it is, {after} when it is corrected",
         evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},

@@ -232,11 +232,18 @@ class RobotEstimate(Shown):
 
         return bootstrapped(self, n, seed)
 
-    def report(self) -> str:
-        """Return the table of the joints and the findings as text."""
+    def report(self, verbose: bool = False) -> str:
+        """Return the verdict, a line for each joint, and the first finding, as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to return everything: tables and all findings. Default False.
+        """
+        from jointid.robot.answers import answer
         from jointid.robot.tables import text_report
 
-        return text_report(self)
+        return text_report(self) if verbose else answer(self)
 
     def summary(self) -> str:
         """Return the table of the joints as text."""

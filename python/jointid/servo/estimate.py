@@ -124,11 +124,18 @@ class ServoEstimate(Shown):
 
         return identified_joint(self)
 
-    def report(self) -> str:
-        """Return parameters, errors and findings as text."""
+    def report(self, verbose: bool = False) -> str:
+        """Return the verdict, the values with their errors, and the first finding, as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to return everything: intervals, meanings, the fit, and all findings. Default False.
+        """
+        from jointid.servo.answers import answer
         from jointid.servo.tables import text_report
 
-        return text_report(self)
+        return text_report(self) if verbose else answer(self)
 
     def document(self) -> dict[str, Any]:
         """Return the estimate in JSON types."""

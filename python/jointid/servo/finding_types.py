@@ -1,6 +1,6 @@
 """The table of a servo's findings: each code with its severity, its meaning, and what to do in general."""
 
-from jointid.identification.warnings.check import FindingType
+from jointid.estimate.types_of_findings import FindingType
 
 TYPES = {
     each.code: each

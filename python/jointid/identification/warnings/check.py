@@ -1,60 +1,16 @@
-"""What a check is: a function that yields findings, and the types of finding that it can yield."""
+"""What a check is: a function that yields findings of its types."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 
-from jointid.base.advice import Action
 from jointid.base.values import dataclass
-from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.estimate.findings import Finding
+from jointid.estimate.types_of_findings import FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.merging import merged
 from jointid.problem.recordings import recording_names
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FindingType:
-    """One code: how severe it is, what it means, and what to do about it.
-
-    Attributes
-    ----------
-    code : str
-        Stable name.
-    severity : {"info", "warning", "blocking"}
-    meaning : str
-        When it is raised; a row of docs/findings.md.
-    advice : str
-        What to do, in general; a finding's own advice is data.
-    picture : str
-        Section of the HTML report that shows it: "friction-map", "windows" or "convergence". Default: none.
-    """
-
-    code: str
-    severity: Severity = "warning"
-    meaning: str
-    advice: str
-    picture: str = ""
-
-    def finding(
-        self,
-        title: str,
-        *advice: Action,
-        details: str = "",
-        evidence: Mapping[str, Measured] | None = None,
-        parameters: tuple[str, ...] = (),
-        severity: Severity | None = None,
-    ) -> Finding:
-        """Return a finding of this type; its severity is the type's unless given."""
-        return Finding(
-            code=self.code,
-            severity=severity or self.severity,
-            parameters=parameters,
-            evidence=evidence or {},
-            title=title,
-            details=details,
-            advice=advice,
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,3 +44,6 @@ class Check:
         if self.find is not None:
             found += self.find(evidence)
         return found
+
+
+__all__ = ["Check", "FindingType"]

@@ -6,7 +6,7 @@ python -m jointid.identification.warnings.table > docs/findings.md
 import sys
 from collections.abc import Iterable
 
-from jointid.identification.warnings.check import FindingType
+from jointid.estimate.types_of_findings import FindingType
 from jointid.identification.warnings.registry import finding_types
 
 _HEAD = """# Findings

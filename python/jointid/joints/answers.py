@@ -1,0 +1,93 @@
+"""Several joints' answer in a few lines: a line for each joint, the first finding, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from jointid.base.advice import Action
+from jointid.base.error_text import printable
+from jointid.base.errors import InputError
+from jointid.estimate.answers import cut, findings, in_line, joint_lines
+from jointid.estimate.findings import Finding
+from jointid.estimate.verdict import LEVELS
+from jointid.joints.result import FAILED, JointEstimates, JointResult
+
+_SHOWN = ("coulomb", "viscous", "inertia")
+_FINDINGS = 1
+_SEVERITIES = ("blocking", "warning", "info")
+_ORDER = (*LEVELS, FAILED)
+
+
+def answer(
+    result: JointEstimates,
+    action: Callable[[Action, str], str] = lambda action, _: str(action),
+    error: Callable[[InputError], str] = str,
+    saved: str = "",
+) -> str:
+    """Return the answer in at most 7 lines and one for each joint, the worst first where one is not usable.
+
+    Parameters
+    ----------
+    result : JointEstimates
+    action : callable
+        Words an action for a joint, by its name. Default: as at a Python prompt.
+    error : callable
+        Words why a joint failed. Default: as Python does.
+    saved : str
+        The file that has the estimates. Default: there is none.
+    """
+    joints = list(result.results.values())
+    worst = max(map(_level, joints), key=_ORDER.index)
+    if worst not in LEVELS[:2]:
+        joints.sort(key=lambda each: -_ORDER.index(_level(each)))
+    at_motor = any(each.side == "motor" for each in joints)
+    side = " (at the motor, as no gear ratio is known)" if at_motor else ""
+    lines = [f"{result.name or 'robot'}, {len(joints)} joints: {worst}{side}"]
+    lines += joint_lines([_row(each) for each in joints])
+    lines += _failures(result, error) or _coupled(result)
+    found = _findings(result)
+    name, first = found[0] if found else ("", None)
+    told = findings([each for _, each in found], lambda each: action(each, name), _FINDINGS, saved)
+    if first is not None and first.severity != "info":  # its joint's line says how severe it is
+        told[0] = cut(f"joint {name}: {first.title}")
+    return printable("\n".join([*lines, *told]))
+
+
+def _level(result: JointResult) -> str:
+    return FAILED if result.estimate is None else result.estimate.verdict.level
+
+
+def _row(result: JointResult) -> list[str]:
+    estimate = result.estimate
+    cells = [
+        in_line(None if estimate is None else estimate.parameters.get(name)) for name in _SHOWN
+    ]
+    return [result.name, _level(result), *cells]
+
+
+def _findings(result: JointEstimates) -> list[tuple[str, Finding]]:
+    """All joints' findings with the joint's name, the most severe first; what is said of all in the first line not."""
+    found = [
+        (name, each)
+        for name, estimate in result.items()
+        for each in estimate.findings
+        if each.code != "motor_side"
+    ]
+    return sorted(found, key=lambda pair: _SEVERITIES.index(pair[1].severity))
+
+
+def _failures(result: JointEstimates, error: Callable[[InputError], str]) -> list[str]:
+    """Why the first joint failed, and which others did."""
+    failed = [each for each in result.results.values() if each.error is not None]
+    if not failed or failed[0].error is None:
+        return []
+    others = ", ".join(each.name for each in failed[1:])
+    also = f" (failed, too: {others})" if others else ""
+    return [f"joint {failed[0].name} failed: {error(failed[0].error)}{also}"]
+
+
+def _coupled(result: JointEstimates) -> list[str]:
+    """The first thing that a joint explains of another, and how many there are."""
+    sentences = result.sentences()
+    more = f", and {len(sentences) - 1} more" if len(sentences) > 1 else ""
+    return [cut(f"{sentences[0]}{more}")] if sentences else []

@@ -1,0 +1,55 @@
+"""A servo's answer in a few lines: the verdict, its values, the first finding, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.base.error_text import printable
+from jointid.estimate.answers import findings, purposes, values
+from jointid.servo.estimate import ServoEstimate
+
+if TYPE_CHECKING:
+    from jointid.servo.rolling_out import Rollout
+
+_FINDINGS = 1
+_FIRST = ("torque_constant", "resistance", "inertia", "viscous", "coulomb", "load_friction")
+"""What a simulator needs, before what it follows from."""
+
+
+def answer(
+    estimate: ServoEstimate,
+    action: Callable[[Action], str] = str,
+    saved: str = "",
+    rolled: Rollout | None = None,
+) -> str:
+    """Return the answer in at most 15 lines.
+
+    Parameters
+    ----------
+    estimate : ServoEstimate
+    action : callable
+        Words an action. Default: as at a Python prompt.
+    saved : str
+        The file that has the estimate. Default: there is none.
+    rolled : Rollout, optional
+        Of the runs. Default: nothing was simulated.
+    """
+    count = len(estimate.runs)
+    verdict, runs = estimate.verdict, f"{count} run{'s' * (count != 1)}"
+    parameters = estimate.parameters
+    ordered = {name: parameters[name] for name in _FIRST if name in parameters}
+    lines = [
+        f"{estimate.joint.name or 'servo'}, {runs}: {verdict.level}",
+        *purposes(verdict),
+        *values(list({**ordered, **parameters}.values())),
+    ]
+    if rolled is not None:
+        lines.append(
+            f"closed loop: {np.degrees(rolled.median):.2f}° from the log, median of {len(rolled.runs)} runs"
+        )
+    lines += findings(estimate.findings, action, _FINDINGS, saved)
+    return printable("\n".join(lines))
