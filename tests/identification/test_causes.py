@@ -98,7 +98,7 @@ def test_a_cause_that_moves_no_value_is_a_note(estimates: dict[str, jid.Estimate
     assert _named(weak) == []
     # It makes values uncertain nevertheless, which is a warning.
     (wide,) = [found for found in weak.warnings if found.code == "structured_residual"]
-    assert "local in time explains" in wide.cause
+    assert "disturbance" in wide.cause
     (cause,) = weak.causes().harmless
     assert not weak.causes().found
     for name, share in cause.shares.items():

@@ -265,7 +265,7 @@ def test_information_is_no_warning(well_excited: jid.Recording) -> None:
     estimate = separable(make(well_excited))
     assert [found.code for found in estimate.findings] == ["gaps"]
     assert estimate.warnings == ()
-    assert "info (gaps): 1 gap(s)" in estimate.report(verbose=True)
+    assert "info (gaps): gaps in the log: 1" in estimate.report(verbose=True)
     make, _ = DEFECTS["constant sensor"]
     assert found_in(separable(make(well_excited)), "constant_signal").severity == "blocking"
 

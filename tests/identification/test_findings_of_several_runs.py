@@ -31,8 +31,9 @@ def test_a_finding_about_one_of_several_runs_names_it_everywhere() -> None:
     estimate = jid.identify(runs)
     (spikes,) = coded(estimate.findings, "spikes")
     assert spikes.recordings == ("run_3",)
-    assert spikes.cause.startswith("run_3: 1 spike(s) in torque")
-    assert "run_3: 1 spike(s)" in estimate.report()
+    assert spikes.title.startswith("1 of 4 recordings: ")
+    assert "in run_3" in spikes.details
+    assert "1 of 4 recordings: " in estimate.report()
     read = jid.Estimate.from_json(estimate.to_json())
     assert coded(read.findings, "spikes")[0].recordings == ("run_3",)
 
@@ -41,7 +42,8 @@ def test_what_is_found_in_several_runs_is_said_once() -> None:
     runs = [with_spike(RUNS[0], 400, 50.0), RUNS[1], with_spike(RUNS[2], 600, 80.0)]
     (spikes,) = coded(jid.identify(runs).findings, "spikes")
     assert spikes.recordings == ("run_0", "run_2")
-    assert spikes.cause.startswith("2 of 3 recordings (run_0, run_2): 1 spike(s) in torque")
+    assert spikes.title.startswith("2 of 3 recordings: ")
+    assert "in run_0, run_2" in spikes.details
     assert "at 2–3 s" in spikes.cause
     assert spikes.evidence["height"].value == pytest.approx(80.0, abs=8.0)
 
@@ -67,8 +69,8 @@ def test_different_findings_stay_apart() -> None:
     )
     apart = merged([(0, one), (1, other), (2, one)], ("a", "b", "c"))
     assert [each.cause for each in apart] == [
-        "2 of 3 recordings (a, c): 1 spike in torque",
-        "b: 1 spike in sensor",
+        "2 of 3 recordings: 1 spike in torque; in a, c",
+        "1 of 3 recordings: 1 spike in sensor; in b",
     ]
 
 
@@ -94,7 +96,7 @@ def test_recordings_without_a_name_of_their_own_have_a_number() -> None:
 def test_a_single_recording_is_not_named() -> None:
     (spikes,) = coded(jid.identify(with_spike(RUNS[0])).findings, "spikes")
     assert spikes.recordings == ()
-    assert spikes.cause.startswith("1 spike(s)")
+    assert "recording" not in spikes.cause
 
 
 def test_the_title_says_how_many_recordings_there_are() -> None:

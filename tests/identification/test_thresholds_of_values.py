@@ -14,7 +14,7 @@ from fake_evidence import TIME, evidence, found, inspected, parameter
 
 import jointid as jid
 from jointid.estimate.causes import Causes
-from jointid.estimate.findings import Finding
+from jointid.estimate.findings import TITLE, Finding
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.warnings import torque_balance, unbounded
@@ -114,20 +114,23 @@ def test_a_sentence_names_a_few() -> None:
     many = [parameter(f"coulomb[{k}]", 1.0, 0.1 + 0.01 * k) for k in range(7)]
     pairs = {(f"coulomb[{k}]", f"coulomb[{k + 1}]"): 0.99 for k in range(6)}
     (said,) = _uncertain(*many, correlations=pairs)
-    assert said.message.count("has a standard error") == 4
-    assert "and 3 more parameters" in said.message
+    assert len(said.title) <= TITLE
+    assert "and 5 others: " in said.title
+    assert said.evidence["more_parameters"].value == 5
+    assert said.cause.count(" ± ") == 6
     assert said.message.count("indistinguishable") == 5
-    (said,) = _uncertain(*many[:5])
-    assert "and 1 more parameter;" in said.message
+    (said,) = _uncertain(*many[:4])
+    assert "and 2 others: " in said.title
+    assert "also coulomb[2] ± 6.1 %" in said.details
     (other,) = found("structured_residual", _moved(*many, causes=Causes(found=())))
-    assert "coulomb[2] and others" in other.message
+    assert "coulomb[2] and 4 others uncertain" in other.title
     assert "coulomb[3]" not in other.message
 
 
 @pytest.mark.parametrize(("error", "excited"), [(9.9, True), (10.1, False)])
 def test_an_error_ten_times_the_value_means_not_excited(error: float, excited: bool) -> None:
     (said,) = _uncertain(parameter("viscous", 1.0, 1.96 * error))
-    assert ("is not excited" in said.message) != excited
+    assert ("viscous unknown" in said.title) != excited
 
 
 # --- How well moved ---
@@ -247,7 +250,7 @@ def test_hardly_more_windows_than_parameters(windows: int, few: bool) -> None:
     assert (lack is not None) == few
 
 
-@pytest.mark.parametrize(("times", "said"), [(3.1, "about 96 s like it"), (3.2, "times as long")])
+@pytest.mark.parametrize(("times", "said"), [(3.1, "about 96 s of motion"), (3.2, "times as much")])
 def test_nobody_records_ten_times_as_long(times: float, said: str) -> None:
     lack = Excitation(_moved()).longer("viscous", times, 1.0)
     assert said in lack.text

@@ -201,7 +201,7 @@ def test_the_errors_that_a_warning_states_are_those_of_the_table(
     estimate = separable(run, joint)
     found = warned(estimate, "undetermined").message
     printed = {line.split()[0]: line for line in estimate.report(verbose=True).splitlines() if line}
-    stated = re.findall(r"(\w+) has a standard error of ([\d.]+ %)", found)
+    stated = re.findall(r"(\w+) ± ([\d.]+ %)", found)
     assert stated
     for name, share in stated:
         assert f"({share})" in printed[name]
@@ -312,6 +312,6 @@ def test_many_undetermined_parameters_make_a_short_sentence() -> None:
     )
     found = warned(estimate, "undetermined")
     assert len(found.parameters) > 8
-    assert re.search(r"; and \d+ more parameters", found.cause)
+    assert re.search(r" and \d+ others: ", found.title)
     assert len(found.cause) < 1000
     assert {name.rsplit(".", 1)[0] for name in found.evidence} >= set(found.parameters[:8])

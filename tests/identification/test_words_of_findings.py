@@ -35,7 +35,7 @@ def test_a_residual_is_called_autocorrelated_only_where_it_is(
 
 
 @pytest.mark.parametrize(
-    ("share", "text"), [(0.017, "makes inertia about 1.7 % too small"), (1.14, "is hidden by")]
+    ("share", "text"), [(0.017, "the inertia about 1.7 % too small"), (1.14, "hides the inertia")]
 )
 def test_noise_that_hides_nothing_is_not_said_to_hide_the_inertia(share: float, text: str) -> None:
     p: Any = SimpleNamespace(name="inertia", vary=True)

@@ -10,8 +10,10 @@ from typing import Any
 from jointid.base.advice import Action
 from jointid.base.notebook import Shown
 from jointid.base.values import dataclass
-from jointid.estimate.findings import Measured
+from jointid.estimate.findings import TITLE, Measured
 from jointid.estimate.wording import percent, signed_percent
+
+_SHOWN = 3  # changes in a sentence
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,20 +79,52 @@ class Cause:
         object.__setattr__(self, "near_zero", MappingProxyType(dict(self.near_zero)))
 
     def __str__(self) -> str:
-        """The cause in a sentence without its advice."""
-        text = MEANINGS[self.name]
-        inside = ", ".join(part for part in (self.detail, self.size) if part)
-        text += f" ({inside})" if inside else ""
-        text += (
-            f" explains {percent(self.share)} of the misfit over windows of {_seconds(self.scale)}"
-        )
-        if self.relative and self.harmful:
-            text += f"; {self.effect or f'with it in the model, {self.changes}'}"
-        elif not self.harmful:
-            text += f"; it {self.harmless}"
-        if self.alike:
-            text += f"; this recording hardly tells it from {' and '.join(self.alike)}"
-        return text
+        """Title and details."""
+        return f"{self.title}; {self.details}"
+
+    @property
+    def title(self) -> str:
+        """What is missing, its size, and what it moves, as much as a title holds."""
+        inside = ", ".join(filter(None, (self.detail, self.size.partition(", ")[0])))
+        what = MEANINGS[self.name] + (f" ({inside})" if inside else "")
+        if not self.harmful:
+            return f"{what}: harmless"
+        if self.effect:  # says more than a title holds
+            return what
+        title, before = what, ": with it, "
+        for each in self._moved:
+            if len(title + before + each) <= TITLE:
+                title, before = title + before + each, ", "
+        return title
+
+    @property
+    def details(self) -> str:
+        """How much it explains, what it does, and what looks like it."""
+        said = [
+            f"explains {percent(self.share)} of the misfit in windows of {_seconds(self.scale)}",
+            self.size.partition(", ")[2],
+            "" if self.harmful and self._is_in_title else self.does,
+            f"hardly separable from {' and '.join(self.alike)}" if self.alike else "",
+        ]
+        return "; ".join(filter(None, said))
+
+    @property
+    def _moved(self) -> list[str]:
+        return [
+            f"{name} {self.near_zero.get(name) or signed_percent(share)}"
+            for name, share in _largest(self.relative)
+        ]
+
+    @property
+    def _is_in_title(self) -> bool:
+        return not self.effect and all(each in self.title for each in self._moved)
+
+    @property
+    def does(self) -> str:
+        """What it does to the values, as a clause."""
+        if not self.harmful:
+            return f"it {self.harmless}"
+        return self.effect or f"with it in the model, {self.changes}"
 
     @property
     def changes(self) -> str:
@@ -102,8 +136,7 @@ class Cause:
     def moves(self) -> str:
         """The largest changes, as a part of a sentence."""
         known = {name: share for name, share in self.shares.items() if name not in self.uncertain}
-        shown = self.relative if self.harmful else known
-        moved = sorted(shown.items(), key=lambda entry: -abs(entry[1]))[:3]
+        moved = _largest(self.relative if self.harmful else known)
         named = [f"{name} {self._change(name, change)}" for name, change in moved]
         if not self.harmful:
             named += [
@@ -208,6 +241,10 @@ def _rebuilt(values: dict[str, Any]) -> Cause:
     return Cause(**values)
 
 
+def _largest(shares: Mapping[str, float]) -> list[tuple[str, float]]:
+    return sorted(shares.items(), key=lambda entry: -abs(entry[1]))[:_SHOWN]
+
+
 def _seconds(value: float) -> str:
     return f"{1e3 * value:.3g} ms" if value < 1.0 else f"{value:.3g} s"
 
@@ -217,21 +254,21 @@ def _in_errors(size: float) -> str:
 
 
 MEANINGS = {
-    "gravity": "a torque of gravity that the model lacks",
-    "inertia_varies": "an inertia that varies with the angle",
+    "gravity": "gravity that the model lacks",
+    "inertia_varies": "inertia that varies with the angle",
     "load_friction": "friction that grows with the load",
-    "slow_motion": "friction at low speed that the model lacks",
-    "presliding": "a friction that builds up over the first way after each reversal",
-    "stribeck_exponent": "another decay of the friction with speed",
-    "drift": "a coefficient that changes during the recording",
-    "harmonic": "a torque over the joint's angle",
-    "ripple": "a torque over the motor's angle",
-    "delay": "a signal that is late or early",
+    "slow_motion": "low-speed friction that the model lacks",
+    "presliding": "friction that builds up after each reversal",
+    "stribeck_exponent": "another decay of friction with speed",
+    "drift": "drift of a coefficient",
+    "harmonic": "torque over the joint angle",
+    "ripple": "torque over the motor angle",
+    "delay": "late or early signal",
     "other_signal": "another signal that acts on the joint",
-    "disturbance": "a disturbance that is local in time",
-    "asymmetry": "friction that differs between the two directions",
-    "offset": "a constant torque that the model lacks",
-    "wrong_scale": "a given inertia that does not fit the torque",
+    "disturbance": "short disturbance",
+    "asymmetry": "friction that differs between directions",
+    "offset": "constant torque that the model lacks",
+    "wrong_scale": "known inertia that does not fit the torque",
     "other_run": "a recording with other values than the rest",
 }
 """What each name means, as the beginning of a sentence."""

@@ -98,12 +98,13 @@ def without_drift(
     relative = {name: share for name, share in cause.relative.items() if name in moved}
     removed = replace(
         cause,
-        size=f"{cause.size}; taken away, the value is that of the middle",
         shifts=moved,
         relative=relative,
         shares={name: share for name, share in cause.shares.items() if name in moved},
     )
-    removed = replace(removed, effect=f"that changed {removed.moves}")
+    removed = replace(
+        removed, effect=f"the value is that of the middle, which changed {removed.moves}"
+    )
     return changed_problem, removed
 
 

@@ -42,14 +42,14 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     overridden = metadata.get("overridden_units")
     if isinstance(overridden, Mapping):
         found += [
-            f"{signal}: the file states {unit}, and the call another unit, which is taken"
+            f"{signal} is read in the unit of the call, not in the file's {unit}"
             for signal, unit in overridden.items()
         ]
     repeated = metadata.get("repeated_rows")
     if isinstance(repeated, int) and repeated:
         rows = "1 row repeats" if repeated == 1 else f"{repeated} rows repeat"
         verb = "is" if repeated == 1 else "are"
-        found.append(f"{rows} the stamp and all values of an earlier one and {verb} left out")
+        found.append(f"{rows} an earlier one and {verb} left out")
     empty = metadata.get("empty_rows")
     if isinstance(empty, int) and empty:
         found.append(f"{empty} row(s) of zeros at the end are left out")

@@ -33,7 +33,9 @@ class SmallMotion:
     noise : float
         Standard deviation of the position where that is all there is [rad or m]; 0 where it moves by steps.
     text : str
-        The same as a sentence.
+        How far it moves, as a sentence.
+    details : str
+        What shows it.
     """
 
     travel: float
@@ -41,6 +43,7 @@ class SmallMotion:
     unchanged: float
     noise: float = 0.0
     text: str
+    details: str
 
     @property
     def steps(self) -> float:
@@ -69,8 +72,9 @@ def small_motion(recording: Recording) -> SmallMotion | None:
             step=step,
             unchanged=unchanged,
             noise=noise,
-            text="the joint stands still, or moves too fast for these samples: its position varies by "
-            f"{travel:.2g} {unit} in all, as noise does (standard deviation {noise:.2g} {unit})",
+            text=f"the joint stands still: its position varies by {travel:.2g} {unit}, like noise",
+            details=f"the noise has a standard deviation of {noise:.2g} {unit}; or the joint moves too fast for these "
+            "samples",
         )
     if travel >= _FEWEST * step:
         return None
@@ -78,8 +82,8 @@ def small_motion(recording: Recording) -> SmallMotion | None:
         travel=travel,
         step=step,
         unchanged=unchanged,
-        text=f"the joint hardly moves: {travel:.3g} {unit} in all, {travel / step:.0f} steps of its encoder "
-        f"({step:.3g} {unit}), and no change of position in {100.0 * unchanged:.0f} % of the samples",
+        text=f"the joint hardly moves: {travel:.3g} {unit}, {travel / step:.0f} steps of its encoder",
+        details=f"a step is {step:.3g} {unit}; {100.0 * unchanged:.0f} % of the samples show no change of position",
     )
 
 
@@ -123,7 +127,7 @@ def raise_if_hardly_moving(recordings: Iterable[Recording]) -> None:
         small = small_motion(recording)
         if small is not None:
             raise InputError(
-                small.text,
+                f"{small.text}; {small.details}",
                 argument="recordings",
                 place=f"recording {number}",
                 remedy=f"record {WIDER}",

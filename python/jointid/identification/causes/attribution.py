@@ -165,7 +165,7 @@ def _of_slow_rows(fit: Fitted, matrix: Array, slow: SlowRows) -> Attributed:
         candidate=Candidate(
             name="slow_motion",
             columns=np.zeros((0, 1)),
-            detail=f"below about {slow.speed:.2g} @/s",
+            detail=f"below {slow.speed:.2g} @/s",
             numbers=(number,),
         ),
         share=slow.share,

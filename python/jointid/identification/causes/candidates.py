@@ -151,7 +151,7 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(
             name="stribeck_exponent" if known else "slow_motion",
             columns=linear[:, k : k + 1],
-            detail=f"below about {speed:.2g} @/s",
+            detail=f"below {speed:.2g} @/s",
             numbers=(("speed", float(speed), "/s"),),
             family=family,
         )
@@ -159,7 +159,7 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(
             name="presliding",
             columns=since[:, k : k + 1],
-            detail=f"within about {way:.2g} @ of a reversal",
+            detail=f"within {way:.2g} @",
             numbers=(("way", float(way), ""),),
             family=family,
         )

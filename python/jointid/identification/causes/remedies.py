@@ -13,23 +13,23 @@ _HALF = 0.2  # of a sample period: so near to half a period early, a torque is o
 _HELD = Action(
     "call", {"torque_hold": "zoh"}, text="if the torque is a command that is held between samples"
 )
-_EARLY = "when torque and position are sampled and logged, and whether the gear gives way"
+_EARLY = "the sampling times of torque and position, and the gear's play"
 _OTHERWISE: dict[str, tuple[Action, ...]] = {
     "inertia_varies": (
         Action("record", text="motion about one pose, or with a gentler acceleration"),
-        Action("inspect", text="whether other joints change the inertia during the recording"),
+        Action("inspect", text="whether other joints change the inertia"),
     ),
     "presliding": (
         Action("record", text="longer strokes with fewer reversals"),
         Action("inspect", text="the friction just after each reversal"),
     ),
     "drift": (
-        Action("record", text="after warming up, or shorter, with the temperature"),
-        Action("inspect", text="the values of its first and its last part, identified apart"),
+        Action("record", text="after warming up"),
+        Action("inspect", text="the values of the first and the last part of the recording"),
     ),
     "other_signal": (Action("record", text="with everything else at rest"),),
     "disturbance": (
-        Action("record", text="without contact, or identify the parts before and after it"),
+        Action("record", text="without contact"),
         Action("inspect", text="what happened at that time"),
     ),
     "offset": (Action("call", {"torque_offset": True}, function="Joint"),),

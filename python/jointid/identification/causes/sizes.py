@@ -82,8 +82,8 @@ def described(
     elif name == "drift":
         rate = float(found[0]) / (abs(fit.value(detail)) or 1.0)
         change, minute = rate * _span(fit), 60.0 * rate
-        over, rated = f"{100.0 * change:+.3g} %", f"{100.0 * minute:+.3g} % a minute"
-        size = f"{over} over the recording, {rated}, of its value in the middle"
+        over, rated = f"{100.0 * change:+.3g} %", f"{100.0 * minute:+.3g} % per minute"
+        size = f"{over} over the recording, {rated} of its value in the middle"
         numbers |= {"change": Measured(change), "change_a_minute": Measured(minute)}
     elif name == "wrong_scale":
         share = off_scale(fit, each)

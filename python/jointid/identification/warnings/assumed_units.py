@@ -9,15 +9,22 @@ from jointid.estimate.findings import Finding
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import DRIVE, Inspected
+from jointid.identification.warnings.undetermined import listed
 from jointid.recording.recording import Recording
 from jointid.recording.signals import SIGNALS, header_unit
 
 ASSUMED_UNITS = FindingType(
     code="assumed_units",
-    meaning="a column has no unit; SI is assumed",
-    advice="name the unit in the header (as in `position_rad`, `torque_Nm`), or state it when loading",
+    meaning="a column has no unit, so SI is assumed",
+    advice="state the unit when loading, or in the header (as in `position_rad`, `torque_Nm`)",
 )
 _AGREES = 0.01  # of a velocity and the position's rate
+
+
+_IN_HEADER = Action(
+    "inspect", text="the header, and name the unit there (as in position_rad, torque_Nm)"
+)
+_ROOM = 32  # characters of names in a title
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
@@ -26,25 +33,22 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     signals = [name for name in assumed if name != "time" or not _shows_seconds(inspected, assumed)]
     units = {name: header_unit(name, recording.kind) for name in signals if name in SIGNALS}
     if signals:
-        advice = [
-            Action(
-                "inspect",
-                text="the header, and name the unit there (as in position_rad, torque_Nm)",
-            )
-        ]
+        advice = [_IN_HEADER]
         if units:
-            purpose = "or whatever the units are"
-            advice.append(Action("call", {"units": units}, text=purpose, function="load"))
+            purpose = "or the units that they have"
+            advice.insert(0, Action("call", {"units": units}, text=purpose, function="load"))
         yield ASSUMED_UNITS.finding(
-            f"no unit is stated for {', '.join(signals)}; SI is assumed{_sizes(recording, signals)}",
+            f"no unit is stated for {listed(signals, _ROOM)}, so SI is assumed",
             *advice,
+            details="; ".join(filter(None, (_all_of(signals), *_sizes(recording, signals)))),
         )
     recognised = _pairs(recording.metadata.get("recognised_units"))
     if recognised:
-        shown = ", ".join(f"{signal} is read in {unit}" for signal, unit in recognised)
+        shown = [f"{signal} in {unit}" for signal, unit in recognised]
         yield ASSUMED_UNITS.finding(
-            f"no unit is stated, but numbers or names show it: {shown}",
+            f"unit seen from numbers or names: {listed(shown, _ROOM)}",
             Action("inspect", text="the header, and name the unit there (time_ns)"),
+            details=_all_of(shown),
             severity="info",
         )
 
@@ -56,13 +60,18 @@ def _shows_seconds(inspected: Inspected, assumed: Sequence[str]) -> bool:
     return stated and found is not None and abs(found.scale - 1.0) < _AGREES
 
 
-def _sizes(recording: Recording, signals: Sequence[str]) -> str:
+def _sizes(recording: Recording, signals: Sequence[str]) -> list[str]:
     """How large the torque or current is then: a reader sees whether that can be."""
-    return "".join(
-        f": {name} up to {float(np.abs(getattr(recording, name)).max()):.4g} {recording.unit(name)}"
+    return [
+        f"{name} is then up to {float(np.abs(getattr(recording, name)).max()):.4g} {recording.unit(name)}"
         for name in DRIVE
         if name in signals and getattr(recording, name) is not None
-    )
+    ]
+
+
+def _all_of(names: Sequence[str]) -> str:
+    """Names that a title has no room for."""
+    return "" if listed(names, _ROOM) == ", ".join(names) else f"in all: {', '.join(names)}"
 
 
 def _pairs(value: object) -> tuple[tuple[object, object], ...]:

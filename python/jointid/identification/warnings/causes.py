@@ -18,15 +18,15 @@ _REMEDIES = {
     "load_friction": "add load_friction to the model",
     "slow_motion": "use the model stribeck",
     "presliding": "record longer strokes with fewer reversals",
-    "stribeck_exponent": "use the model stribeck_general, whose exponent is free",
-    "drift": "record after warming up; identify first and last part apart",
+    "stribeck_exponent": "use the model stribeck_general, which has a free exponent",
+    "drift": "record after warming up, or identify first and last part separately",
     "harmonic": "add harmonics of that order to the model",
-    "delay": "correct the stamps of the signal that is late",
+    "delay": "correct the time stamps of that signal",
     "other_signal": "record with everything else at rest",
     "disturbance": "leave that stretch of time out",
     "asymmetry": "add asymmetric to the model",
-    "offset": "let the joint have a torque_offset",
-    "other_run": "look for another unit, sign, zero or load in it; identify it by itself",
+    "offset": "give the joint a torque_offset",
+    "other_run": "look for another unit, sign, zero or load in it; identify it alone",
 }
 
 _LITTLE = 0.1  # of the squares
@@ -38,8 +38,8 @@ _NOTED = (
 TYPES = {
     name: FindingType(
         code=name,
-        meaning=f"{MEANINGS[name]}: it explains what is left of the torque in stretches of time that it was not fitted "
-        "to, and it moves a parameter by more than 5 % or two errors (info where it does not)",
+        meaning=f"{MEANINGS[name]} explains the misfit in parts of the log that it was not fitted to. Info: no "
+        "parameter moves by more than 5 % or two errors",
         advice=remedy,
         picture="windows",
     )
@@ -81,10 +81,15 @@ def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Findi
     also = "also makes {} uncertain"
     if cause.name == "wrong_scale":
         also = "also scales {}, if the torque is wrong"
-    text = f"{cause}; it {also.format(listed(beside))}" if beside else str(cause)
+    does = f"; it {also.format(listed(beside))}" if beside else ""
     severity: Severity = "blocking" if _is_gross(cause, missed) else "warning"
     return TYPES[cause.name].finding(
-        text, *cause.advice, evidence=measured, parameters=tuple(concerned), severity=severity
+        cause.title,
+        *cause.advice,
+        details=cause.details + does,
+        evidence=measured,
+        parameters=tuple(concerned),
+        severity=severity,
     )
 
 
@@ -101,7 +106,8 @@ def _is_gross(cause: Cause, missed: bool) -> bool:
 def _note(cause: Cause) -> Finding:
     """Of a cause that is there and does no harm."""
     return TYPES[cause.name].finding(
-        str(cause),
+        cause.title,
+        details=cause.details,
         evidence=_measured(cause, cause.shares),
         parameters=tuple(cause.relative),
         severity="info",

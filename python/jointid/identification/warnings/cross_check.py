@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
-from jointid.estimate.wording import number
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.undetermined import listed
 
 CONTRADICTED = FindingType(
     code="cross_check",
@@ -16,6 +16,8 @@ CONTRADICTED = FindingType(
     meaning="a plain filtered least squares on the recorded signals gives other values",
     advice="find out which of the two is wrong: plot position, velocity and torque over time",
 )
+
+_ROOM = 65  # characters of values in a title
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -25,15 +27,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     pairs, measured = [], {}
     for name in second.contradicted:
         p, other = evidence.parameters[name], second.values[name].value
-        pairs.append(f"{name} {number(p.shown_value)} here, {number(other)} there")
+        pairs.append(f"{name} {other:.3g} (here {p.shown_value:.3g})")
         measured[name] = Measured(p.shown_value, p.unit)
         measured[f"{name}.second"] = Measured(other, p.unit)
+    shown = listed(pairs, _ROOM)
     yield CONTRADICTED.finding(
-        f"a plain least squares on the recorded signals disagrees: {'; '.join(pairs)}",
-        Action(
-            "inspect",
-            text="position, velocity and torque over time: one of the two looks misreads them",
-        ),
+        f"a second look disagrees: {shown}",
+        Action("inspect", text="position, velocity and torque over time"),
+        details="a plain least squares on the recorded signals gives these values"
+        + ("" if shown == ", ".join(pairs) else f"; in all: {', '.join(pairs)}"),
         evidence=measured,
         parameters=second.contradicted,
     )

@@ -113,7 +113,7 @@ class Excitation:
         text = f"the log has {windows} windows for {free} parameters"
         return Lack(
             "windows",
-            f"{windows} windows are too few",
+            f"only {windows} windows",
             text,
             "more motion",
             {"windows": Measured(float(windows)), "free_parameters": Measured(float(free))},
@@ -136,9 +136,9 @@ class Excitation:
         if base == "torque_offset":
             return self._both_ways("")
         if base in ("sensor_gain", "sensor_offset"):
-            return self._load("a sensor")
+            return self._load()
         if base == "load_friction":
-            return self._load("friction of the load")
+            return self._load()
         if base.startswith(("gravity", "position", "ripple")):
             return self._angle(base)
         return None
@@ -147,25 +147,23 @@ class Excitation:
         """What is missing where only noise limits: time."""
         duration = float(self.evidence.table.duration.sum())
         needed = duration * min((error / wanted) ** 2, 1e6)
-        text = (
-            f"the noise needs a longer recording: the log has {_two(duration)} s of motion, and about "
-            f"{_two(needed)} s like it would do"
-        )
+        text = f"with this noise about {_two(needed)} s of motion are needed, the log has {_two(duration)} s"
+        short = f"{_two(duration)} of {_two(needed)} s recorded"
         motion = f"about {_two(needed)} s of such motion"
         measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
         if needed > _LONGEST * duration:
             text = (
-                f"the noise hides {name}: the log has {_two(duration)} s of motion, and it would take "
-                f"{_two(needed / duration)} times as long to see it"
+                f"noise hides {name}: the log has {_two(duration)} s of motion, {_two(needed / duration)} times as "
+                "much is needed"
             )
             measured["duration.factor"] = Measured(float(_two(needed / duration)))
-            motion = f"a motion in which {name} shows more, or one with less noise"
-        return Lack("duration", "noise or a short log", text, motion, measured, needed)
+            short, motion = "too much noise", f"motion in which {name} shows more"
+        return Lack("duration", short, text, motion, measured, needed)
 
     def noise(self) -> Lack:
         """What is missing where the velocity's noise hides the inertia: resolution."""
         share = self.evidence.residuals.noise_share
-        text = f"noise makes up {percent(share)} of the change of the velocity over a window"
+        text = f"noise is {percent(share)} of the velocity's change over a window"
         motion = "the position with a finer resolution"
         return Lack(
             "velocity_noise", "noisy velocity", text, motion, {"velocity_noise": Measured(share)}
@@ -177,19 +175,20 @@ class Excitation:
             return Lack(
                 "reversals",
                 f"{count} of {_REVERSALS} reversals",
-                f"the log has {count} reversal{'s' * (count != 1)}, and {_REVERSALS} or more are needed",
-                "motion in both directions, with several reversals",
+                f"the log has {count} reversal{'s' * (count != 1)}, {_REVERSALS} or more are needed",
+                f"motion with {_REVERSALS} or more reversals",
                 {
                     "reversals": Measured(float(count)),
                     "reversals.needed": Measured(float(_REVERSALS)),
                 },
             )
         if self.rarer < _DIRECTION:
+            share = f"{100.0 * (1.0 - self.rarer):.0f} %"
             return Lack(
                 "direction",
-                "motion in one direction",
-                f"the log moves in one direction during {100.0 * (1.0 - self.rarer):.0f} % of the time",
-                "as much motion in one direction as in the other",
+                f"{share} in one direction",
+                f"the log moves in one direction {share} of the time",
+                "equal motion in both directions",
                 {"direction": Measured(1.0 - self.rarer)},
             )
         return None
@@ -201,10 +200,10 @@ class Excitation:
         unit = self._unit(rate=True)
         return Lack(
             "speed_range",
-            "too few speeds",
-            f"the log's speeds are {_two(slow)} to {_two(fast)} {unit}, and a wider range is needed, e.g. "
-            f"{_two(0.2 * fast)} to {_two(fast)}",
-            f"motion at several speeds, e.g. {_two(0.2 * fast)} to {_two(fast)} {unit}",
+            f"speeds {_two(slow)} to {_two(fast)} {unit} only",
+            f"the log's speeds are {_two(slow)} to {_two(fast)} {unit}, a wider range is needed, e.g. "
+            f"{_two(0.2 * fast)} to {_two(fast)} {unit}",
+            f"motion at several speeds from {_two(0.2 * fast)} to {_two(fast)} {unit}",
             {
                 "speed.slow": Measured(slow, unit),
                 "speed.fast": Measured(fast, unit),
@@ -220,10 +219,9 @@ class Excitation:
         unit = self._unit(rate=True)
         return Lack(
             "top_speed",
-            "slow motion only",
-            f"at the log's top speed, {_two(fast)} {unit}, viscous friction is {percent(share)} of the torque: faster "
-            "motion is needed",
-            f"faster motion than {_two(fast)} {unit}",
+            f"top speed {_two(fast)} {unit} only",
+            f"at the top speed, {_two(fast)} {unit}, viscous friction is {percent(share)} of the torque",
+            f"motion faster than {_two(fast)} {unit}",
             {"speed.fast": Measured(fast, unit), "viscous.share": Measured(share)},
         )
 
@@ -236,18 +234,18 @@ class Excitation:
         if share < _SLOW:
             return Lack(
                 "slow_motion",
-                "too little slow motion",
+                f"{percent(share)} slow motion",
                 f"{percent(share)} of the windows are slower than {_two(2.0 * slow)} {unit}, where static friction "
-                "shows",
+                "acts",
                 f"slow motion through zero speed, below {_two(2.0 * slow)} {unit}",
                 {"slow_windows": Measured(share), "speed.slow": Measured(2.0 * slow, unit)},
             )
         if fast < 2.0 * slow:
             return Lack(
                 "top_speed",
-                "slow motion only",
-                f"the log's top speed is {_two(fast)} {unit}, and static friction decays at {_two(slow)}",
-                f"faster motion, above {_two(2.0 * slow)} {unit}",
+                f"top speed {_two(fast)} {unit} only",
+                f"the top speed is {_two(fast)} {unit}, static friction decays at {_two(slow)} {unit}",
+                f"motion faster than {_two(2.0 * slow)} {unit}",
                 {"speed.fast": Measured(fast, unit), "speed.decay": Measured(slow, unit)},
             )
         return None
@@ -267,12 +265,12 @@ class Excitation:
         return Lack(
             "acceleration",
             "little acceleration",
-            f"acceleration takes {percent(share)} of the log's torque, and {percent(_ACCELERATION)} is needed",
+            f"acceleration takes {percent(share)} of the log's torque, {percent(_ACCELERATION)} is needed",
             "harder acceleration",
             {"acceleration": Measured(share), "acceleration.needed": Measured(_ACCELERATION)},
         )
 
-    def _load(self, of: str) -> Lack | None:
+    def _load(self) -> Lack | None:
         evidence = self.evidence
         if "sensor_gain" not in evidence.parameters:
             return None
@@ -288,20 +286,22 @@ class Excitation:
         if share >= _LOAD and not weak:
             return None
         unit = self._torque()
+        short = f"load varies by {_two(spread)} {unit} only"
+        motion = "a wider range of gravity torque"
         if share >= _LOAD:
             return Lack(
                 "load_range",
-                "the load hardly varies",
-                f"{WEAK_READING}, which varies by {_two(spread)} {unit}, noise apart",
-                "motion of the link through a wider range of gravity torque",
+                short,
+                f"{WEAK_READING}, which varies by {_two(spread)} {unit} without its noise",
+                motion,
                 {"load_range": Measured(spread, unit), "load_range.share": Measured(share)},
             )
         return Lack(
             "load_range",
-            "the load hardly varies",
-            f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, and {of} "
-            f"needs {percent(_LOAD)}",
-            "motion of the link through a wider range of gravity torque",
+            short,
+            f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, "
+            f"{percent(_LOAD)} is needed",
+            motion,
             {
                 "load_range": Measured(spread, unit),
                 "load_range.share": Measured(share),
@@ -322,7 +322,7 @@ class Excitation:
         return Lack(
             "travel",
             f"{_below(self.travel, needed)} of {_two(needed)} rad travelled",
-            f"the log's angles cover {_below(self.travel, needed)} rad, and {_two(needed)} rad are needed",
+            f"the log's angles cover {_below(self.travel, needed)} rad, {_two(needed)} rad are needed",
             f"motion through {_two(needed)} rad or more",
             {"travel": Measured(self.travel, "rad"), "travel.needed": Measured(needed, "rad")},
             needed,

@@ -10,7 +10,7 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 FEW_WINDOWS = FindingType(
     code="few_windows",
-    meaning="fewer than eight windows for each free parameter: the standard errors are themselves uncertain",
+    meaning="fewer than eight windows for each free parameter make the standard errors uncertain",
     advice=f"record longer, or use shorter windows{DESIGNED}",
 )
 _FEW = 8  # windows for each free parameter
@@ -22,7 +22,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     windows = evidence.residuals.windows
     if windows < _FEW * free:
         yield FEW_WINDOWS.finding(
-            f"{windows} windows for {free} parameters: the standard errors are themselves uncertain",
+            f"only {windows} windows for {free} parameters make the standard errors uncertain",
             other_motion(evidence, "for longer"),
             Action("call", {"windows": _ADVISED * free}, text="shorter windows"),
             evidence={"windows": Measured(windows), "free_parameters": Measured(free)},

@@ -11,7 +11,7 @@ from jointid.identification.warnings.inspection import Inspected
 GAPS = FindingType(
     code="gaps",
     severity="info",
-    meaning="the time stamps jump; no window crosses a gap, so values are not affected",
+    meaning="the time stamps jump. No window crosses a gap, so values are not affected",
     advice="find out why samples are missing",
 )
 
@@ -21,9 +21,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     if recording.gaps:
         longest = max(recording.gaps, key=lambda gap: gap.duration)
         yield GAPS.finding(
-            f"{len(recording.gaps)} gap(s) in the recording, the longest of {longest.duration:.3g} s at "
-            f"{longest.start:.3f} s; no window crosses them",
+            f"gaps in the log: {len(recording.gaps)}, the longest of {longest.duration:.3g} s at {longest.start:.3f} s",
             Action("inspect", text="why samples are missing"),
+            details="no window crosses a gap",
             evidence={
                 "gaps": Measured(len(recording.gaps)),
                 "longest": Measured(longest.duration, "s"),

@@ -12,8 +12,8 @@ from jointid.identification.warnings.inspection import Inspected
 LATE = FindingType(
     code="late_samples",
     severity="info",
-    meaning="samples of a session were late or lost, or a command was not confirmed; these intervals are left out",
-    advice="find out what delays bus or computer",
+    meaning="samples of a session were late or lost, or a command was not confirmed. These intervals are left out",
+    advice="find out what delays the bus or the computer",
 )
 
 
@@ -25,9 +25,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     intervals = len(recording) - 1
     missing = int(recording.late[1:].astype(int).sum())
     yield LATE.finding(
-        f"{left_out} of {intervals} sample intervals ({percent(left_out / intervals)}) are left out, because in "
-        f"them samples were late or lost ({missing} cycles) or a command was not confirmed",
-        Action("inspect", text="what delays bus or computer"),
+        f"{left_out} of {intervals} intervals ({percent(left_out / intervals)}) have late or lost samples",
+        Action("inspect", text="what delays the bus or the computer"),
+        details=f"they are left out; {missing} cycles are missing, or commands were not confirmed",
         evidence={
             "left_out": Measured(left_out),
             "intervals": Measured(intervals),

@@ -9,21 +9,22 @@ from jointid.estimate.findings import Finding
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
+from jointid.identification.warnings.undetermined import listed
 
 LEFT_OUT = FindingType(
     code="left_out",
     severity="info",
-    meaning="a column has the name of a signal, but another unit, cells that are no numbers, or stands beside a "
-    "column that is read: it is not read",
-    advice="nothing, if the signal is not needed; else name the column, its unit or its scale when loading",
+    meaning="a column with the name of a signal is not read: another unit, no numbers, or another column is read",
+    advice="name the column, its unit or its scale when loading; nothing, if the signal is not needed",
 )
 INTERPOLATED = FindingType(
     code="interpolated",
     severity="info",
-    meaning="the file has a signal at a lower rate than the others; it was interpolated linearly at their samples",
+    meaning="a signal has a lower rate than the others. It was interpolated linearly at their samples",
     advice="record all signals with one period",
 )
 _SHOWN = 6
+_ROOM = 45  # characters of names in a title
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
@@ -38,18 +39,17 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         shown = [f"{column} ({reason})" for column, reason in list(columns.items())[:_SHOWN]]
         more = f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else ""
         yield LEFT_OUT.finding(
-            f"not read from the file: {', '.join(shown)}{more}",
-            Action(
-                "inspect",
-                text="the headers, and name the column or its unit if the signal is needed",
-            ),
+            f"columns that are not read: {listed(columns, _ROOM)}",
+            Action("inspect", text="the header, and name the column or its unit if needed"),
+            details=f"{', '.join(shown)}{more}",
         )
     interpolated = _pairs(metadata.get("interpolated"))
     if interpolated:
         shown = [f"{column} (every {period})" for column, period in interpolated]
         yield INTERPOLATED.finding(
-            f"interpolated at the other signals' samples: {', '.join(shown)}",
+            f"interpolated linearly: {listed(shown, _ROOM)}",
             Action("record", text="all signals with one period"),
+            details="" if len(shown) == 1 else ", ".join(shown),
         )
 
 

@@ -13,13 +13,13 @@ from jointid.identification.warnings.inspection import Inspected
 UNWRAPPED = FindingType(
     code="unwrapped",
     severity="info",
-    meaning="the angle starts again after a turn; the identification unwraps it",
+    meaning="the angle starts again after a turn. The identification unwraps it",
     advice="log the angle without wraps",
 )
 HELD_ROWS = FindingType(
     code="held_rows",
     severity="info",
-    meaning="rows hold the sample before, since the logger is faster than the bus; the identification leaves them out",
+    meaning="rows repeat the sample before, because the logger is faster than the bus. They are left out",
     advice="log at the bus's own rate",
 )
 HELD_TORQUE = FindingType(
@@ -35,7 +35,8 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     for mend in inspected.mends:
         if mend.code == UNWRAPPED.code:
             yield UNWRAPPED.finding(
-                f"the angle is unwrapped: it jumps {mend.count} times by {mend.size:.4g} rad against the motion",
+                f"the angle jumps {mend.count} times by {mend.size:.4g} rad and is unwrapped",
+                details="values are not affected",
                 evidence={"wraps": Measured(mend.count), "size": Measured(mend.size, "rad")},
             )
         elif mend.code == HELD_TORQUE.code:
@@ -48,8 +49,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             )
         else:
             yield HELD_ROWS.finding(
-                f"{mend.count} rows are left out that hold the sample before: a sample lasts {mend.size:.3g} rows",
+                f"{mend.count} rows repeat the sample before and are left out",
                 Action("record", text="at the bus's own rate"),
+                details=f"a sample lasts {mend.size:.3g} rows",
                 evidence={"rows": Measured(mend.count), "rows_per_sample": Measured(mend.size)},
             )
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from jointid.estimate.findings import Finding, Measured
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
-_NAMED = 5  # recordings in a sentence; the finding has all
+_NAMED = 5  # recordings in the details; the finding has all
 
 
 def merged(found: Iterable[tuple[int, Finding]], names: Sequence[str]) -> list[Finding]:
@@ -38,21 +38,27 @@ def _as_one(group: Sequence[tuple[int, Finding]], names: Sequence[str]) -> Findi
     findings = [each for _, each in group]
     return replace(
         findings[0],
-        title=f"{_where(concerned, len(names))}: {_with_ranges([each.title for each in findings])}",
-        details=_with_ranges([each.details for each in findings]),
+        title=f"{len(concerned)} of {len(names)} recordings: {_with_ranges([each.title for each in findings])}",
+        details="; ".join(
+            filter(
+                None,
+                (
+                    _where(concerned, len(names)),
+                    _with_ranges([each.details for each in findings]),
+                ),
+            )
+        ),
         evidence=_largest(findings),
         recordings=concerned,
     )
 
 
 def _where(concerned: Sequence[str], count: int) -> str:
-    if len(concerned) == 1:
-        return concerned[0]
-    where = f"{len(concerned)} of {count} recordings"
+    """Names of some of the recordings; none where it is all of them."""
     if len(concerned) == count:
-        return where
+        return ""
     more = f" and {len(concerned) - _NAMED} more" if len(concerned) > _NAMED else ""
-    return f"{where} ({', '.join(concerned[:_NAMED])}{more})"
+    return f"in {', '.join(concerned[:_NAMED])}{more}"
 
 
 def _with_ranges(causes: Sequence[str]) -> str:

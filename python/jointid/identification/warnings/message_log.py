@@ -14,21 +14,24 @@ from jointid.recording.file_remarks import remarks
 MESSAGE_LOG = FindingType(
     code="message_log",
     severity="info",
-    meaning="a file was read otherwise than as it stands: damaged or repeated rows, or a cut last line, are left out; "
-    "stamps, units or sides are other than the file states; a log of messages is "
-    "unfinished, has no stamps of its own, or repeated or late messages; or a file holds "
-    "objects that are not read, or channels that end before the others",
-    advice="nothing, if that is known; else record again, with stamps taken where the samples are",
+    meaning="the file was not read exactly as it stands: rows or messages are damaged, repeated, late or left out. Or "
+    "stamps, units or sides differ from the file",
+    advice="check the recorder; nothing, if you expect it",
 )
+_ROOM = 65  # characters of a title, beside the number of recordings
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     metadata = inspected.recording.metadata
     found = remarks(metadata) if isinstance(metadata, Mapping) else []
     if found:
+        title, why = found[0], ""
+        if len(title) > _ROOM:
+            title, _, why = title.partition(": ")
         yield MESSAGE_LOG.finding(
-            "; ".join(found),
-            Action("inspect", text="the recorder, if that is not on purpose"),
+            title,
+            Action("inspect", text="the recorder, if you do not expect this"),
+            details="; ".join(filter(None, (why, *found[1:]))),
             evidence={
                 name: Measured(count)
                 for name in ("repeated_messages", "reordered_messages")

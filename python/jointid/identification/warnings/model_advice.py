@@ -15,7 +15,7 @@ def add_ripple(evidence: Evidence, order: float) -> Action:
     modelled = model.resolved.ripple
     if order in modelled:
         names = f"ripple_cos_{order:g} and ripple_sin_{order:g}"
-        text = f"the values and bounds of {names}: the model has this order; free its coefficients"
+        text = f"the values and bounds of {names}, and free them"
         return Action("inspect", text=text)
     return Action("call", {"model": str(model.replace(ripple=(*modelled, order)))})
 

@@ -12,9 +12,9 @@ from jointid.recording.recording import Recording
 MOTOR_SIDE = FindingType(
     code="motor_side",
     severity="info",
-    meaning="the columns are the motor's and no gear ratio is known: all values are on the motor's side of the gear; "
-    "or the torque is made from the motor's with a gear ratio of 1, which is what a joint has that states none",
-    advice="nothing, if that side is meant, or if the motor has no gear; else give the gear ratio",
+    meaning="no gear ratio is known, so all values are on the motor's side of the gear. Or motor torque or current is "
+    "used with a gear ratio of 1",
+    advice="give the gear ratio; nothing, if the motor's side is meant or the motor has no gear",
 )
 _CLOSE = 0.03  # of the gear ratio
 _RATIO = "the motor's angle per angle of the joint"
@@ -28,7 +28,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         )
     elif _without_gear(evidence, inspected.recording):
         yield MOTOR_SIDE.finding(
-            "the torque is made from the motor's with a gear ratio of 1, as without a gear",
+            "motor torque or current is used with a gear ratio of 1",
             Action("call", {"gear_ratio": ...}, _RATIO, "Joint"),
         )
 

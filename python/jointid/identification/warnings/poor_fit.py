@@ -10,9 +10,8 @@ from jointid.identification.warnings.structured_residual import excluded, exclud
 
 POOR_FIT = FindingType(
     code="poor_fit",
-    meaning="the model explains less than 95 % of the variance of the measured signal, the rest is not noise, and no "
-    "cause with a name explains it; or it explains less than 5 %, whatever the rest is; blocking where the signal's "
-    "mean explains more, unless a cause is named",
+    meaning="the model explains less than 95 % of the signal's variance, and neither noise nor a known cause explains "
+    "the rest. Or it explains less than 5 %. Blocking: the signal's mean explains more than the model",
     advice="check units, signs and gear ratio",
     picture="windows",
 )
@@ -30,7 +29,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     measured = {"r_squared": Measured(explained)}
     if explained < 0.0 and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains less than the mean of the signal does (R² = {explained:.2f})",
+            f"the model explains less than the signal's mean (R² = {explained:.2f})",
             *actions,
             details="the values cannot be used",
             evidence=measured,
@@ -41,7 +40,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     limit = _NOTHING if evidence.white else POORLY_EXPLAINED
     if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains only {100.0 * explained:.1f} % of the variance of the signal (R²)",
+            f"the model explains only {100.0 * explained:.1f} % of the signal's variance",
             *actions,
             details=excluded(evidence, "the rest"),
             evidence=measured | excluded_number(evidence),

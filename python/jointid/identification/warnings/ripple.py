@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 
 RIPPLE = FindingType(
     code="ripple",
-    meaning="the residual oscillates with a multiple of the motor's angle, which the finding names with the amplitude "
-    "(info where that moves no parameter by more than 5 % or two errors)",
+    meaning="the residual oscillates with a multiple of the motor's angle. Info: no parameter moves by more than 5 % "
+    "or two errors",
     advice="add ripple of that order to the model, e.g. `stribeck:ripple=2`",
     picture="windows",
 )
@@ -73,9 +73,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if peak is not None:
         cause = evidence.cause_of("ripple", f"{peak.multiple:g}", min(peak.share, 1.0))
         harmful = cause is None or cause.harmful
-        moves = "biases gain and static friction" if cause is None else cause.harmless
-        if cause is not None and harmful:
-            moves = f"moves values (with it in the model, {cause.changes})"
+        does = "it biases gain and static friction" if cause is None else cause.does
         measured = {
             "multiple": Measured(peak.multiple),
             "amplitude": Measured(peak.amplitude, "N·m"),
@@ -84,9 +82,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         if cause is not None:
             measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
         yield RIPPLE.finding(
-            f"the residual oscillates with {peak.multiple:g} × motor angle: amplitude about {peak.amplitude:.2g} N·m, "
-            f"{percent(peak.share)} of the residual's variance, as the ripple of a strain-wave gear does; it {moves}",
+            f"ripple of {peak.amplitude:.2g} N·m at {peak.multiple:g} × motor angle is "
+            f"{percent(peak.share)} of the residual",
             *((add_ripple(evidence, peak.multiple),) if harmful else ()),
+            details=f"{does}; strain-wave gears have such ripple",
             evidence=measured,
             parameters=_concerned(evidence) if harmful else (),
             severity=None if harmful else "info",

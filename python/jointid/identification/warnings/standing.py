@@ -18,8 +18,7 @@ STANDING = FindingType(
 HARDLY_MOVES = FindingType(
     code="hardly_moves",
     severity="blocking",
-    meaning="the whole motion is less than 50 steps of the encoder, or noise alone: what else would be found follows "
-    "from that",
+    meaning="the whole motion is less than 50 steps of the encoder, or only noise. Other findings follow from that",
     advice="record a wider motion",
 )
 _MUCH = 0.35
@@ -33,6 +32,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         yield HARDLY_MOVES.finding(
             small.text,
             Action("record", text=WIDER),
+            details=small.details,
             evidence={"travel": Measured(small.travel, unit)} | _of(small, unit),
             parameters=tuple(name for name, each in evidence.parameters.items() if each.vary),
         )
@@ -42,9 +42,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     share = evidence.residuals.standing
     if share > _MUCH:
         yield STANDING.finding(
-            f"the joint stands still or sticks in {100.0 * share:.0f} % of the samples, which carry no information "
-            "about friction and are left out",
+            f"the joint stands still or sticks in {100.0 * share:.0f} % of the samples",
             other_motion(evidence, "more motion"),
+            details="these samples say nothing about friction and are left out",
             evidence={"standing": Measured(share)},
         )
 

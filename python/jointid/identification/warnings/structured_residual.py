@@ -13,13 +13,13 @@ from jointid.identification.warnings.undetermined import listed, wide, with_part
 
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
-    meaning="the residuals of neighbouring windows are correlated by more than 0.5, or by less and a parameter is not "
-    "well determined; and no cause with a name explains that: the model misses a systematic effect (info where every "
-    "parameter is well determined nevertheless)",
-    advice="look at the picture of the residuals; the standard errors allow for the correlation, a bias may remain",
+    meaning="the residuals of neighbouring windows correlate by more than 0.5, or a parameter is uncertain, and no "
+    "known cause explains it. The model misses an effect. Info: every parameter is well determined",
+    advice="look at the residuals in the report; the errors include the correlation, but a bias may remain",
     picture="windows",
 )
 _CORRELATED = 0.5
+_ROOM = 50  # characters of names in a title
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -32,10 +32,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     makes = f"uncertain: {listed(uncertain)}" if uncertain else ""
     title = (
-        f"residuals of neighbouring windows correlate (r = {correlation:.2f}): an effect is missing"
+        f"an effect is missing: residuals of neighbouring windows correlate (r = {correlation:.2f})"
     )
     if not correlation > _CORRELATED:  # what is uncertain is all that shows it
-        title = f"{listed(uncertain)} uncertain, without a lack of motion (r = {correlation:.2f})"
+        title = f"{listed(uncertain, _ROOM)} uncertain, though well moved (r = {correlation:.2f})"
         makes = "the model misses an effect, or the windows are too long to show it"
     # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
     yield STRUCTURED_RESIDUAL.finding(
@@ -72,7 +72,7 @@ def excluded(evidence: Evidence, what: str = "it") -> str:
     """
     if evidence.causes is not None and evidence.causes.harmless:
         cause = evidence.causes.harmless[0]
-        return f"{MEANINGS[cause.name]} explains {percent(cause.share)} of {what}, and is harmless"
+        return f"{MEANINGS[cause.name]}: explains {percent(cause.share)} of {what}, and is harmless"
     count = len(evidence.causes.excluded) if evidence.causes is not None else 0
     return f"none of {count} known causes explains {what}" if count else ""
 

@@ -19,9 +19,9 @@ from jointid.identification.warnings.no_friction import without_friction
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="the 95 % interval is wider than ±4 % (a gain's: ±1 %), or the value depends on the length of the windows; "
-    "and the log has too little of what the parameter needs: speeds, slow motion, reversals, load, acceleration, "
-    "travel or time. Also an inertia that a noisy velocity hides, and a gain of the other sign that fits as well",
+    meaning="the 95 % interval is wider than ±4 % (a gain's: ±1 %), or other windows move the value. The log has too "
+    "little speed, slow motion, reversals, load, acceleration, travel or time. Or noise of the velocity hides the "
+    "inertia, or a gain of the other sign fits as well",
     advice=f"record what is missing, or fix the parameter{DESIGNED}",
 )
 
@@ -40,14 +40,14 @@ HIDES = 0.5  # noise in the velocity's change over a window: more of it than of 
 _PAIRS = 5
 _LOW_SPEED = ("static", "stribeck", "stribeck_velocity", "stribeck_exponent")
 _FEW = 3  # names in a sentence
-
-_SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
+_SHOWN = 4  # more of them in the details; the evidence has all
+_ACT = 73  # characters of what to record: with the verb before it, 80
 
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
     short: str
-    text: str
+    text: str  # why, where the short one does not say it all
     measured: Mapping[str, Measured]
 
 
@@ -58,20 +58,18 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         reasons.setdefault("sensor_gain", []).append(guessed)
     if not reasons:
         return
-    texts = [", and ".join(each.text for each in found) for found in reasons.values()]
-    shown = list(dict.fromkeys(texts))[:_SHOWN]
-    more = sum(text not in shown for text in texts)
-    details = shown
-    if more:
-        details.append(f"and {more} more parameter{'s' * (more > 1)}")
+    values = [found[0].short for found in reasons.values()]
+    title, count = _title(values, [lack.short for lack in lacks.values()])
+    details = [each.text for found in reasons.values() for each in found if each.text]
     measured = {
         name: number
         for found in reasons.values()
         for each in found
         for name, number in each.measured.items()
     }
-    if more:
-        measured["more_parameters"] = Measured(float(more))
+    if count < len(values):
+        details.insert(0, f"also {', '.join(values[count : count + _SHOWN])}")
+        measured["more_parameters"] = Measured(float(len(values) - count))
     for (first, second), correlation in _worst_pairs(evidence.correlations, reasons):
         details.append(
             f"{first} and {second} are indistinguishable (correlation {correlation:.3f})"
@@ -81,9 +79,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         details.append(lack.text)
         measured |= lack.measured
     yield UNDETERMINED.finding(
-        _title(
-            [found[0].short for found in reasons.values()], [each.short for each in lacks.values()]
-        ),
+        title,
         *_advice(evidence, reasons, lacks, guessed is not None),
         details="; ".join(details),
         evidence=measured,
@@ -91,15 +87,20 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     )
 
 
-def _title(values: Sequence[str], missing: Sequence[str]) -> str:
-    """The values and what the recording lacks for them, as many as a title holds."""
+def _title(values: Sequence[str], missing: Sequence[str]) -> tuple[str, int]:
+    """The values and what the recording lacks for them, as many as a title holds; and how many values it has."""
+    title, count = "", 1
     for count in range(min(_FEW, len(values)), 0, -1):
-        more = " and others" if len(values) > count else ""
-        lack = f" ({' and '.join(missing[:2])})" if missing else ""
-        title = f"not determined: {', '.join(values[:count])}{more}{lack}"
-        if len(title) <= TITLE:
-            break
-    return title if len(title) <= TITLE else f"not determined: {values[0]}{more} ({missing[0]})"
+        for lacks in range(min(2, len(missing)), -1, -1):
+            lack = f": {', '.join(missing[:lacks])}" if lacks else ""
+            title = f"{', '.join(values[:count])}{_others(len(values) - count)}{lack}"
+            if len(title) <= TITLE and (lacks or not missing):
+                return title, count
+    return title, count
+
+
+def _others(count: int) -> str:
+    return f" and {count} other{'s' * (count > 1)}" if count else ""
 
 
 def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, Lack]]:
@@ -125,7 +126,8 @@ def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, La
     for p in _as_uncertain(evidence, reasons):
         if p.name not in reasons and p.name not in elsewhere:
             reasons[p.name] = [_uncertain(p, evidence)]
-    return reasons, lacks
+    # More time helps least where something else is missing, too.
+    return reasons, dict(sorted(lacks.items(), key=lambda entry: entry[0] == "duration"))
 
 
 def _as_uncertain(evidence: Evidence, names: Collection[str]) -> list[ParameterEstimate]:
@@ -178,10 +180,14 @@ def with_partners(evidence: Evidence, names: Collection[str]) -> tuple[str, ...]
     return tuple(dict.fromkeys([*names, *partners]))
 
 
-def listed(names: Collection[str]) -> str:
-    """Names in a sentence."""
-    few = list(names)[:_FEW]
-    return ", ".join(few) + " and others" * (len(names) > len(few))
+def listed(names: Collection[str], room: int = TITLE) -> str:
+    """At most three names in a sentence, fewer where they need more characters than there is room for."""
+    text = ""
+    for count in range(min(_FEW, len(names)), 0, -1):
+        text = ", ".join(list(names)[:count]) + _others(len(names) - count)
+        if len(text) <= room:
+            break
+    return text
 
 
 def _worst_pairs(
@@ -202,9 +208,10 @@ def _advice(
     lacks: Mapping[str, Lack],
     sign_was_guessed: bool,
 ) -> Iterator[Action]:
-    motions = dict.fromkeys(lack.motion for lack in lacks.values())
+    motions = list(dict.fromkeys(lack.motion for lack in lacks.values()))
     if motions:
-        text = "; ".join(motions)
+        while len(text := ", ".join(motions)) > _ACT:
+            motions.pop()
         if set(lacks) == {"velocity_noise"}:  # another log of the same motion would do
             yield Action("record", text=text)
         else:
@@ -215,7 +222,7 @@ def _advice(
                 faster="top_speed" in lacks,
             )
     if "inertia" in map(_kind, reasons):
-        text = "the drive's data sheet: an inertia that is known need not be identified"
+        text = "the drive's data sheet: a known inertia need not be identified"
         yield Action("inspect", text=text)
     if sign_was_guessed:
         gain = evidence.parameters["sensor_gain"].value
@@ -252,11 +259,12 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
         share = evidence.residuals.noise_share
         # The noise adds its share to the variance that the inertia's slope is divided by.
         text = (
-            "inertia is hidden by the noise of the velocity, whatever the windows"
+            "noise of the velocity hides the inertia in windows of any length"
             if share > HIDES
-            else f"the noise of the velocity makes inertia about {percent(share)} too small, whatever the windows"
+            else f"noise of the velocity makes the inertia about {percent(share)} too small in windows of any length"
         )
-        return [_Reason("inertia", text, {})]
+        short = "inertia unknown" if share > HIDES else f"inertia {percent(share)} too small"
+        return [_Reason(short, text, {})]
     if p.stderr is None:
         return []
     if evidence.torques.is_nothing(p):
@@ -269,8 +277,8 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
     shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
     if scale > 0.0 and shift > _LARGE_SHIFT * chance and shift > _NOTICEABLE_SHIFT * scale:
         text = (
-            f"{p.name} moves by {percent(shift / scale)} ({shift / chance:.1f} times its error by chance) when the "
-            "windows are halved or doubled"
+            f"{p.name} moves by {percent(shift / scale)}, {shift / chance:.1f} random errors, when the windows are "
+            "halved or doubled"
         )
         measured = {
             f"{p.name}.shift": Measured(shift / scale),
@@ -287,14 +295,13 @@ def _uncertain(p: ParameterEstimate, evidence: Evidence) -> _Reason:
     relative = scale == abs(p.value) and scale > 0.0
     size = percent(error / scale) if relative else _with_unit(p)
     excited = error < 10.0 * scale
-    text = f"{p.name} has a standard error of {size}" if excited else f"{p.name} is not excited"
     measured = {
         f"{p.name}.stderr": Measured(error / scale) if relative else Measured(error, p.unit)
     }
     if evidence.torques.is_friction(p.name):
         share = evidence.torques.of_all_friction(p.name, _half_width(p))
         measured[f"{p.name}.share"] = Measured(share)
-    return _Reason(f"{p.name} ± {size}" if excited else p.name, text, measured)
+    return _Reason(f"{p.name} ± {size}" if excited else f"{p.name} unknown", "", measured)
 
 
 def _half_width(p: ParameterEstimate) -> float:
@@ -320,7 +327,7 @@ def _guessed_sign(evidence: Evidence) -> _Reason | None:
     if gain is None or not gain.vary or not evidence.guessed_sign:
         return None
     sign = "negative" if gain.value > 0.0 else "positive"
-    return _Reason("the sign of sensor_gain", f"a {sign} sensor_gain fits almost as well", {})
+    return _Reason("sign of sensor_gain unknown", f"a {sign} sensor_gain fits almost as well", {})
 
 
 CHECK = Check(_find, (UNDETERMINED,))

@@ -1,4 +1,4 @@
-"""An offset beside two Coulomb frictions: their sum is known, how it divides is not."""
+"""An offset and two Coulomb frictions: their sum is known, how it divides is not."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from jointid.identification.warnings.evidence import Evidence
 UNDIVIDED_OFFSET = FindingType(
     code="undivided_offset",
     severity="info",
-    meaning="a constant torque and the difference between the Coulomb frictions of the two directions are one quantity "
-    "while the joint moves: their intervals are infinite, the sum of the two is determined",
-    advice="fix the offset where it is known, or leave it out where gravity is the only constant torque",
+    meaning="a constant torque and direction-dependent Coulomb friction look the same in the data. Only the sum of the "
+    "Coulomb frictions is determined",
+    advice="give the offset if you know it, or leave it out if gravity is the only constant torque",
 )
 
 
@@ -25,9 +25,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         unit = found[each.offset].unit
         known = {"parameters": {each.offset: ...}}
         yield UNDIVIDED_OFFSET.finding(
-            f"no motion tells {', '.join(each.change)} apart: the two directions' Coulomb frictions are known with the "
-            f"offset in them, and are shown as equal; their sum is {total:.4g} {unit}",
-            Action("call", known, text="which fixes the offset, where it is known"),
+            f"{each.offset} and the two Coulomb frictions look the same (sum {total:.4g} {unit})",
+            Action("call", known, text="if you know the offset"),
+            details="no motion separates them; the Coulomb frictions are shown as equal",
             evidence={"coulomb_sum": Measured(total, unit)},
             parameters=tuple(each.change),
         )

@@ -98,5 +98,5 @@ def _left_beside(path: Path) -> str:
             )
     with suppress(OSError), journal.open("rb") as file:
         if file.read(len(_UNFINISHED)) == _UNFINISHED:
-            return f"its last write was not finished; what {journal.name} holds of before it is not put back"
+            return f"its last write was not finished: what {journal.name} holds of before it is not put back"
     return ""
