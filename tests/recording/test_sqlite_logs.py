@@ -106,7 +106,7 @@ def test_an_unfinished_write_is_said(bag: Path, tmp_path: Path) -> None:
     path = _unfinished(bag, tmp_path / "unfinished")
     before = _contents(path.parent)
     assert _said(path) == (
-        f"its last write was not finished; what {path.name}-journal holds of before it is not put back"
+        f"its last write was not finished: what {path.name}-journal holds of before it is not put back"
     )
     assert _contents(path.parent) == before
 

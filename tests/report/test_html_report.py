@@ -57,7 +57,7 @@ def test_the_page_says_what_was_recorded(robot: jid.Estimate) -> None:
 def test_a_finding_links_to_its_picture(robot: jid.Estimate) -> None:
     assert {"inertia_varies"} <= {found.code for found in robot.findings}
     page = html_report(robot)
-    assert '<li class="warning"><b>inertia_varies</b> (warning): an inertia that varies' in page
+    assert '<li class="warning"><b>inertia_varies</b> (warning): inertia that varies' in page
     assert '<a href="#windows">picture</a>' in page
 
 

@@ -49,9 +49,9 @@ def verdict_lines(
         element("ul", *words, class_="uses"),
     ]
     if verdict.reasons:
-        by_cause = {found.cause: found for found in findings}
+        by_title = {found.title: found for found in findings}
         shown = [
-            _reason(reason, by_cause.get(reason), pictures or {}, action)
+            _reason(reason, by_title.get(reason), pictures or {}, action)
             for reason in verdict.reasons[:_REASONS]
         ]
         more = len(verdict.reasons) - len(shown)
