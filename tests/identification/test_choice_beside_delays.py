@@ -76,14 +76,14 @@ def test_the_fit_obeys_the_rule(
     rich = jid.identify(held, model="stribeck", search="separable")
     chosen = replace(rich, selection=found.selection)
     assert unfit_in(found) == unfit_in(rich) == ""  # it fits; it was not chosen
-    assert "static friction" in unfit_in(chosen)
+    assert "static is" in unfit_in(chosen)
     # The race itself is wrong: only the fit shows it.
     monkeypatch.setattr("jointid.identification.chosen_model._close", lambda _: False)
     plain = jid.identify(held, search="separable")
     assert plain.settings["model"] == "coulomb_viscous"
     assert plain.selection is not None
     assert plain.selection.model == "coulomb_viscous"
-    assert "standard error" in plain.selection["stribeck"].refused
+    assert "static is" in plain.selection["stribeck"].refused
     assert not any(finding.code == "model_too_rich" for finding in plain.findings)
 
 

@@ -9,7 +9,7 @@ from fake_evidence import evidence, found, inspected, signal
 from plain_joint import recorded
 
 import jointid as jid
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import TITLE, Finding, Measured
 from jointid.identification.warnings.merging import merged
 from jointid.problem.recordings import recording_names
 
@@ -31,9 +31,8 @@ def test_a_finding_about_one_of_several_runs_names_it_everywhere() -> None:
     estimate = jid.identify(runs)
     (spikes,) = coded(estimate.findings, "spikes")
     assert spikes.recordings == ("run_3",)
-    assert spikes.title.startswith("1 of 4 recordings: ")
-    assert "in run_3" in spikes.details
-    assert "1 of 4 recordings: " in estimate.report()
+    assert spikes.title.startswith("run_3: torque has a spike")
+    assert "run_3: torque has a spike" in estimate.report()
     read = jid.Estimate.from_json(estimate.to_json())
     assert coded(read.findings, "spikes")[0].recordings == ("run_3",)
 
@@ -42,9 +41,9 @@ def test_what_is_found_in_several_runs_is_said_once() -> None:
     runs = [with_spike(RUNS[0], 400, 50.0), RUNS[1], with_spike(RUNS[2], 600, 80.0)]
     (spikes,) = coded(jid.identify(runs).findings, "spikes")
     assert spikes.recordings == ("run_0", "run_2")
-    assert spikes.title.startswith("2 of 3 recordings: ")
-    assert "in run_0, run_2" in spikes.details
-    assert "at 2–3 s" in spikes.cause
+    assert spikes.title.startswith("2 of 3 recordings: torque has a spike")
+    assert spikes.details.startswith("in run_0, run_2; ")
+    assert "at 2–3 s" in spikes.title
     assert spikes.evidence["height"].value == pytest.approx(80.0, abs=8.0)
 
 
@@ -52,8 +51,7 @@ def test_equal_shares_of_all_runs_are_a_range() -> None:
     counts = [{"position": signal(stale=stale)} for stale in (40, 50, 60)]
     looked_at = tuple(inspected(run, each) for run, each in zip(RUNS, counts, strict=False))
     (finding,) = found("repeated", evidence(recordings=tuple(RUNS[:3]), inspections=looked_at))
-    assert finding.cause.startswith("3 of 3 recordings: position repeat")
-    assert "in 4–6 % of the samples" in finding.cause
+    assert finding.title.startswith("3 of 3 recordings: 4–6 % of the position samples")
 
 
 def test_what_is_stated_nowhere_is_said_once() -> None:
@@ -70,8 +68,16 @@ def test_different_findings_stay_apart() -> None:
     apart = merged([(0, one), (1, other), (2, one)], ("a", "b", "c"))
     assert [each.cause for each in apart] == [
         "2 of 3 recordings: 1 spike in torque; in a, c",
-        "1 of 3 recordings: 1 spike in sensor; in b",
+        "b: 1 spike in sensor",
     ]
+
+
+@pytest.mark.parametrize(("characters", "named"), [(87, True), (88, False)])
+def test_a_name_that_makes_a_title_too_long_is_a_detail(characters: int, named: bool) -> None:
+    (finding,) = merged([(1, Finding(code="x", title="x" * characters))], ("a", "b"))
+    assert finding.title.startswith("b: ") == named
+    assert finding.details == ("" if named else "in b")
+    assert len(finding.title) <= TITLE
 
 
 def test_a_range_reads_well_below_zero_and_keeps_words_with_digits() -> None:
@@ -96,7 +102,7 @@ def test_recordings_without_a_name_of_their_own_have_a_number() -> None:
 def test_a_single_recording_is_not_named() -> None:
     (spikes,) = coded(jid.identify(with_spike(RUNS[0])).findings, "spikes")
     assert spikes.recordings == ()
-    assert "recording" not in spikes.cause
+    assert spikes.title.startswith("torque has a spike")
 
 
 def test_the_title_says_how_many_recordings_there_are() -> None:

@@ -62,8 +62,8 @@ def test_a_reading_late_before_the_controller_is_named() -> None:
 def test_an_early_torque_may_be_a_gear_that_gives_way(run: jid.Recording, early: float) -> None:
     estimate = identified(late(run, "torque", -early))
     assert estimate.delays["torque"].value == pytest.approx(-early, abs=3e-4)
-    (said,) = (f.message for f in estimate.findings if f.message.startswith("the torque is early"))
-    assert "or the gear gives way" in said
+    (said,) = (f for f in estimate.findings if f.title.startswith(("torque leads", "torque led")))
+    assert "gear is elastic" in said.details or "the gear elastic" in said.details
 
 
 @pytest.mark.parametrize("model", [each.name for each in _core.models()])
@@ -113,9 +113,10 @@ def test_a_shift_that_is_wrong_is_told_with_what_it_leaves(run: jid.Recording) -
     assert abs(gain.value - TRUTH["sensor_gain"]) < 2.0 * gain.systematic["lag"]
     (finding,) = (each for each in estimate.findings if each.code == "signal_lag")
     assert finding.evidence["lag"].value == found.left
-    assert "the torque is early by" in finding.cause
-    assert "after the stated shift by 3 ms" in finding.cause
+    assert finding.title.startswith("torque leads the position by")
+    assert "after a shift of 3 ms" in finding.title
     assert finding.advice[0].arguments["shift"] == {}
+    assert [each.kind for each in finding.advice] == ["call", "inspect"]  # no option says that
     # Nothing else in the report says another thing of the torque.
     assert "delay" not in {each.code for each in estimate.findings}
     for cause in estimate.causes().found:

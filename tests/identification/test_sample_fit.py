@@ -99,7 +99,7 @@ def test_a_delay_that_is_not_sharp_is_stated_as_an_interval(
     assert 1.96 * delay.stderr > 3e-4
     (found,) = (each for each in estimate.findings if each.code == "delay_removed")
     low, high = (1e3 * (delay.value + side * 1.96 * delay.stderr) for side in (-1.0, 1.0))
-    assert f"with 95 % between {low:.2f} and {high:.2f} ms" in found.cause
+    assert f"95 % interval: {low:.2f} to {high:.2f} ms" in found.details
 
 
 def test_an_elastic_gear_is_no_delay() -> None:

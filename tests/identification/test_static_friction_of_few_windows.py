@@ -33,7 +33,7 @@ def test_static_friction_of_few_windows_is_not_determined(period: float, seed: i
     run = reversing_twice(period, seed)
     estimate = jid.identify(run, model="stribeck")
     (found,) = (each for each in estimate.findings if each.code == "model_too_rich")
-    assert "no window has more than" in found.cause
+    assert "no window shows more than" in found.title
     assert found.evidence["static.shown"].value < 0.1
     assert "static" in found.parameters
     assert "static" not in jid.identify(run).parameters
@@ -67,4 +67,4 @@ def test_one_disturbed_passage_is_no_static_friction(seed: int) -> None:
     )
     estimate = jid.identify(run, model="stribeck")
     (found,) = (each for each in estimate.findings if each.code == "model_too_rich")
-    assert "static friction rests on 3 of" in found.cause
+    assert "static rests on 3 of" in found.title

@@ -327,9 +327,9 @@ def test_a_delay_is_shifted_by_where_it_is_three_errors(errors: float, shifts: b
 @pytest.mark.parametrize(("stderr", "told"), [(1.52e-4, False), (1.54e-4, True)])
 def test_the_interval_of_a_delay_is_told_where_it_is_wide(stderr: float, told: bool) -> None:
     (finding,) = found("delays", _delay(5e-3, stderr))
-    assert ("with 95 % between" in finding.message) == told
+    assert ("95 % interval" in finding.details) == told
     if told:
-        assert "between 4.70 and 5.30 ms" in finding.message
+        assert "4.70 to 5.30 ms" in finding.details
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,8 @@ def test_a_delay_is_long_in_seconds_and_in_samples(
 ) -> None:
     assert found("long_shift", _shifted(sign * 0.99 * limit, period)) == []
     (said,) = found("long_shift", _shifted(sign * 1.01 * limit, period))
-    assert f"{1.01 * limit / period:.0f} sample periods" in said.message
+    assert f"({1.01 * limit / period:.0f} samples)" in said.title
+    assert said.advice[0].arguments == {"shift": {"sensor": pytest.approx(1.01e-3 * sign * limit)}}
 
 
 def _cause(name: str = "drift", share: float = 0.5, **other: Any) -> Cause:

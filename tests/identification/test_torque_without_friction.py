@@ -47,7 +47,8 @@ def test_a_header_of_the_joint_names_the_cause(tmp_path: Path, header: str) -> N
     assert finding.severity == "blocking"
     assert "a torque measured at the link holds no friction of the drive" in finding.cause
     assert repr(header) in finding.cause
-    assert "motor's torque or current as torque, and this column as sensor" in finding.message
+    assert "load the motor's torque or current" in finding.advice[0].text
+    assert finding.advice[1].arguments["columns"]["sensor"] == header
     assert estimate.verdict.uses["compensation"].level == "not usable"
     assert estimate.findings[0] is finding
 

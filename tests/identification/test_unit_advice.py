@@ -51,7 +51,7 @@ def test_the_advice_names_the_units_that_no_header_states(
 def test_a_stated_unit_is_not_overruled(both: bool, tmp_path: Path) -> None:
     (warning,) = about_units(written(tmp_path, "position_rad", "velocity_rad_s", both=both))
     assert all(advice.kind == "inspect" for advice in warning.advice)
-    assert "the header or the program that made the recording" in warning.message
+    assert "the header or program that states radians" in warning.advice[0].text
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_turns_are_recognised_by_position_and_velocity(
     np.savetxt(path, table, delimiter=",", header=",".join(columns), comments="")
     found = jid.identify(jid.load(path), jid.thesis_joint()).warnings
     (warning,) = (each for each in found if each.code == "velocity_mismatch")
-    assert f"the {signal}, of which no unit is stated, seems to be in {unit}" in warning.message
+    assert f"{signal} seems to be in {unit}" in warning.title
     assert warning.advice[0].arguments == {"units": {signal: unit}}
     assert warning.severity == "blocking"
 

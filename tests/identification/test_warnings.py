@@ -115,7 +115,7 @@ def test_a_once_too_often_multiplied_torque_names_the_gear_ratio(
 
 def test_the_lag_is_measured(well_excited: jid.Recording) -> None:
     late = separable(late_velocity(well_excited))
-    assert "velocity is late by 3.01" in warned(late, "delay_removed").message
+    assert "velocity lagged the position by 3.01 ms" in warned(late, "delay_removed").title
     assert late.delays["velocity"].applied == pytest.approx(3e-3, abs=2e-5)
     make, _ = DEFECTS["sensor 3 ms late"]
     before = separable(well_excited).delays["sensor"]
@@ -242,7 +242,7 @@ def test_ripple_at_another_multiple(well_excited: jid.Recording, multiple: int) 
 
 def test_a_backward_difference_is_noticed(shared_data: Path) -> None:
     recording = simulated(shared_data, "realistic")
-    assert "0.5 sample periods" in warned(separable(recording), "delay_removed").message
+    assert "(0.5 samples)" in warned(separable(recording), "delay_removed").title
     assert "delay_removed" not in codes(separable(changed(recording, velocity=None)))
 
 

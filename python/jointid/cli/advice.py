@@ -219,7 +219,7 @@ def _flat(arguments: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Arguments by name; what runs a search, field by field."""
     for name, value in arguments.items():
         if name not in ("search", "ga") or isinstance(value, str):
-            yield name, value
+            yield "method" if name == "search" else name, value
             continue
         for key, entry in _changed(value).items():
             if key == "ga" and not isinstance(entry, str):

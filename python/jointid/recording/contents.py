@@ -26,6 +26,8 @@ from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
 
 Rows = npt.NDArray[np.intp]
+_FLIPPED = frozenset({"torque", "sensor"})
+"""Signals that a finding advises to read with the other sign, for which it needs the factor to SI."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,6 +124,8 @@ class Contents:
             fields["extra"] = extra
         if self.table.saved is None:
             fields["metadata"] = {**self._metadata(), **(clock.notes if clock else {})}
+        elif isinstance(saved := fields.get("metadata"), Mapping):  # its columns are in SI
+            fields["metadata"] = {name: each for name, each in saved.items() if name != "scale"}
         units = {name: column.shown for name, (column, _) in self.extra.items() if column.shown}
         if units and isinstance(fields.get("metadata", {}), Mapping):
             fields["metadata"] = {**fields.get("metadata", {}), UNITS_KEY: units}
@@ -234,6 +238,10 @@ class Contents:
             if column.unit is None and column.scale is None and signal != "sensor"
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
+        for signal in _FLIPPED & self.found.keys():
+            unit = self.found[signal].unit
+            if unit is not None and unit.factor != 1.0:
+                scaled[signal] = unit.factor
         notes = dict(getattr(self.table, "notes", {}))  # how the file was read
         left_out = [dict(each) for each in (*self.left_out, *notes.pop("left_out", ()))]
         overridden = {

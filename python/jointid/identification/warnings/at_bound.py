@@ -17,9 +17,9 @@ from jointid.identification.warnings.no_friction import without_friction
 
 AT_BOUND = FindingType(
     code="at_bound",
-    meaning="a value ended on its bound, so it has no standard error: it is no value, and what needs it cannot be done "
-    "(info for a friction of 0 that may be a tenth of all friction at most)",
-    advice="widen the bound, or find out why",
+    meaning="a parameter ended on its bound. It has no standard error, so do not use it as a value. Info: a friction "
+    "of 0 that is at most a tenth of all friction",
+    advice="widen the bound, or check units, signs and gear ratio",
 )
 
 _EXPLAINED = 0.95  # where the model is poor, a wider bound lets it go further astray
@@ -45,7 +45,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             measured[f"{p.name}.share"] = Measured(share)
         if small and limit == 0.0:
             yield AT_BOUND.finding(
-                f"{p.name} is 0, its bound: it is at most {two_digits(may_be)} {p.unit}, "
+                f"{p.name} is 0, its bound: at most {two_digits(may_be)} {p.unit}, "
                 f"{percent(share or 0.0)} of all friction",
                 evidence=measured,
                 parameters=(p.name,),
@@ -60,9 +60,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             wider = {p.name: {p.at_bound: None}}
             advice.insert(0, Action("call", {"parameters": wider}, text="a bound from the data"))
         yield AT_BOUND.finding(
-            f"{p.name} ended at its {side} bound {limit:.6g} {p.unit}: the best value lies beyond it, or the data do "
-            "not determine it; other values are affected",
+            f"{p.name} ended at its {side} bound {limit:.6g} {p.unit}".rstrip(),
             *advice,
+            details="the best value lies beyond it, or the data do not determine it; other values are affected",
             evidence=measured,
             parameters=(p.name,),
         )

@@ -17,9 +17,9 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 TORQUE_SATURATED = FindingType(
     code="torque_saturated",
-    meaning="the torque rests on its limit in more than 1 % of the samples, and reaches it more than once; "
-    "a commanded step is none",
-    advice=f"record gentler motion, or the torque that the drive applied{DESIGNED}",
+    meaning="the torque rests on its limit in more than 1 % of the samples, and reaches it more than once. "
+    "A commanded step is no limit",
+    advice=f"record gentler motion, or record the torque that the drive applied{DESIGNED}",
 )
 SENSOR_CLIPPED = FindingType(
     code="sensor_clipped",
@@ -98,14 +98,14 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             continue
         if name == "sensor":
             yield SENSOR_CLIPPED.finding(
-                f"the sensor rests on its limit in {percent(share)} of the samples, so its reading is less than "
-                "the torque",
-                Action("inspect", text="the sensor's range, and widen it"),
+                f"the sensor rests on its limit in {percent(share)} of the samples",
                 other_motion(
                     evidence,
-                    "motion in which the link carries less",
+                    "motion with a smaller load on the link",
                     sensor_range=_sensed(evidence, signal),
                 ),
+                Action("inspect", text="the sensor's range, and widen it"),
+                details="it then shows less than the torque",
                 evidence={"clipped": Measured(share)},
                 parameters=evidence.sensor_parameters,
             )
@@ -115,11 +115,11 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             missed = evidence.residuals.relative
             clipped = share > _MUCH and missed > _MISSED
             yield TORQUE_SATURATED.finding(
-                f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples; if the "
-                "record was clipped and the torque was not, every value is wrong"
-                + (f", and the model misses {percent(missed)} of the torque" if clipped else ""),
+                f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples",
                 other_motion(evidence, "gentler motion", gentler=True),
                 Action("record", text="the torque that the drive applied"),
+                details=(f"the model misses {percent(missed)} of the torque; " if clipped else "")
+                + "if only the record was clipped and not the torque, every value is wrong",
                 evidence={
                     "clipped": Measured(share),
                     "limit": Measured(limit, unit),

@@ -14,8 +14,8 @@ from jointid.identification.warnings.inspection import DRIVE, Inspected
 CONSTANT_SIGNAL = FindingType(
     code="constant_signal",
     severity="blocking",
-    meaning="torque or sensor never change, or freeze for more than 5 % of the samples, while the joint moves",
-    advice="check cable and mapping",
+    meaning="torque or sensor never changes while the joint moves, or freezes in more than 5 % of the samples",
+    advice="check the signal's cable and its mapping",
 )
 _FROZEN = 0.05  # share of the samples in frozen runs
 
@@ -36,8 +36,9 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         )
         result = "gain and offset cannot be determined" if names else "the values cannot be used"
         yield CONSTANT_SIGNAL.finding(
-            f"{name} {frozen} while the joint moves: {result}",
-            Action("inspect", text="the signal's cable and mapping"),
+            f"{name} {frozen} while the joint moves",
+            Action("inspect", text="the signal's cable and its mapping"),
+            details=result,
             evidence={"frozen": Measured(share)},
             parameters=names,
         )

@@ -7,27 +7,29 @@ from collections.abc import Iterator
 from jointid.base.advice import Action
 from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.estimate.wording import rounded, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 
 SIGNAL_LAG = FindingType(
     code="signal_lag",
-    meaning="torque, sensor or velocity is late against the position, as a filter, a slow bus or a backward "
-    "difference makes it, or early against a late position, and was not shifted, or by another delay "
-    "(info where that moves no parameter by more than 5 % or two errors)",
-    advice="shift the signal by the delay that is stated, or remove its cause",
+    meaning="torque, sensor or velocity lags or leads the position, and no shift removed that. A filter, a slow bus "
+    "or a backward difference causes it. Info: no parameter moves by more than 5 % or two standard errors",
+    advice="shift the signal by this delay, or remove the delay's cause",
 )
 DELAY_REMOVED = FindingType(
     code="delay_removed",
     severity="info",
-    meaning="torque, sensor or velocity was late against the position, and was shifted before the identification; "
-    "its parameters are those that this moved by more than 5 % or two errors",
-    advice="nothing; to keep the signal as it is, shift it by 0",
+    meaning="torque, sensor or velocity lagged or led the position, and was shifted before the identification. The "
+    "parameters named moved by more than 5 % or two standard errors",
+    advice="nothing; to keep the signal unchanged, shift it by 0",
 )
 # A torque does not come before its motion.
-_EARLY = "the position is late or coarse, the torque early, or the gear gives way"
+_EARLY = "the position is late or coarse, the torque early, or the gear elastic"
 _WHERE = "the position's filter and resolution, both clocks, and the gear's play"
-_FILTERS = "the filters and the clocks of position, velocity and torque"
+_FILTERS = "the filters and clocks of position, velocity and torque"
+_UNSHIFTED = Action("inspect", text="the stated shift, and remove it")
+_COARSE = 0.005  # of a delay: a smaller error is not shown
 _NORMAL = 1.96  # standard errors of a 95 % interval
 _SHARP = 3e-4  # [s]
 _NONE = 3.0  # standard errors, below which there is no delay to shift by
@@ -58,10 +60,15 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
             concerned = tuple(dict.fromkeys((*concerned, *cause.relative)))
     if not delay.fits:
         # A delay of one signal alone would make the balance worse: others are as late.
+        alike = "other signals may be as late, or filtered alike"
         yield SIGNAL_LAG.finding(
-            f"{described}, but the torque balance does not fit better without it: other "
-            f"signals may be as late, or filtered alike{', or the gear gives way' if early else ''}",
+            described,
             Action("inspect", text=_WHERE if early else _FILTERS),
+            details=_clauses(
+                "the torque balance fits no better without this delay",
+                f"{alike}, or the gear is elastic" if early else alike,
+                _interval(delay),
+            ),
             evidence=measured,
             parameters=concerned,
             severity=severity,
@@ -69,8 +76,9 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
         return
     if early and delay.value < -_period(evidence) and not delay.applied:
         yield SIGNAL_LAG.finding(
-            f"{described}: {_EARLY}",
+            described,
             Action("inspect", text=_WHERE),
+            details=_clauses(_EARLY, _interval(delay)),
             evidence=measured,
             parameters=concerned,
             severity=severity,
@@ -82,8 +90,10 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
         del whole[delay.signal]
     does = cause.harmless if harmless and cause is not None else "biases the values"
     yield SIGNAL_LAG.finding(
-        f"{described}, which {does}{f': {_EARLY}' if early else ''}",
+        described,
         Action("call", {"shift": whole}),
+        *(() if whole else (_UNSHIFTED,)),
+        details=_clauses(f"this {does}", _EARLY if early else "", _interval(delay)),
         evidence=measured,
         parameters=concerned,
         severity=severity,
@@ -93,29 +103,37 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
 def _removed(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
     """What was taken away, and what it would have done."""
     cause = evidence.cause_of("delay", delay.signal, 0.0, delay.applied, removed=True)
-    text = f"{_described(delay, evidence)}; it was shifted before the identification"
     measured, concerned = _measured(delay, evidence), _concerned(delay, evidence)
+    did = ""
     if cause is not None:
-        text += f", which {cause.did}"
+        did = f"the shift {cause.did}"
         measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
         concerned = tuple(cause.relative) if cause.harmful else ()
-    if delay.signal == "torque" and delay.applied < 0.0:
-        text += f": {_EARLY}"
+    early = _EARLY if delay.signal == "torque" and delay.applied < 0.0 else ""
     yield DELAY_REMOVED.finding(
-        text, *_instead(delay, evidence), evidence=measured, parameters=concerned
+        _described(delay, evidence, "lagged", "led"),
+        *_instead(delay, evidence),
+        details=_clauses("it was shifted before the identification", did, early, _interval(delay)),
+        evidence=measured,
+        parameters=concerned,
     )
 
 
-def _described(delay: Delay, evidence: Evidence) -> str:
+def _described(delay: Delay, evidence: Evidence, late: str = "lags", early: str = "leads") -> str:
     size = _size(delay)
-    side = "late" if size > 0.0 else "early"
+    verb = late if size > 0.0 else early
     periods = abs(size) / _period(evidence)
+    amount = f"{1e3 * abs(size):.3g}"
+    if delay.stderr > _COARSE * abs(size):
+        error = 1e3 * delay.stderr
+        amount = f"{rounded(1e3 * abs(size), error)} ± {two_digits(error)}"
     shifted = delay.applied and delay.left
-    after = f" after the stated shift by {1e3 * delay.applied:.3g} ms" if shifted else ""
-    return (
-        f"the {delay.signal} is {side} by {1e3 * abs(size):.3g} ± {1e3 * delay.stderr:.2g} ms "
-        f"({periods:.1f} sample periods{_interval(delay)}) against the position{after}"
-    )
+    after = f" after a shift of {1e3 * delay.applied:.3g} ms" if shifted else ""
+    return f"{delay.signal} {verb} the position by {amount} ms ({periods:.1f} samples){after}"
+
+
+def _clauses(*texts: str) -> str:
+    return "; ".join(filter(None, texts))
 
 
 def _interval(delay: Delay) -> str:
@@ -124,7 +142,7 @@ def _interval(delay: Delay) -> str:
     if reach < _SHARP:
         return ""
     size = abs(_size(delay))
-    return f"; with 95 % between {1e3 * (size - reach):.2f} and {1e3 * (size + reach):.2f} ms"
+    return f"95 % interval: {1e3 * (size - reach):.2f} to {1e3 * (size + reach):.2f} ms"
 
 
 def _size(delay: Delay) -> float:

@@ -1,4 +1,4 @@
-"""Load friction of the drive's torque where nothing tells the scale of the balance."""
+"""Load friction of the drive's torque where no known value fixes the scale of the balance."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from jointid.identification.warnings.evidence import Evidence
 LOAD_SCALE = FindingType(
     code="load_scale",
     severity="blocking",
-    meaning="load friction takes a share of the drive's torque, and neither the inertia nor gravity is known: a drive "
-    "that only drives fits as well with every value scaled",
-    advice="give the joint its inertia or its link",
+    meaning="load friction takes a share of the drive's torque, and neither inertia nor gravity is known. Any scale of "
+    "all values then fits as well",
+    advice="leave load friction out, or state the joint's inertia or its link",
 )
 
 
@@ -42,10 +42,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     model = evidence.problem.choice.model.replace(load_friction=False)
     yield LOAD_SCALE.finding(
-        "load_friction scales all other values, since neither the inertia nor gravity is known: none of them can be "
-        "told from the drive's torque alone",
-        Action("inspect", text="the joint's inertia or its link, and state it in the joint"),
+        "load_friction scales all other values, as neither inertia nor gravity is known",
         Action("call", {"model": str(model)}),
+        Action("inspect", text="the data sheet, and state the joint's inertia or its link"),
+        details="the drive's torque alone does not determine these values",
         parameters=tuple(name for name, each in evidence.parameters.items() if each.vary),
     )
 

@@ -1,4 +1,4 @@
-"""A delay that was taken away and is longer than drives, filters and buses make one."""
+"""A stated shift that is longer than the delay of any drive, filter or bus."""
 
 from collections.abc import Iterator
 
@@ -9,8 +9,8 @@ from jointid.identification.warnings.evidence import Evidence
 
 LONG_SHIFT = FindingType(
     code="long_shift",
-    meaning="a signal was shifted by more than 0.1 s and 20 sample periods, which no filter or bus makes late",
-    advice="state delays in seconds: 1 ms is 0.001",
+    meaning="a signal was shifted by more than 0.1 s and 20 samples; no filter or bus delays it that long",
+    advice="state shifts in seconds: 1 ms is 0.001",
 )
 _LONG = 0.1  # [s]
 _PERIODS = 20.0  # of a slow log, 0.1 s is a few samples
@@ -23,11 +23,16 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         name: delay for name, delay in shift.items() if abs(delay) > max(_LONG, _PERIODS * period)
     }
     if long:
-        shown = " and ".join(f"{name} by {delay:g} s" for name, delay in long.items())
+        most = max(long, key=lambda name: abs(long[name]))
+        samples = abs(long[most]) / period
+        meant = {name: 1e-3 * delay if name in long else delay for name, delay in shift.items()}
         yield LONG_SHIFT.finding(
-            f"{shown} is shifted, {max(map(abs, long.values())) / period:.0f} sample periods: delays are in seconds",
-            Action("inspect", text="whether milliseconds were meant: 1 ms is 0.001"),
-            evidence={name: Measured(delay, "s") for name, delay in long.items()},
+            f"{most} is shifted by {long[most]:g} s ({samples:.0f} samples): longer than a bus delays",
+            Action("call", {"shift": meant}, "if milliseconds were meant"),
+            Action("inspect", text="the stated shift, and give it in seconds"),
+            details="shifts are in seconds: 1 ms is 0.001",
+            evidence={name: Measured(delay, "s") for name, delay in long.items()}
+            | {f"{most}.samples": Measured(samples)},
         )
 
 

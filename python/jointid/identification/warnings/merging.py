@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import TITLE, Finding, Measured
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 _NAMED = 5  # recordings in the details; the finding has all
@@ -36,29 +36,23 @@ def merged(found: Iterable[tuple[int, Finding]], names: Sequence[str]) -> list[F
 def _as_one(group: Sequence[tuple[int, Finding]], names: Sequence[str]) -> Finding:
     concerned = tuple(names[number] for number in dict.fromkeys(number for number, _ in group))
     findings = [each for _, each in group]
+    title = _with_ranges([each.title for each in findings])
+    details = _with_ranges([each.details for each in findings])
+    more = f" and {len(concerned) - _NAMED} more" if len(concerned) > _NAMED else ""
+    listed = f"in {', '.join(concerned[:_NAMED])}{more}"
+    where = f"{len(concerned)} of {len(names)} recordings"
+    if len(concerned) == 1:
+        where = concerned[0]
+    fits = len(f"{where}: {title}") <= TITLE
+    if not fits or 1 < len(concerned) < len(names):
+        details = f"{listed}; {details}".removesuffix("; ")
     return replace(
         findings[0],
-        title=f"{len(concerned)} of {len(names)} recordings: {_with_ranges([each.title for each in findings])}",
-        details="; ".join(
-            filter(
-                None,
-                (
-                    _where(concerned, len(names)),
-                    _with_ranges([each.details for each in findings]),
-                ),
-            )
-        ),
+        title=f"{where}: {title}" if fits else title,
+        details=details,
         evidence=_largest(findings),
         recordings=concerned,
     )
-
-
-def _where(concerned: Sequence[str], count: int) -> str:
-    """Names of some of the recordings; none where it is all of them."""
-    if len(concerned) == count:
-        return ""
-    more = f" and {len(concerned) - _NAMED} more" if len(concerned) > _NAMED else ""
-    return f"in {', '.join(concerned[:_NAMED])}{more}"
 
 
 def _with_ranges(causes: Sequence[str]) -> str:

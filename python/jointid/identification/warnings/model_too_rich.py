@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.estimate.wording import percent, two_digits
+from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_advice import simpler_model
@@ -20,9 +20,9 @@ from jointid.problem.inner_products import inner
 
 MODEL_TOO_RICH = FindingType(
     code="model_too_rich",
-    meaning="the static term ended at zero, is not significant, rests on three windows or is extrapolated from "
-    "faster motion, or its shape ended on a bound: the data do not determine the Stribeck model",
-    advice="use the model coulomb_viscous where no static excess shows; or record slow motion through zero speed"
+    meaning="the data do not determine the Stribeck model. Static friction is zero or not significant, rests on three "
+    "windows, or is extrapolated from faster motion, or its shape ended on a bound",
+    advice="use the model coulomb_viscous where no static friction shows, or record slow motion through zero speed"
     f"{DESIGNED}",
     picture="friction-map",
 )
@@ -45,17 +45,17 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
         return None
     for p in (*static, *(found[name] for name in _COULOMB if name in found)):
         if p.at_bound == "min":
-            return f"{p.name} friction ended at its lower bound", {
-                f"{p.name}.min": Measured(p.min, p.unit)
-            }
+            return f"{p.name} ended at its lower bound", {f"{p.name}.min": Measured(p.min, p.unit)}
     for p in static:
         if p.stderr is not None and p.stderr > _SIGNIFICANT * abs(p.value):
-            share = p.stderr / abs(p.value)
+            shown = f"{rounded(p.value, p.stderr)} ± {two_digits(p.stderr)} {p.unit}"
             return (
-                f"{p.name} friction is {p.value:.3g} with a standard error of {percent(share)}",
+                f"{p.name} is {shown}"
+                if math.isfinite(p.stderr)
+                else f"{p.name} has no finite error",
                 {
                     p.name: Measured(p.value, p.unit),
-                    f"{p.name}.stderr": Measured(share),
+                    f"{p.name}.stderr": Measured(p.stderr, p.unit),
                 },
             )
     for p in static:
@@ -64,7 +64,7 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
             return few
     for name in SHAPES:
         if name in found and found[name].at_bound is not None and name in evidence.bounds_from_data:
-            return f"the shape {name} ended on the bound of what the data can show", {
+            return f"{name} ended on the bound of what the data show", {
                 name: Measured(found[name].value, found[name].unit)
             }
     return None
@@ -82,7 +82,7 @@ def _seen_in_few(
     shown = float(np.max(np.abs(columns[:, place]) / penalty.usable_duration))
     if shown < _SHOWN:
         return (
-            f"{p.name} friction is {p.value:.3g} {p.unit}, and no window has more than {percent(shown)} of it",
+            f"no window shows more than {percent(shown)} of {p.name}",
             {p.name: Measured(p.value, p.unit), f"{p.name}.shown": Measured(shown)},
         )
     if p.stderr is None:
@@ -104,13 +104,28 @@ def _seen_in_few(
     if error <= _SIGNIFICANT * value:
         return None
     return (
-        f"{p.name} friction rests on {_FEW} of {len(own)} windows, and is {value:.2g} ± {two_digits(error)} {p.unit} "
-        "without them",
+        f"{p.name} rests on {_FEW} of {len(own)} windows",
         {
             f"{p.name}.elsewhere": Measured(value, p.unit),
             f"{p.name}.elsewhere_stderr": Measured(error, p.unit),
+            "windows": Measured(float(len(own))),
+            "windows_that_show_it": Measured(float(_FEW)),
         },
     )
+
+
+def _beyond(measured: Mapping[str, Measured]) -> str:
+    """What a static friction is without the few windows that show it, or where none shows it."""
+    for name, error in measured.items():
+        static, _, kind = name.partition(".")
+        if kind == "elsewhere_stderr":
+            value = measured[f"{static}.elsewhere"].value
+            shown = f"{rounded(value, error.value)} ± {two_digits(error.value)} {error.unit}"
+            return f"without them, {static} is {shown}"
+        if kind == "shown":
+            found = measured[static]
+            return f"{static} is {found.value:.3g} {found.unit}, extrapolated from faster motion"
+    return ""
 
 
 def _without(evidence: Evidence) -> str:
@@ -167,8 +182,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             simpler = Action("call", {"model": simpler_model(evidence)}, _without(evidence))
             advice.insert(0, simpler)
         yield MODEL_TOO_RICH.finding(
-            f"the data do not determine the model '{evidence.model}': {text}",
+            f"the model {evidence.model} is too rich: {text}",
             *advice,
+            details=_beyond(measured),
             evidence=measured,
             parameters=tuple(name for name in named if name in evidence.parameters),
         )

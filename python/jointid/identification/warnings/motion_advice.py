@@ -12,7 +12,7 @@ from jointid.identification.warnings.evidence import Evidence
 from jointid.joint.joint import Joint
 from jointid.recording.order_statistics import quantile, quantile_of_sizes
 
-DESIGNED = "; `estimate.next_motion` (`jointid design --after`) designs it, and the finding has the arguments"
+DESIGNED = "; `jointid design --after` or `estimate.next_motion` designs it"
 """What the list of findings says of such advice."""
 
 _SHORTEST, _LONGEST = 6.0, 60.0  # [s]

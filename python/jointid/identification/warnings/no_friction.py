@@ -16,12 +16,10 @@ from jointid.recording.header_words import AT_THE_LINK
 
 NO_FRICTION = FindingType(
     code="no_friction",
-    meaning="the torque is explained and holds no friction, by a bound of 2 % of its root mean square (10 % where that "
-    "of its dry part is 2 %): it was measured behind the drive's friction, or the joint has none, as in a simulation. "
-    "Compensation has nothing to rest on; blocking for everything where the torque's header names the joint or a "
-    "sensor, and the bound is then 5 % at least",
-    advice="give the motor's torque or current as torque, and this column as sensor; nothing, if the joint is "
-    "simulated without friction",
+    meaning="friction is less than 2 % of the torque. The torque was measured behind the friction, or the joint has "
+    "none, as in a simulation. Blocking where the torque's header names the joint or a sensor, then below 5 %",
+    advice="give the motor's torque or current as torque, and this column as sensor. Nothing, if the joint has no "
+    "friction",
 )
 _EXPLAINED = 0.95  # of the variance: friction is missing, not lost in a misfit
 _SMALL = 0.02  # of the torque's root mean square
@@ -31,7 +29,7 @@ _SURE = 3.0  # standard errors
 _BOUND = 2.0  # standard errors
 _LEVELS = ("coulomb", "static")
 _CAUSE = "a torque measured at the link holds no friction of the drive"
-_REMEDY = "where the torque is measured: give the motor's torque or current as torque, and this column as sensor"
+_REMEDY = "where the torque is measured, and load the motor's torque or current"
 
 
 def without_friction(evidence: Evidence) -> tuple[str, ...]:
@@ -87,15 +85,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     header = _header(evidence)
     share = _most(evidence, [evidence.parameters[name] for name in names]) / evidence.torque_level
-    seen = f"the torque holds no friction: at most {percent(share)} of it, although the joint moves"
     severity: Severity = "warning"
-    cause = f"{seen}; {_CAUSE}, and a joint simulated without friction has none"
+    details = f"{_CAUSE}; a joint simulated without friction has none"
     if header:
-        severity, cause = "blocking", f"{seen}; its header is {header!r}, and {_CAUSE}"
+        severity, details = "blocking", f"{_CAUSE}; the torque's header is {header!r}"
     yield NO_FRICTION.finding(
-        cause,
+        f"the torque holds no friction: at most {percent(share)} of it while the joint moves",
         Action("inspect", text=_REMEDY),
         *((_as_sensor(header),) if header else ()),
+        details=details,
         evidence={"friction": Measured(share), "torque": _level(evidence)},
         parameters=names,
         severity=severity,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from jointid.base.advice import Action
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import TITLE, Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
@@ -13,13 +13,12 @@ from jointid.identification.warnings.undetermined import listed, scale_of
 
 NOISY_SIGNAL = FindingType(
     code="noisy_signal",
-    meaning="noise in the extra signals of own terms moves parameters by more than 1.5 %: the coefficient of a noisy "
+    meaning="noise in the extra signals of own terms moves a parameter by more than 1.5 %. The coefficient of a noisy "
     "signal is too small",
-    advice="record the signal with less noise, or filter it without delay; fix the gain of a torque or an inertia that "
-    "is known",
+    advice="record the signal with less noise, or filter it without delay. Fix the coefficient if it is known",
 )
 _MOVED = 0.015  # of the value
-_QUIETER = Action("record", text="the extra signal with less noise, or filter it without delay")
+_NAMES = 40  # characters
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -38,16 +37,17 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     own = evidence.problem.choice.model.resolved.terms
     terms = {name.partition("[")[0] for name in moved}
     blamed = [each.signal for each in own.each if terms & set(each.keys)]
-    signals = [
-        f"{name} (a standard deviation of {sigma:.2g} {units.unit(name)}".rstrip() + ")"
-        for name, sigma in noise.noise
-        if name in blamed or not blamed
+    noisy = {name: sigma for name, sigma in noise.noise if name in blamed or not blamed}
+    deviations = [
+        f"{name} {sigma:.2g} {units.unit(name)}".rstrip() for name, sigma in noisy.items()
     ]
-    sizes = ", ".join(f"{name} by {percent(share)}" for name, share in moved.items())
+    text = f"noise in {listed(noisy, _NAMES)} moves "
+    sizes = [f"{name} by {percent(share)}" for name, share in moved.items()]
     yield NOISY_SIGNAL.finding(
-        f"noise of {listed(signals)} moves {sizes}, found by measuring once more; the coefficient of a noisy signal is "
-        "too small by about as much",
-        _QUIETER,
+        f"{text}{listed(sizes, TITLE - len(text))}",
+        Action("record", text=f"{listed(noisy, _NAMES)} with less noise"),
+        details=f"standard deviation: {listed(deviations)}; the coefficient of a noisy signal is too small by about as "
+        "much; found by a simulated second recording",
         evidence={f"{name}.moved": Measured(share) for name, share in moved.items()}
         | {f"{name}.noise": Measured(sigma) for name, sigma in noise.noise},
         parameters=tuple(moved),

@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from jointid.base.advice import Action
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import TITLE, Finding, Measured
 from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
-from jointid.identification.warnings.undetermined import HIDES, with_partners
+from jointid.identification.warnings.undetermined import HIDES, listed, with_partners
 from jointid.recording.order_statistics import median
 from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="noise in the velocity moves parameters by more than 2 %, so that it alone makes a 95 % interval wider "
-    "than ±4 %, or is not small against the velocity's change over any admissible window: the estimated inertia is "
-    "then too small",
-    advice="record the position with a finer resolution, or for longer; leave out a velocity column that is "
-    "noisier than the position's rate",
+    meaning="noise in the velocity moves a parameter by more than 2 %, or is large against the velocity's change over "
+    "every admissible window. The estimated inertia is then too small",
+    advice="record the position with a finer resolution, or record longer. Leave out a velocity column that is noisier "
+    "than the position's rate",
 )
 _MOVED = 0.02  # of the value: two of them are what `undetermined` calls wide
 _OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
@@ -42,26 +41,23 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     limited = evidence.penalty.noise_limited and not evidence.penalty.cumulative
     if not (limited or moved):
         return
-    causes, measured = [], {}
+    causes, details, measured = [], [], {}
     named = list(moved)
     if limited:
         share = evidence.residuals.noise_share
-        causes.append(
-            f"noise makes up {percent(share)} of the change of the velocity over a window, and no admissible one has "
-            f"less than 1 %: the estimated inertia is too small{' by about as much' * (share < HIDES)}"
-        )
+        about = "about that much" if share < HIDES else "far"
+        causes.append(f"noise is {percent(share)} of the velocity's change over a window")
+        details.append(f"inertia is {about} too small")
+        details.append("no admissible window has less than 1 % of noise")
         measured["noise_share"] = Measured(share)
         inertia = evidence.parameters.get("inertia")
         if inertia is not None and inertia.vary and "inertia" not in named:
             named.insert(0, "inertia")
     if moved:
-        sizes = ", ".join(
-            f"{name} by {_size(evidence, name, each)}" for name, each in moved.items()
-        )
-        causes.append(
-            f"noise of the velocity moves {sizes}, found by measuring once more"
-            + _resolution(evidence)
-        )
+        sizes = [f"{name} by {_size(evidence, name, each)}" for name, each in moved.items()]
+        text = "velocity noise moves "
+        causes.append(f"{text}{listed(sizes, TITLE - len(text))}")
+        details += filter(None, (_resolution(evidence), "found by a simulated second recording"))
         measured |= {f"{name}.moved": Measured(share) for name, share in moved.items()}
     # By the stamps of a busy computer the position's rate is wrong, however quiet it looks.
     stamped = all(_are_stamps_right(inspected) for inspected in evidence.inspections)
@@ -69,9 +65,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         _derived_is_quieter(evidence, number) for number in range(len(evidence.recordings))
     )
     yield NOISY_VELOCITY.finding(
-        "; ".join(causes),
+        causes[0],
         *((_DERIVED,) if quieter else ()),
         _FINER,
+        details="; ".join((*causes[1:], *details)),
         evidence=measured,
         parameters=with_partners(evidence, named),
     )
@@ -116,7 +113,7 @@ def _resolution(evidence: Evidence) -> str:
     step = run.derived.position_noise.quantum
     if not (run.velocity_derived and step > 0.0):
         return ""
-    return f" (the position has steps of {step:.3g} {run.unit('position')})"
+    return f"the position has steps of {step:.3g} {run.unit('position')}"
 
 
 def _derived_is_quieter(evidence: Evidence, number: int) -> bool:

@@ -13,7 +13,7 @@ from jointid.identification.warnings.inspection import Inspected
 
 REPEATED_SAMPLES = FindingType(
     code="repeated_samples",
-    meaning="more than 3 % of the moving samples repeat the one before",
+    meaning="more than 3 % of the samples repeat the one before while the joint moves",
     advice="record at the drive's own rate",
 )
 REPEATED = 0.03  # share of the moving samples
@@ -27,9 +27,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             stale[name] = share
     if stale:
         yield REPEATED_SAMPLES.finding(
-            f"{' and '.join(stale)} repeat the sample before in {percent(max(stale.values()))} of the samples "
-            "though the joint moves: the logger was faster than the drive's bus",
+            f"{percent(max(stale.values()))} of the {' and '.join(stale)} samples are copies of the one before",
             Action("record", text="at the drive's own rate"),
+            details="the joint moves meanwhile; the logger was faster than the drive's bus",
             evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
         )
 

@@ -44,7 +44,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         measured = {"motor_speed": shown}
     elif swing > _SWING and travel < 0.5 * swing and not _of_the_motor(recording):
         turns = swing / (2.0 * np.pi)
-        seen = f"the joint would swing through {turns:.0f} turns and back"
+        seen = f"the joint would swing through {turns:.0f} turns"
         measured = {"swing": Measured(turns, "turns")}
         if not whole:
             severity = _of_many_turns(recording, agrees=agreement is not None)
@@ -52,22 +52,24 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         return
     if severity == "info":
         yield IMPLAUSIBLE_UNITS.finding(
-            f"{seen}, as a bench, a wheel or a spindle does; a joint with stops would be in degrees",
+            f"{seen}, as a wheel or a spindle does",
+            details="for a joint with stops, the position would be in degrees",
             evidence=measured,
             severity=severity,
         )
         return
     signals = ("position",) if recording.velocity_derived else ("position", "velocity")
     advice = [degrees_advice(recording, signals)]
-    units = "in degrees"
+    details = "or the gear ratio is wrong"
     if whole:
-        units += ", or in counts of the encoder, as all positions are whole numbers"
+        details = "or in counts of the encoder, as all positions are whole numbers; " + details
         scale = dict.fromkeys(signals, ...)
-        advice.append(Action("call", {"scale": scale}, "2π over the counts of a turn", "load"))
+        advice.append(Action("call", {"scale": scale}, "2π over the counts per turn", "load"))
     yield IMPLAUSIBLE_UNITS.finding(
-        f"{seen}: position and velocity may be {units}, or the gear ratio is wrong",
+        f"{seen}: the position is probably in degrees",
         *advice,
         Action("inspect", text="the gear ratio"),
+        details=details,
         evidence=measured,
         severity=severity,
     )

@@ -17,15 +17,15 @@ from jointid.recording.recording import Recording
 
 SPIKES = FindingType(
     code="spikes",
-    meaning="single samples lie far off their neighbours",
-    advice="cut them out, or check the logger",
+    meaning="single samples lie far from their neighbours; least squares fits them, too",
+    advice="delete those rows, and check the logger",
 )
 JUMPS = FindingType(
     code="jumps",
     severity="blocking",
-    meaning="the position jumps, and neither a recorded velocity nor the samples beside it go on like that: a wrapped "
-    "angle, a lost index or lost samples",
-    advice="unwrap the angle, or crop the recording there",
+    meaning="the position jumps, and neither the velocity nor the neighbouring samples show such a motion. "
+    "The angle wraps, the encoder lost its index, or samples are lost",
+    advice="unwrap the angle, or cut the recording there",
 )
 
 _JUMP = 10.0  # times the usual change of the velocity between samples
@@ -41,9 +41,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             height = f"{spike.height:.3g} {unit}".rstrip()
             time = float(recording.time[spike.index])
             yield SPIKES.finding(
-                f"{spike.count} spike(s) in {name}, the largest of {height} at {time:.4g} s, "
-                "where the signal leaves its course and returns at once: least squares fits them, too",
-                Action("inspect", text="the logger, and cut the spikes out"),
+                f"{name} has a spike of {height} at {time:.4g} s (spikes in all: {spike.count})",
+                Action("inspect", text="the logger, and delete the rows with spikes"),
+                details="the signal leaves its course for one sample",
                 evidence={
                     "spikes": Measured(spike.count),
                     "height": Measured(spike.height, unit),
@@ -56,9 +56,11 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         step = float(recording.position[jump + 1] - recording.position[jump])
         unit, time = recording.unit("position"), float(recording.time[jump])
         yield JUMPS.finding(
-            f"the position jumps by {step:.4g} {unit} at {time:.4g} s: a wrapped angle, a lost index or lost "
-            "samples",
-            Action("inspect", text="the recording there, and unwrap the angle or crop it"),
+            f"the position jumps by {step:.4g} {unit} at {time:.4g} s",
+            Action(
+                "inspect", text="the rows at the jump, and unwrap the angle or cut the log there"
+            ),
+            details="the angle wraps, the encoder lost its index, or samples are lost",
             evidence={"height": Measured(step, unit), "time": Measured(time, "s")},
         )
 

@@ -9,8 +9,8 @@ from jointid.identification.warnings.evidence import Evidence
 
 STOPPED = FindingType(
     code="stopped",
-    meaning="the search was stopped before it converged",
-    advice="run it again to its end",
+    meaning="the search ended before it converged; better values may exist",
+    advice="search by separable least squares, or let the search run to its end",
     picture="convergence",
 )
 
@@ -18,8 +18,9 @@ STOPPED = FindingType(
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.status != "converged":
         yield STOPPED.finding(
-            f"the search did not finish ({evidence.message}): better values may exist",
-            Action("inspect", text="why the search ended, and run it to its end"),
+            "the search ended before it converged: better values may exist",
+            Action("call", {"search": "separable"}),
+            details=evidence.message,
         )
 
 

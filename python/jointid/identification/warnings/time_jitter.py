@@ -20,8 +20,8 @@ from jointid.recording.recording import Recording
 
 TIME_JITTER = FindingType(
     code="time_jitter",
-    meaning="position and time stamps disagree by more than 2 % of a sample period",
-    advice="stamp samples where they are taken; give even time stamps if the samples are even and none is a copy",
+    meaning="time stamps disagree with the position by more than 2 % of a sample period",
+    advice="stamp samples where they are taken; evenly taken samples without copies need even time stamps",
 )
 _JITTER = 0.02  # sample periods
 
@@ -38,12 +38,12 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     # Rows that merely repeat make even stamps wrong, however even they look.
     even = not copies and as_uniform < 0.3 * as_stamped
     seen = "; the samples themselves look evenly spaced" if even else ""
-    seen = ", copies apart" if copies else seen
+    seen = "; without the copies" if copies else seen
     advice = "even time stamps" if even else "time stamps where the samples are taken"
     yield TIME_JITTER.finding(
-        f"position and time stamps disagree by {1e6 * as_stamped:.3g} µs a sample ({percent(as_stamped / period)} "
-        f"of the sample period), as stamps of a busy computer do{seen}",
+        f"time stamps are off by {1e6 * as_stamped:.3g} µs ({percent(as_stamped / period)} of the sample period)",
         Action("record", text=advice),
+        details=f"the position shows it; a busy computer stamps like that{seen}",
         evidence={
             "scatter": Measured(as_stamped, "s"),
             "scatter_about_even_times": Measured(as_uniform, "s"),

@@ -20,10 +20,9 @@ from jointid.problem.recordings import output_torque
 WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
-    meaning="the recording by itself contradicts the known inertia by more than 5 % (a "
-    "warning from 1 % where that explains the misfit, and blocking again beyond a factor of 1.5)",
-    advice="correct gear ratio, torque constant, unit of the torque or inertia; let the inertia vary only if that is "
-    "the wrong one",
+    meaning="the inertia in the log differs from the known one by more than 5 %. Where a difference above 1 % "
+    "explains the misfit, it is a warning, and blocking beyond a factor of 1.5",
+    advice="correct gear ratio, torque constant, torque unit or inertia; free the inertia only if it is the wrong one",
 )
 
 UNSIGNED_TORQUE = FindingType(
@@ -55,10 +54,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     correlation = _torque_with_velocity(evidence)
     if correlation is not None:
         yield REVERSED_SIGN.finding(
-            "the torque works against the motion on the whole, which no joint with friction does: torque or position "
-            "has the wrong sign",
+            "the torque works against the motion: torque or position has the wrong sign",
             *_flip_the_torque(evidence),
             Action("inspect", text="the signs of torque and position, and flip the wrong one"),
+            details="friction takes power from the drive; here the drive would take power from the joint",
             evidence={"correlation_with_velocity": Measured(correlation)},
         )
         return
@@ -105,13 +104,17 @@ def _flip_the_torque(evidence: Evidence) -> tuple[Action, ...]:
     """The sign of the gear ratio is that of a torque on the motor's side; another is flipped as it is read."""
     joint = evidence.joint
     if all(run.torque is not None for run in evidence.recordings):
-        scaled = evidence.recordings[0].metadata.get("scale")
-        factor = scaled.get("torque", 1.0) if isinstance(scaled, Mapping) else 1.0
-        unit = "" if factor != 1.0 else "of a column in SI units; else its factor with a minus"
-        return (Action("call", {"scale": {"torque": -factor}}, unit, "load"),)
+        return (_flipped(evidence, "torque"),)
     if joint is None or any(run.torque is not None for run in evidence.recordings):
         return ()
     return (Action("call", {"gear_ratio": -joint.gear_ratio}, function="Joint"),)
+
+
+def _flipped(evidence: Evidence, signal: str) -> Action:
+    """Read a signal with the other sign."""
+    scaled = evidence.recordings[0].metadata.get("scale")
+    factor = scaled.get(signal, 1.0) if isinstance(scaled, Mapping) else 1.0
+    return Action("call", {"scale": {signal: -factor}}, function="load")
 
 
 def _inertia_ratio(free: Unbounded, given: float) -> float | None:
@@ -140,8 +143,8 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
     if ratio is None or not free.sure("inertia", given.value):
         return
     seen = (
-        f"the recording by itself shows an inertia of {ratio * given.value:.4g} {given.unit}, {ratio:.3g} times the "
-        f"{given.value:.4g} given"
+        f"the log shows an inertia of {ratio * given.value:.4g} {given.unit}, "
+        f"{ratio:.3g} times the given {given.value:.4g}"
     )
     measured = {
         "inertia": Measured(ratio * given.value, given.unit),
@@ -151,22 +154,22 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
     corrections = tuple(corrections_of(evidence, ratio))
     if not corrections and 0.8 < ratio / _DEGREE < 1.25:
         yield IMPLAUSIBLE_UNITS.finding(
-            f"{seen}, as when degrees are taken for radians",
+            seen,
             degrees_advice(evidence.recordings[0], ("position", "velocity")),
+            details="that is the factor from degrees to radians",
             evidence=measured,
             parameters=("inertia",),
         )
         return
     yield WRONG_SCALE.finding(
-        f"{seen}{_gear_hint(evidence, ratio)}: gear ratio, torque constant, unit of the torque or the joint's inertia "
-        "is wrong, and with it every value",
+        seen,
         *corrections,
+        # Not a call that frees the inertia: with a wrong torque it hides this finding, and all stays wrong.
         Action(
             "inspect",
-            # Not a call that frees the inertia: with a wrong torque it hides this finding, and all stays wrong.
-            text="gear ratio, torque constant, unit of the torque and inertia, and correct the wrong one; only if "
-            "that is the inertia, let it vary",
+            text="gear ratio, torque constant, torque unit and inertia; correct the wrong one",
         ),
+        details=f"{_gear_hint(evidence, ratio)}while it is wrong, every value is wrong",
         evidence=measured,
         parameters=("inertia", *scaled_with_torque(evidence)),
     )
@@ -184,7 +187,7 @@ def _gear_hint(evidence: Evidence, ratio: float) -> str:
     if gear > 1.0:
         for factor, verb in ((gear, "multiplied"), (1.0 / gear, "divided")):
             if 0.8 < ratio / factor < 1.25:
-                hint = f" (the torque seems {verb} by the gear ratio once too often)"
+                hint = f"the torque seems {verb} by the gear ratio once too often; "
     return hint
 
 
@@ -193,16 +196,9 @@ def _sensor_reversed(evidence: Evidence, free: Unbounded) -> Iterator[Finding]:
     if gain is None or gain.min < 0.0 or "sensor_gain" not in free.values:
         return
     if free.values["sensor_gain"] < 0.0 and free.sure("sensor_gain", 0.0):
-        # Over what the call states: a value of the other sign would contradict the bounds.
-        flipped: dict[str, object] = (
-            {"value": None, "min": -gain.max, "max": 0.0 - gain.min, "vary": True}
-            if gain.vary
-            else {"value": -gain.value, "min": None, "max": None, "vary": False}
-        )
         yield REVERSED_SIGN.finding(
-            "the sensor's reading falls where the link's torque rises: its sign is reversed",
-            Action("inspect", text="the sensor's sign, and flip the column"),
-            Action("call", {"parameters": {"sensor_gain": flipped}}, text="a negative gain"),
+            "the sensor's sign is reversed: its reading falls where the link's torque rises",
+            _flipped(evidence, "sensor"),
             evidence={"unbounded_gain": Measured(free.values["sensor_gain"], gain.unit)},
             parameters=("sensor_gain",),
         )

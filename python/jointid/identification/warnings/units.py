@@ -12,9 +12,9 @@ from jointid.recording.recording import Recording
 IMPLAUSIBLE_UNITS = FindingType(
     code="implausible_units",
     severity="blocking",
-    meaning="degrees taken for radians: position and velocity differ by 57.3, a known inertia is contradicted by "
-    "as much, or the motion would be impossibly fast or wide; or other stamps than seconds; or a current above 100 A "
-    "or a torque above 5 kN·m without a stated unit. A wide motion in units that a header states is an info",
+    meaning="degrees seem to be read as radians: the motion would be too fast or too wide, or a factor of 57.3 "
+    "separates position from velocity, or the known inertia from that in the log. Or the time is not in seconds, or a "
+    "current above 100 A or a torque above 5 kN·m has no stated unit. Info: a wide motion in a stated unit",
     advice="state the unit of position, velocity, time, current or torque when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
@@ -55,15 +55,15 @@ def unit_by_factor(
         for known, units in _FACTORS if recording.kind == "revolute" else ():
             if abs(factor * times / known - 1.0) > _CLOSE or not set(units) <= unstated:
                 continue
-            names, verb = " and ".join(units), "seem" if len(units) > 1 else "seems"
+            verb = "seem" if len(units) > 1 else "seems"
             side = {"side": {signal: "motor"}, "gear_ratio": ratio} if signal else {}
             advice = Action("call", {**side, "units": units}, function="load")
             return (
-                f": the {names}, of which no unit is stated, {verb} to be in {' and '.join(units.values())}"
+                f"{' and '.join(units)} {verb} to be in {' and '.join(units.values())}"
                 + f", and the {signal} the motor's" * bool(signal),
                 (advice,),
             )
-    return "", (Action("inspect", text="the units of both, and of the time"),)
+    return "", (Action("inspect", text="the units of position, velocity and time"),)
 
 
 def degrees_advice(recording: Recording, signals: Sequence[str]) -> Action:
@@ -73,8 +73,5 @@ def degrees_advice(recording: Recording, signals: Sequence[str]) -> Action:
     if unstated:
         units = {name: _DEGREES[name] for name in unstated}
         return Action("call", {"units": units}, function="load")
-    return Action(
-        "inspect",
-        text="the header or the program that made the recording, which states radians: correct it, or convert the "
-        "values",
-    )
+    text = "the header or program that states radians; correct it, or convert the values"
+    return Action("inspect", text=text)

@@ -19,14 +19,14 @@ from jointid.recording.recording import Recording
 REVERSED_SIGN = FindingType(
     code="reversed_sign",
     severity="blocking",
-    meaning="the torque works against the motion, or velocity or sensor have the opposite sign",
-    advice="flip the sign of the column that is wrong; of a motor-side torque, that of the gear ratio",
+    meaning="the torque works against the motion, or the sign of velocity or sensor is reversed",
+    advice="flip the sign of the wrong column; for a motor-side torque, flip that of the gear ratio",
 )
 VELOCITY_MISMATCH = FindingType(
     code="velocity_mismatch",
-    meaning="the velocity differs from the position's rate by more than 3 %; blocking beyond 10 %",
+    meaning="the velocity differs from the position's rate by more than 3 % (blocking: by more than 10 %)",
     advice="correct rate, gear ratio or unit, or say on which side of the gear it is; leave the velocity column out "
-    "only if it is the wrong one: position or time may be wrong, too",
+    "only if it is the wrong one",
 )
 
 MISMATCH = 0.03  # of the position's rate
@@ -36,7 +36,7 @@ _DEGREE = np.pi / 180.0
 _WITHOUT_VELOCITY = Action(
     "call",
     {"columns": {"velocity": None}},
-    "if the velocity alone is wrong; it is then derived centrally",
+    "if the velocity alone is wrong",
     "load",
 )
 
@@ -46,6 +46,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     if found is None:
         return
     scale = {"scale": Measured(found.scale)}
+    rate = f"the position's rate is {found.scale:.4g} times the velocity"
     ratio = known_ratio(evidence)
     suspected, advice = unit_by_factor(recording, found.scale, ratio)
     gear = other_side(ratio, found.scale)
@@ -53,15 +54,15 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     possible = [possible_side(found.scale)] * (large and ratio is None)
     if gear is not None:
         yield VELOCITY_MISMATCH.finding(
-            f"the position moves by {found.scale:.4g} times the integral of the velocity, which the gear ratio "
-            f"explains: the {gear[0]} is the motor's",
+            f"{rate}: the {gear[0]} is the motor's",
             gear[1],
+            details="the gear ratio explains the factor",
             evidence=scale,
             severity="blocking",
         )
     elif found.scale < 0.0:
         yield REVERSED_SIGN.finding(
-            "the velocity has the opposite sign of the position's change: one of the two signs is reversed",
+            "the velocity has the opposite sign of the position's rate: one of the two is reversed",
             Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
             *possible,
             evidence=scale,
@@ -78,12 +79,15 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     elif abs(found.scale - 1.0) > MISMATCH:
         facts = () if suspected else tuple(_stated_facts(recording, found.scale))
         wrong = not 1.0 / _WRONG < found.scale < _WRONG
+        first = advice if suspected else ()
         yield VELOCITY_MISMATCH.finding(
-            f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
+            f"{suspected}: rates differ by a factor of {found.scale:.4g}" if suspected else rate,
             *facts,
-            *advice,
+            *first,
             *([] if suspected else possible),
             *([] if suspected or (facts and wrong) else [_WITHOUT_VELOCITY]),
+            *(() if first else advice),
+            details="the log states no unit for it" if suspected else "",
             evidence=scale,
             severity="blocking" if wrong else None,
         )
