@@ -97,7 +97,7 @@ def test_emps_refuses_the_stribeck_term(emps: Path) -> None:
     found = jid.compare_models(recording, models=("coulomb_viscous", "stribeck"))
     assert found.winner == "coulomb_viscous"
     assert not row(found, "stribeck").eligible
-    assert "static friction ended at its lower bound" in row(found, "stribeck").reason
+    assert "static ended at its lower bound" in row(found, "stribeck").reason
     assert "the data do not support stribeck" in found.reason
     assert row(found, "coulomb_viscous").score == pytest.approx(0.0418, rel=0.05)
 

@@ -140,7 +140,7 @@ def test_a_load_that_scales_all_values_is_refused(runs: list[jid.Recording], sen
     assert ("load_scale" in found(None, "true")) == (not sensor)
     compared = jid.compare_models(run, models=["stribeck", "stribeck:load_friction=drive"])
     assert compared.winner == "stribeck"
-    assert "neither the inertia nor gravity is known" in compared.rows[1].reason
+    assert "neither inertia nor gravity is known" in compared.rows[1].reason
 
 
 def test_instruments_and_load_friction_exclude_each_other(runs: list[jid.Recording]) -> None:

@@ -65,7 +65,7 @@ def test_a_friction_that_is_not_there_is_a_good_value(
                 continue
             said = next(each for each in found.findings if each.parameters == (p.name,))
             assert (said.code, said.severity) == ("at_bound", "info")
-            assert "it is at most" in said.cause
+            assert "at most" in said.title
 
 
 @pytest.mark.parametrize("negative", [-0.3, -1.0])
@@ -146,4 +146,4 @@ def test_the_cause_comes_before_what_follows_from_it() -> None:
     found = jid.identify(reversed_torque, model="coulomb_viscous")
     blocking = [each for each in found.findings if each.severity == "blocking"]
     assert found.verdict.level == "not usable"
-    assert found.verdict.reasons[0] == blocking[0].cause
+    assert found.verdict.reasons[0] == blocking[0].title

@@ -63,8 +63,8 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     elif found.scale < 0.0:
         yield REVERSED_SIGN.finding(
             "the velocity has the opposite sign of the position's rate: one of the two is reversed",
-            Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
             *possible,
+            Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
             evidence=scale,
         )
     elif not suspected and (_near(found.scale, _DEGREE) or _near(found.scale, 1.0 / _DEGREE)):
@@ -72,21 +72,19 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         factor = max(found.scale, 1.0 / found.scale)
         yield IMPLAUSIBLE_UNITS.finding(
             f"position and velocity differ by a factor of {factor:.1f}: the {which} seems to be in degrees",
-            degrees_advice(recording, (which,)),
             *([] if abs(factor * _DEGREE - 1.0) < MISMATCH else possible),
+            degrees_advice(recording, (which,)),
             evidence={"factor": Measured(factor)},
         )
     elif abs(found.scale - 1.0) > MISMATCH:
         facts = () if suspected else tuple(_stated_facts(recording, found.scale))
         wrong = not 1.0 / _WRONG < found.scale < _WRONG
-        first = advice if suspected else ()
         yield VELOCITY_MISMATCH.finding(
             f"{suspected}: rates differ by a factor of {found.scale:.4g}" if suspected else rate,
             *facts,
-            *first,
-            *([] if suspected else possible),
+            *(advice if suspected else possible),
             *([] if suspected or (facts and wrong) else [_WITHOUT_VELOCITY]),
-            *(() if first else advice),
+            *(() if suspected else advice),
             details="the log states no unit for it" if suspected else "",
             evidence=scale,
             severity="blocking" if wrong else None,
