@@ -114,7 +114,8 @@ def _plain(text: str) -> str:
 
 def _code(text: str) -> str:
     """An advice: what can be pasted stands behind "with" or "by", and what it is for in brackets behind that."""
-    found = re.fullmatch(r"(.*?\b(?:with|designed by)) ([^`]+?)( \([^()]*\))?", text)
+    code = r"(?=--|jointid |[\w.]+[=(])[^`]+?"
+    found = re.fullmatch(rf"(.*?\b(?:with|designed by)) ({code})( \([^()]*\))?", text)
     if found is None:
         return _plain(text)
     return f"{found[1]} `{found[2]}`{_plain(found[3] or '')}"
