@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from command_line_answers import answer
 from example_recordings import WELL_EXCITED as WELL
+from plain_joint import motion
 
 import jointid as jid
 from jointid.cli.command_line import main
@@ -126,6 +127,20 @@ def test_columns_and_units_are_proposed(capsys: pytest.CaptureFixture[str]) -> N
     assert main([*command[1:], "--quiet", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["parameters"]
     assert found["coulomb"]["value"] == pytest.approx(25.0, rel=0.2)
+
+
+def test_the_next_command_reads_as_this_one_did(capsys: pytest.CaptureFixture[str]) -> None:
+    _, angle, speed, rise = motion(4.0)
+    rows = np.column_stack([angle, 50.0 * speed, rise + 3.0 * np.sign(speed) + speed])
+    np.savetxt("a.csv", rows, delimiter=",", header="angle_rad,speed_rad_s,torque_Nm", comments="")
+    options = ["--rate", "200", "--side", "velocity=motor", "--drop-invalid"]
+    assert main(["new", "a.toml", "a.csv", "--no-questions", "--gear-ratio", "50", *options]) == 0
+    said = capsys.readouterr().out.rpartition("next: ")[2].strip()
+    assert said == (
+        "jointid identify a.csv --joint a.toml --side velocity=motor --rate 200 --drop-invalid"
+    )
+    assert main(shlex.split(said)[1:]) == 0
+    assert "velocity_mismatch" not in capsys.readouterr().out
 
 
 def test_it_asks_at_a_terminal() -> None:
