@@ -40,6 +40,19 @@ def test_a_wrapped_angle_is_unwrapped(
     assert worst(estimate) < 0.02
 
 
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("recorded", [True, False], ids=["velocity", "no velocity"])
+def test_a_wrap_that_was_interpolated_is_unwrapped(share: float, recorded: bool) -> None:
+    run = two_sines(wide=4.0)
+    angle = wrapped(run, 0.0, 2 * math.pi).position.copy()
+    places = np.flatnonzero(np.abs(np.diff(angle)) > math.pi) + 1
+    angle[places] = (1.0 - share) * angle[places - 1] + share * angle[places + 1]
+    made = run.with_signals(position=angle)
+    made = made if recorded else made.with_velocity()
+    assert np.ptp(mended(made)[0].position - run.position) < 0.05
+    assert worst(jid.identify(made)) < 0.02
+
+
 def test_one_of_several_runs_is_wrapped() -> None:
     runs = [two_sines(wide=4.0), two_sines(wide=3.0, seed=1)]
     runs[1] = wrapped(runs[1], 0.0, 2 * math.pi)

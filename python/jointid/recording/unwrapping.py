@@ -27,8 +27,14 @@ def unwrapped(run: Recording) -> tuple[FloatArray, int, float] | None:
     """
     if run.kind != "revolute":
         return None
-    steps = np.diff(run.position)
-    large = np.flatnonzero(np.abs(steps) > _least(run.position, steps))
+    position, steps = run.position, np.diff(run.position)
+    least = _least(position, steps)
+    between = _between(steps, least)
+    if len(between):
+        position = position.copy()
+        position[between] = position[between - 1]
+        steps = np.diff(position)
+    large = np.flatnonzero(np.abs(steps) > least)
     if not len(large):
         return None
     near = _near(steps, large)
@@ -38,7 +44,7 @@ def unwrapped(run: Recording) -> tuple[FloatArray, int, float] | None:
         period = np.diff(run.time)[large]
         expected = 0.5 * (run.velocity[large] + run.velocity[large + 1]) * period
         slack = np.minimum(slack, 0.5 * np.abs(expected)) + around
-    size = _size(run.position, steps[large] - expected)
+    size = _size(position, steps[large] - expected)
     turns = np.round((steps[large] - expected) / size)
     left = np.abs(steps[large] - expected - turns * size)
     wraps = (turns != 0.0) & (left <= slack + _SLACK * size) & (around < 0.5 * size)
@@ -46,12 +52,23 @@ def unwrapped(run: Recording) -> tuple[FloatArray, int, float] | None:
         return None
     correction = np.zeros(len(run))
     correction[large[wraps] + 1] = turns[wraps] * size
-    return run.position - np.cumsum(correction), int(np.count_nonzero(wraps)), size
+    position = position - np.cumsum(correction)
+    position[between] = 0.5 * (position[between - 1] + position[between + 1])
+    return position, int(np.count_nonzero(wraps)), size
 
 
 def _least(position: FloatArray, steps: FloatArray) -> float:
     """Smaller steps are no wraps: half of the range, or of a turn."""
     return 0.5 * min(_TURN, float(np.ptp(position))) if len(steps) else math.inf
+
+
+def _between(steps: FloatArray, least: float) -> NDArray[np.intp]:
+    """Rows on the way of a jump that takes two steps: angles that were interpolated over a wrap."""
+    rows = np.flatnonzero(np.abs(steps[1:] + steps[:-1]) > least)
+    rows = rows[(rows > 0) & (rows < len(steps) - 2)]
+    size, beside = np.abs(steps), np.maximum(np.abs(steps[rows - 1]), np.abs(steps[rows + 2]))
+    smaller = np.minimum(size[rows], size[rows + 1])
+    return rows[(steps[rows] * steps[rows + 1] > 0.0) & (smaller > _AWAY * beside)] + 1
 
 
 def _near(steps: FloatArray, large: NDArray[np.intp]) -> FloatArray:
