@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import jointid as jid
 from jointid.cli.command_line import main
 
 TIME = 0.004 * np.arange(1500)
@@ -164,3 +165,25 @@ def test_a_velocity_in_stated_units_shows_that_time_is_in_seconds(
     columns["velocity_rad_s"] = 1.02 * SPEED
     path = log(tmp_path / "b.csv", **columns)
     assert "assumed_units" in shown([path, "--gear-ratio", "50"], capsys)
+
+
+def test_no_motion_is_designed_in_silence_from_values_that_cannot_be_used(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    speed = np.concatenate([np.zeros(3000), SPEED])
+    speed += np.random.default_rng(1).normal(0.0, 1e-3, len(speed))
+    columns = {
+        "time_s": 0.004 * np.arange(4500),
+        "position_rad": np.concatenate([np.full(3000, ANGLE[0]), ANGLE]),
+        "velocity_rad_s": 50.0 * speed,
+        "current_A": np.concatenate([np.zeros(3000), CURRENT]),
+    }
+    path, saved = log(tmp_path / "a.csv", **columns), str(tmp_path / "a.json")
+    text = shown([path, "--gear-ratio", "50", "--save", saved], capsys)
+    assert "warning (standing)" in text
+    assert "--velocity=" not in text  # the motor's speed is no limit of the joint
+    joint = tmp_path / "joint.toml"
+    jid.Joint(name="a", gear_ratio=50.0, torque_constant=0.1, inertia=0.5).save(joint)
+    limits = "--position=-1,1 --velocity=2 --torque=30 --duration 2 --criterion other"
+    assert main(["design", str(joint), "--after", saved, *limits.split(), "--quiet"]) == 2
+    assert "cannot be used: the position moves by 0.02 times" in capsys.readouterr().err

@@ -75,3 +75,16 @@ def test_rows_out_of_order_are_advised_to_be_sorted(tmp_path: Path) -> None:
     (tmp_path / "b.csv").write_text("\n".join([head, *rows[30:], *rows[:30], ""]))
     with pytest.raises(InputError, match="strictly increase; sort the rows by time, or cut"):
         jid.load(tmp_path / "b.csv")
+
+
+def test_an_appended_file_is_no_damage(tmp_path: Path) -> None:
+    """Its header is in the way, and nothing of it is left out: the advice cuts the file there."""
+    path = written(tmp_path / "a.csv", {})
+    text = path.read_text().replace("torque_Nm", "velocity_rad_s,i_A").replace("\n", ",1\n")
+    text = text.replace("i_A,1", "i_A")
+    path.write_text(2 * text)
+    with pytest.raises(InputError, match="another file was appended") as caught:
+        jid.load(path)
+    assert f"head -n 61 {path}" in str(caught.value)
+    assert f"tail -n +62 {path}" in str(caught.value)
+    assert "load with" not in str(caught.value)

@@ -224,7 +224,12 @@ def _estimate(arguments: argparse.Namespace) -> Estimate | None:
             raise InputError("it names a joint of --after", argument="after_joint", value=joint)
         return None
     try:
-        return load_estimate(arguments.after, joint)
+        estimate = load_estimate(arguments.after, joint)
+        blocked = [each for each in estimate.findings if each.severity == "blocking"]
+        if blocked:
+            said = f"the values of {arguments.after} cannot be used: {blocked[0].cause}"
+            print(f"jointid design: {said}", file=sys.stderr)
+        return estimate
     except InputError as error:
         remedies = tuple(
             Action("call", {"after_joint": each.arguments["joint"]}, each.text, each.function)

@@ -15,6 +15,10 @@ NOTE = "dropped_rows"  # in a recording's metadata: how many were left out
 DROP = Action("call", {"drop_invalid": True}, text="to leave such rows out", function="load")
 
 
+class RepeatedHeaderError(InputError):
+    """A second file was appended to a file, header and all: no row of it is damaged."""
+
+
 def sound_rows(signals: Mapping[str, FloatArray]) -> npt.NDArray[np.bool_]:
     """Return which rows have only values that a joint can have: finite, and not absurdly large.
 

@@ -9,6 +9,7 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.columns import Column
+from jointid.recording.damaged_rows import RepeatedHeaderError
 from jointid.recording.header_words import AT_THE_LINK, is_at_the_link
 from jointid.recording.known_products import speed_unit
 from jointid.recording.signals import TORQUES, FloatArray
@@ -135,6 +136,8 @@ def _readable(
             continue
         try:
             table.numbers([index])
+        except RepeatedHeaderError:
+            raise
         except InputError as error:
             if signal in MOTION or (signal in TORQUES and not _other_torque(signal, found)):
                 raise with_remedy(error, signal) from None

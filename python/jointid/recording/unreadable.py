@@ -11,7 +11,7 @@ from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 from jointid.base.unpacking import TooLargeError
 from jointid.recording.contents import Contents
-from jointid.recording.damaged_rows import DROP, few
+from jointid.recording.damaged_rows import DROP, RepeatedHeaderError, few
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
 
@@ -30,7 +30,7 @@ def read_leniently(
         return read(TolerantTable(table))
     try:
         return read(table)
-    except TooLargeError:  # its cells as text would hold still more
+    except (TooLargeError, RepeatedHeaderError):  # as text its cells would hold still more
         raise
     except InputError as error:
         refused = error

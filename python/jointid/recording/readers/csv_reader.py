@@ -2,6 +2,7 @@
 
 import csv
 import re
+import shlex
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import islice
@@ -13,6 +14,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.recording.damaged_rows import RepeatedHeaderError
 from jointid.recording.readers.column_pairs import Paired, paired_columns
 from jointid.recording.readers.csv_dialect import (
     BLANK,
@@ -265,11 +267,22 @@ class CsvTable:
     def _invalid(self, columns: Sequence[int], reason: str) -> InputError:
         for row, line in enumerate(self._rows):
             cells = self._cells(line, self._line_numbers[row])
+            if tuple(cells) == tuple(self.headers):
+                raise self._appended(self._line_numbers[row])
             for column in columns:
                 if number_of(cells[column], self._separator) is None:
                     return InputError(_no_number(cells[column]), place=self.place(column, row))
         return InputError(
             f"the numbers cannot be read ({' '.join(reason.split())})", place=self.source
+        )
+
+    def _appended(self, line: int) -> InputError:
+        file = shlex.quote(str(self.source))
+        return RepeatedHeaderError(
+            "the headers stand here again: another file was appended",
+            place=f"{self.source}, line {line}",
+            remedy=f"cut it there (head -n {line - 1} {file} > run_1.csv; tail -n +{line} {file} > run_2.csv), and "
+            "give both files",
         )
 
 
