@@ -39,7 +39,7 @@ def test_all_joints(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pat
     assert "joint 2's speed explains" in out
     assert out.endswith(f"report: {page}   estimate: {saved}\n")
     lines = out.splitlines()
-    assert lines[4].startswith("joint 1: residuals of neighbouring windows correlate")
+    assert lines[4].startswith("joint 1: an effect is missing: ")
     assert len(lines) <= 8 + 2
     assert max(map(len, lines[:-1])) <= 100
     assert json.loads(saved.read_text(encoding="utf-8"))["joints"].keys() == {"1", "2"}

@@ -44,7 +44,7 @@ def test_the_printed_command_designs_the_motion_that_is_missing(
     words = ["identify", "first.csv", "--joint", "joint.toml", "--save", "first.json", "--quiet"]
     assert main(words) == 0
     printed = "".join(capsys.readouterr())
-    assert "warning: not determined: " in printed
+    assert "jointid explain undetermined" in printed
     commands = re.findall(r"do: (jointid design .*)", printed)
     if name != "no reversal":  # how wide or fast it may be is for the user to say
         assert not commands

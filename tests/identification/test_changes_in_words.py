@@ -1,5 +1,6 @@
 """Changes of values in words: no share of a value near zero, and of a wrong scale both readings."""
 
+import dataclasses
 import re
 
 import pytest
@@ -7,6 +8,7 @@ from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.estimate.causes import Cause
+from jointid.estimate.findings import TITLE
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.changes import from_to
 
@@ -58,6 +60,24 @@ def test_a_change_of_a_value_near_zero_is_no_share(
     )
     assert f"coulomb {words}" in cause.title
     assert "%" not in cause.title
+
+
+def test_a_title_has_the_changes_that_fit_into_a_line_and_the_details_have_all() -> None:
+    cause = Cause(
+        name="inertia_varies",
+        detail="2 × angle",
+        size="±18 %",
+        share=0.9,
+        scale=0.1,
+        relative={"gravity_cos": -1.01, "inertia": 0.18},
+        near_zero={"gravity_cos": "from 4.56 to -0.0558 N·m"},
+    )
+    assert cause.title.endswith("(2 × angle, ±18 %): with it, inertia +18 %")
+    assert len(cause.title) <= TITLE
+    assert "gravity_cos changes from 4.56 to -0.0558 N·m, inertia by +18 %" in cause.details
+    short = dataclasses.replace(cause, near_zero={}, relative={"inertia": 0.18})
+    assert short.title == cause.title
+    assert "inertia" not in short.details  # it is not said twice
 
 
 def test_a_change_of_a_known_value_is_a_share() -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from jointid.estimate.findings import TITLE
 from jointid.identification.warnings import structured_residual, undetermined
 from jointid.identification.warnings.excitation import Excitation
 from jointid.joints.citing import cited
@@ -54,6 +55,38 @@ def test_too_little_travel_shows_digits_that_differ() -> None:
         shown = lack.text.split()[4]
         assert float(shown) < 1.0
         assert float(shown) == pytest.approx(travel, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("values", "lacks", "title"),
+    [
+        (
+            2,
+            ("1 of 4 reversals", "little acceleration"),
+            "{} ± 14 %, {} ± 14 %: 1 of 4 reversals, {}",
+        ),
+        (
+            5,
+            ("1 of 4 reversals",),
+            "{} ± 14 %, {} ± 14 %, {} ± 14 % and 2 others: 1 of 4 reversals",
+        ),
+        (1, (), "{} ± 14 %"),
+    ],
+)
+def test_a_title_has_values_and_what_is_missing(
+    values: int, lacks: tuple[str, ...], title: str
+) -> None:
+    words = [*["inertia"] * min(values, 3), "little acceleration"]
+    found, shown = undetermined._title(["inertia ± 14 %"] * values, lacks)
+    assert found == title.format(*words)
+    assert shown == min(values, 3)
+
+
+def test_a_title_has_fewer_values_of_long_names_and_keeps_what_is_missing() -> None:
+    names = [f"coulomb_positive[recording_{k}] ± 1.4 %" for k in range(4)]
+    found, shown = undetermined._title(names, ("load varies by 0.27 N·m only", "too much noise"))
+    assert found == f"{names[0]} and 3 others: load varies by 0.27 N·m only"
+    assert (shown, len(found) <= TITLE) == (1, True)
 
 
 def test_a_longer_recording_is_asked_for_by_the_parameter() -> None:

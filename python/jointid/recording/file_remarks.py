@@ -42,7 +42,7 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     overridden = metadata.get("overridden_units")
     if isinstance(overridden, Mapping):
         found += [
-            f"{signal} is read in the unit of the call, not in the file's {unit}"
+            f"{signal} is read in the call's unit, not in the file's {unit}"
             for signal, unit in overridden.items()
         ]
     repeated = metadata.get("repeated_rows")

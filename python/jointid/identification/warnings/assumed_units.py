@@ -24,7 +24,7 @@ _AGREES = 0.01  # of a velocity and the position's rate
 _IN_HEADER = Action(
     "inspect", text="the header, and name the unit there (as in position_rad, torque_Nm)"
 )
-_ROOM = 32  # characters of names in a title
+_ROOM = 30  # characters of names in a title
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
@@ -38,7 +38,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             purpose = "or the units that they have"
             advice.insert(0, Action("call", {"units": units}, text=purpose, function="load"))
         yield ASSUMED_UNITS.finding(
-            f"no unit is stated for {listed(signals, _ROOM)}, so SI is assumed",
+            f"no unit is stated for {listed(signals, _ROOM)}, SI is assumed",
             *advice,
             details="; ".join(filter(None, (_all_of(signals), *_sizes(recording, signals)))),
         )

@@ -39,7 +39,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         shown = [f"{column} ({reason})" for column, reason in list(columns.items())[:_SHOWN]]
         more = f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else ""
         yield LEFT_OUT.finding(
-            f"columns that are not read: {listed(columns, _ROOM)}",
+            f"columns not read: {listed(columns, _ROOM)}",
             Action("inspect", text="the header, and name the column or its unit if needed"),
             details=f"{', '.join(shown)}{more}",
         )
