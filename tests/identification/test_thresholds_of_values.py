@@ -21,6 +21,7 @@ from jointid.identification.warnings import torque_balance, unbounded
 from jointid.identification.warnings.evidence import Regressor
 from jointid.identification.warnings.excitation import Excitation
 from jointid.identification.warnings.unbounded import Unbounded
+from jointid.identification.warnings.undetermined import listed
 from jointid.problem.terms import WEAK_READING
 
 _BACK_AND_FORTH = np.where(np.arange(1000) // 100 % 2 == 0, 1.0, -1.0)
@@ -111,6 +112,8 @@ def test_what_moves_with_an_uncertain_value_is_named(
 
 
 def test_a_sentence_names_a_few() -> None:
+    assert listed("abcde") == "a, b, c and 2 others"
+    assert listed("abcd", room=17) == "a, b and 2 others"
     many = [parameter(f"coulomb[{k}]", 1.0, 0.1 + 0.01 * k) for k in range(7)]
     pairs = {(f"coulomb[{k}]", f"coulomb[{k + 1}]"): 0.99 for k in range(6)}
     (said,) = _uncertain(*many, correlations=pairs)

@@ -25,13 +25,11 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     metadata = inspected.recording.metadata
     found = remarks(metadata) if isinstance(metadata, Mapping) else []
     if found:
-        title, why = found[0], ""
-        if len(title) > _ROOM:
-            title, _, why = title.partition(": ")
+        title, *why = found[0].split(": ", 1) if len(found[0]) > _ROOM else found[:1]
         yield MESSAGE_LOG.finding(
             title,
             Action("inspect", text="the recorder, if you do not expect this"),
-            details="; ".join(filter(None, (why, *found[1:]))),
+            details="; ".join([*why, *found[1:]]),
             evidence={
                 name: Measured(count)
                 for name in ("repeated_messages", "reordered_messages")
