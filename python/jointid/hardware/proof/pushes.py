@@ -19,6 +19,7 @@ _LONGEST = 0.4  # [s] of a push
 _DEGREE = 5  # of the polynomial that stands for what the sensor reads at a position
 _UNKNOWN = 8  # rows at least, for four unknowns
 _FEWEST = 50  # samples in motion, to say anything
+_MANY = 40.0  # counts of a push: a fine encoder
 _INFORMED = 4000.0  # squared counts of all pushes together, which tell the inertia
 
 
@@ -78,12 +79,8 @@ class Push:
         return int(moved[-1]) + 1 if len(moved) else 0
 
     @cached_property
-    def balance(self) -> tuple[Array, Array]:
-        """Matrix and right side of the balance integrated twice, while the joint moved.
-
-        The counts are on the right side: on the left one they would make the inertia too small. The mean is taken
-        away: nobody knows where within a count the joint stood.
-        """
+    def balance(self) -> Array:
+        """The terms of the balance integrated twice, while the joint moved: inertia's, torque's, and the others'."""
         inner, times, way = slice(1, self.moving + 1), self.times, self.way
         # The torque of a row acts from its own time plus the latency: a few steps, most rows have none.
         steps = np.diff(self.direction * self.trace.torque, prepend=0.0)
@@ -92,8 +89,7 @@ class Push:
         twice = 0.5 * np.clip(late, 0.0, None) ** 2 @ steps[some]
         area = np.concatenate(((0.0,), np.cumsum(0.5 * (way[1:] + way[:-1]) * np.diff(times))))
         held = 0.5 * (times[inner] - times[0]) ** 2
-        matrix = np.stack((twice, held, area[inner], self.direction * held), axis=1)
-        return matrix - matrix.mean(axis=0), way[inner] - way[inner].mean()
+        return np.stack((way[inner], twice, held, area[inner], self.direction * held), axis=1)
 
     def acceleration(self, motion: Motion) -> Array:
         """Of the fitted motion, 0 at rest [rad/s²], in the joint's positive direction."""
@@ -156,22 +152,28 @@ def informed(pushes: list[Push]) -> bool:
 def motion_of(pushes: list[Push]) -> Motion:
     """Fit inertia and sliding friction to some pushes, by the torque balance integrated twice.
 
-    x = (∬ torque - (friction ± load) · ∬ 1 - viscous · ∫ x) / inertia, from the first cycle of each push, in which
-    the torque steps from 0, until the last count.
+    inertia · x = ∬ torque - (friction ± load) · ∬ 1 - viscous · ∫ x, from the first cycle of each push, in which
+    the torque steps from 0, until the last count. Of a coarse encoder x is fitted by the torque: the other way
+    about, its counts would make the inertia too small. Its mean is taken away: nobody knows where within a count the
+    joint stood.
     """
-    moved = [each.balance for each in pushes if each.moving > 2]
-    rows, wanted = [matrix for matrix, _ in moved], [side for _, side in moved]
-    if not rows:
+    moved = [each for each in pushes if each.moving > 2]
+    coarse = all(each.counts < _MANY for each in moved)
+    balances = [each.balance - coarse * each.balance.mean(axis=0) for each in moved]
+    terms = np.concatenate(balances) if balances else np.zeros((0, 5))
+    if len(terms) < _UNKNOWN:
         return Motion(math.nan, math.nan, math.nan)
-    matrix, target = np.concatenate(rows), np.concatenate(wanted)
-    if len(matrix) < _UNKNOWN:
-        return Motion(math.nan, math.nan, math.nan)
+    way, twice, others = terms[:, 0], terms[:, 1], terms[:, 2:]
+    left, right = (twice, way) if coarse else (way, twice)
+    matrix = np.column_stack((left, others))
     scale = np.abs(matrix).max(axis=0)
-    found, *_ = np.linalg.lstsq(matrix / np.where(scale > 0.0, scale, 1.0), target, rcond=1e-9)
-    mobility, friction, viscous, load = (float(value) for value in found / scale)
-    if mobility <= 0.0:
+    solved, *_ = np.linalg.lstsq(matrix / np.where(scale > 0.0, scale, 1.0), right, rcond=1e-9)
+    first, *rest = (float(value) for value in solved / scale)
+    if not first > 0.0:
         return Motion(math.nan, math.nan, math.nan)
-    return Motion(1.0 / mobility, *(-each / mobility for each in (friction, viscous, load)))
+    if coarse:
+        first, rest = 1.0 / first, [-each / first for each in rest]
+    return Motion(first, *rest)
 
 
 @dataclass(frozen=True, slots=True)
