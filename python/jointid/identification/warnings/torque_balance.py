@@ -72,7 +72,7 @@ def _is_unsigned(evidence: Evidence) -> bool:
     """Whether the windows' torque is the magnitude of what friction, inertia and gravity make."""
     torques = [output_torque(run, evidence.joint) for run in evidence.recordings]
     lowest, highest = min(each.min() for each in torques), max(each.max() for each in torques)
-    if evidence.problem.choice.sensor or not is_one_sided(float(lowest), float(highest)):
+    if not is_one_sided(float(lowest), float(highest)) or evidence.problem.choice.sensor:
         return False
     table = evidence.table
     direction = np.sign(table.velocity)
