@@ -334,4 +334,4 @@ def test_a_page_from_the_command_line_advises_options(tmp_path: Path) -> None:
     page = target.read_text(encoding="utf-8")
     command = f"jointid identify {WELL} --report {target} --quiet --torque-hold zoh"
     assert command in page
-    assert "torque_hold=" not in page
+    assert "with torque_hold=" not in page
