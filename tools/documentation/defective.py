@@ -251,6 +251,12 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
         "motor_side": Case(
             recording=defects.changed(given, metadata={"side": "motor"}), joint=None
         ),
+        "torque_side": Case(
+            recording=defects.changed(
+                given, metadata={"gear_ratio": 101.0, "assumed_side": "torque"}
+            ),
+            joint=None,
+        ),
         "long_shift": Case(recording=good, identify={"shift": {"torque": 0.5}}),
     }
 

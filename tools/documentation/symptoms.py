@@ -222,6 +222,10 @@ SYMPTOMS: Mapping[str, Symptom] = {
         "Friction and inertia are as small as a motor's: the square of the gear ratio is missing.",
         friction,
     ),
+    "torque_side": Symptom(
+        "Friction and inertia are smaller by the gear ratio than they should be, though the velocity is read right.",
+        friction,
+    ),
     "long_shift": Symptom(
         "A delay was stated that is longer than a filter or a bus makes one; the torque no longer fits the motion.",
         windows,

@@ -200,7 +200,7 @@ class Recording(Parts):
         from jointid.recording.contents import read_contents
         from jointid.recording.dataframe import FrameTable
         from jointid.recording.even_rows import at_rate
-        from jointid.recording.wide.one_joint import OneJoint, of_joint
+        from jointid.recording.sides import at_stated_sides, checked_ratio
 
         table, columns = at_rate(FrameTable(df), sample_period, columns)
         contents = read_contents(
@@ -212,8 +212,11 @@ class Recording(Parts):
             kind=kind,
             torque_hold=torque_hold,
         )
-        one = OneJoint(table=table, columns=columns)
-        return cls(**of_joint(contents.fields(), one, gear_ratio, side))
+        fields = contents.fields()
+        if gear_ratio is not None or side:
+            ratio = None if gear_ratio is None else checked_ratio(gear_ratio)
+            fields = at_stated_sides(fields, ratio, side, place=table.source)
+        return cls(**fields)
 
     @functools.cached_property
     def sample_period(self) -> float:

@@ -11,8 +11,8 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
+from jointid.recording.sides import MOTOR
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.words import MOTOR
 from jointid.robot.loud_samples import quiet_velocity
 from jointid.robot.robot import Robot
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from jointid.base.argument_checks import is_finite, require_path
 from jointid.base.errors import InputError
 from jointid.joint.model import Model
+from jointid.recording.sides import SIDES
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.words import SIDES
 from jointid.robot.facts import read_facts
 from jointid.robot.link_tree import LinkTree
 from jointid.robot.models import friction_models

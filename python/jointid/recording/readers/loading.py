@@ -363,7 +363,7 @@ def _named(file: Path, fields: Mapping[str, Any], name: str | None, one: OneJoin
 def _ratio(one: OneJoint, gear_ratio: float | None) -> float | None:
     if gear_ratio is None:
         return one.gear_ratio
-    from jointid.recording.wide.sides import checked_ratio
+    from jointid.recording.sides import checked_ratio
 
     return checked_ratio(gear_ratio)
 

@@ -12,6 +12,7 @@ from jointid.recording.even_rows import at_rate
 from jointid.recording.extra import named_extra
 from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.readers.open_files import Source, reads_open_files
+from jointid.recording.sides import JOINT, at_joint, stated_sides
 from jointid.recording.signals import FloatArray, Kind, TorqueHold
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
@@ -22,7 +23,6 @@ from jointid.recording.wide.joint_table import (
 from jointid.recording.wide.reading_back import saved_robot
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.recording.wide.robot_signals import ROBOT_SIGNALS, checked_ratios
-from jointid.recording.wide.sides import JOINT, at_joint, stated_sides
 
 _MOST_JOINTS = 256
 

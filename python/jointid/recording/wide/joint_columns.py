@@ -7,10 +7,10 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.headers import parsed, understood
+from jointid.recording.sides import JOINT, MOTOR
 from jointid.recording.signals import TORQUES, dimensions
 from jointid.recording.table import Table
 from jointid.recording.wide.finding_joints import JointHeader
-from jointid.recording.wide.words import JOINT, MOTOR
 
 _NEEDED = ("position", "velocity", "torque", "motor_torque")
 _MOVING = ("velocity", "reference")

@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import field
 from typing import Any
 
-from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.headers import ALIASES, parsed
+from jointid.recording.sides import at_stated_sides
 from jointid.recording.table import Table
 
 MARK = "{joint}"
@@ -97,17 +97,14 @@ def of_joint(
     """Return the arguments of `Recording` at the joint: see `load` for `gear_ratio` and `side`."""
     if not one.joint and gear_ratio is None and not side:
         return fields
-    from jointid.recording.wide.sides import at_joint, stated_sides, unstated_torque
-
-    try:
-        own, others = stated_sides(one.side, one.other_sides, side)
-        found = at_joint(fields, own, gear_ratio, others)
-    except InputError as error:
-        raise error.at(one.table.header_place) from None
+    found = at_stated_sides(
+        fields,
+        gear_ratio,
+        side,
+        side=one.side,
+        other_sides=one.other_sides,
+        place=one.table.header_place,
+    )
     if one.joint:
         found["metadata"] = {**found["metadata"], "joint": one.joint}
-    if side:
-        found["metadata"] = {**found["metadata"], "stated_sides": dict(side)}
-        if unstated_torque(fields, side, gear_ratio):
-            found["metadata"]["assumed_side"] = "torque"
     return found

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_attributes, json_mapping
 from jointid.recording.recording import Recording
+from jointid.recording.sides import JOINT, MOTOR, SIDES, at_joint
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.slicing import slice_between
 from jointid.recording.wide.joint_names import joint_named
@@ -22,8 +23,6 @@ from jointid.recording.wide.robot_signals import (
     extra_arrays,
     joint_arrays,
 )
-from jointid.recording.wide.sides import at_joint
-from jointid.recording.wide.words import JOINT, MOTOR, SIDES
 
 
 class RobotRecording(Mapping[str, Recording]):

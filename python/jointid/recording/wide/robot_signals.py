@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.extra import check_extra_name
+from jointid.recording.sides import checked_ratio
 from jointid.recording.signals import FloatArray, signal_array
-from jointid.recording.wide.sides import checked_ratio
 
 ROBOT_SIGNALS = (
     *("position", "velocity", "torque", "motor_torque", "current"),

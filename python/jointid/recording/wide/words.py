@@ -4,9 +4,7 @@ from dataclasses import replace
 
 from jointid.base.values import dataclass
 from jointid.recording.header_words import QUANTITIES
-
-JOINT, MOTOR = "joint", "motor"
-SIDES = (JOINT, MOTOR)
+from jointid.recording.sides import JOINT, MOTOR
 
 # Beside a joint's number or name a shorter word is clear.
 _NOUNS: dict[str, str] = QUANTITIES | {

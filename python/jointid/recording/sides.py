@@ -8,8 +8,9 @@ from jointid.base.advice import Action
 from jointid.base.argument_checks import is_finite, require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.header_words import AT_THE_LINK
-from jointid.recording.wide.words import JOINT, MOTOR, SIDES
 
+JOINT, MOTOR = "joint", "motor"
+SIDES = (JOINT, MOTOR)
 _MOTION = ("position", "velocity", "reference")
 
 
@@ -84,25 +85,6 @@ def at_joint(
     return result
 
 
-def unstated_torque(
-    fields: Mapping[str, Any], stated: Mapping[str, str] | None, gear_ratio: float | None
-) -> bool:
-    """Whether the call puts a motion on the motor's side of a gear and nothing says on which side the torque is.
-
-    Parameters
-    ----------
-    fields : mapping
-        Arguments of `Recording`, before they are brought to the joint.
-    stated : mapping of str to str, or None
-        As given to `load`.
-    gear_ratio : float or None
-    """
-    at_motor = MOTOR in (stated or {}).values() and "torque" not in (stated or {})
-    geared = gear_ratio is not None and abs(gear_ratio) != 1.0
-    named = AT_THE_LINK in (fields.get("metadata") or {})
-    return at_motor and geared and not named and fields.get("torque") is not None
-
-
 def stated_sides(
     side: str, other_sides: Mapping[str, str], stated: Mapping[str, str] | None
 ) -> tuple[str, Mapping[str, str]]:
@@ -135,6 +117,53 @@ def stated_sides(
     return own, {name: each for name, each in sides.items() if each != own}
 
 
+def at_stated_sides(
+    fields: Mapping[str, Any],
+    gear_ratio: float | None,
+    stated: Mapping[str, str] | None,
+    *,
+    side: str = JOINT,
+    other_sides: Mapping[str, str] = MappingProxyType({}),
+    place: str = "",
+) -> dict[str, Any]:
+    """Return the arguments of `Recording` at the joint, the sides as the headers and the call state them.
+
+    Parameters
+    ----------
+    fields, gear_ratio, side, other_sides
+        As in `at_joint`, before the call is heard.
+    stated : mapping of str to str, or None
+        As in `stated_sides`.
+    place : str
+        The file, for messages. Default: none.
+
+    Raises
+    ------
+    InputError
+        As `at_joint` and `stated_sides`.
+    """
+    try:
+        own, others = stated_sides(side, other_sides, stated)
+        found = at_joint(fields, own, gear_ratio, others)
+    except InputError as error:
+        raise error.at(place) from None
+    if stated:
+        found["metadata"] = {**found["metadata"], "stated_sides": dict(stated)}
+        if _unstated_torque(fields, stated, gear_ratio):
+            found["metadata"]["assumed_side"] = "torque"
+    return found
+
+
+def _unstated_torque(
+    fields: Mapping[str, Any], stated: Mapping[str, str], gear_ratio: float | None
+) -> bool:
+    """Whether the call puts a motion on the motor's side of a gear and nothing says on which side the torque is."""
+    at_motor = MOTOR in stated.values() and "torque" not in stated
+    geared = gear_ratio is not None and abs(gear_ratio) != 1.0
+    named = AT_THE_LINK in (fields.get("metadata") or {})
+    return at_motor and geared and not named and fields.get("torque") is not None
+
+
 def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
     names = " and ".join(other_sides)
     return InputError(
@@ -144,6 +173,3 @@ def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
         value=None,
         remedy=Action("call", {"gear_ratio": ...}, function="load"),
     )
-
-
-__all__ = ["JOINT", "MOTOR", "at_joint", "checked_ratio", "stated_sides", "unstated_torque"]
