@@ -4,6 +4,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from fake_evidence import evidence as fake_evidence
+from fake_evidence import found
 
 from jointid.estimate.findings import TITLE
 from jointid.identification.warnings import structured_residual, undetermined
@@ -58,35 +60,29 @@ def test_too_little_travel_shows_digits_that_differ() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "lacks", "title"),
+    ("names", "lacks", "title"),
     [
         (
-            2,
-            ("1 of 4 reversals", "little acceleration"),
-            "{} ± 14 %, {} ± 14 %: 1 of 4 reversals, {}",
+            "ab",
+            ("1 of 4 reversals", "little load"),
+            "a ± 9 %, b ± 9 %: 1 of 4 reversals, little load",
         ),
-        (
-            5,
-            ("1 of 4 reversals",),
-            "{} ± 14 %, {} ± 14 %, {} ± 14 % and 2 others: 1 of 4 reversals",
-        ),
-        (1, (), "{} ± 14 %"),
+        ("abcde", ("little load",), "a ± 9 %, b ± 9 %, c ± 9 % and 2 others: little load"),
+        ("a", (), "a ± 9 %"),
     ],
 )
 def test_a_title_has_values_and_what_is_missing(
-    values: int, lacks: tuple[str, ...], title: str
+    names: str, lacks: tuple[str, ...], title: str
 ) -> None:
-    words = [*["inertia"] * min(values, 3), "little acceleration"]
-    found, shown = undetermined._title(["inertia ± 14 %"] * values, lacks)
-    assert found == title.format(*words)
-    assert shown == min(values, 3)
+    shown = min(len(names), 3)
+    assert undetermined._title([f"{name} ± 9 %" for name in names], lacks) == (title, shown)
 
 
 def test_a_title_has_fewer_values_of_long_names_and_keeps_what_is_missing() -> None:
     names = [f"coulomb_positive[recording_{k}] ± 1.4 %" for k in range(4)]
-    found, shown = undetermined._title(names, ("load varies by 0.27 N·m only", "too much noise"))
-    assert found == f"{names[0]} and 3 others: load varies by 0.27 N·m only"
-    assert (shown, len(found) <= TITLE) == (1, True)
+    title, shown = undetermined._title(names, ("load varies by 0.27 N·m only", "too much noise"))
+    assert title == f"{names[0]} and 3 others: load varies by 0.27 N·m only"
+    assert (shown, len(title) <= TITLE) == (1, True)
 
 
 def test_a_longer_recording_is_asked_for_by_the_parameter() -> None:
@@ -115,3 +111,13 @@ def test_a_finding_is_no_surer_of_another_joint_than_the_text() -> None:
     estimate: Any = Some((found,))
     (finding,) = cited(estimate, [share]).findings
     assert "the joint's own motion explains nearly as well" in finding.cause
+
+
+def test_a_long_remark_about_a_file_gives_its_reason_in_the_details() -> None:
+    cut = "the file ends early: its last record is cut, as after a recorder was killed"
+    run: Any = SimpleNamespace(metadata={"incomplete": cut, "empty_rows": 3}, name="")
+    (finding,) = found("message_log", fake_evidence(recordings=(run,)))
+    assert finding.title == "the file ends early"
+    assert finding.details.startswith(
+        "its last record is cut, as after a recorder was killed; 3 row"
+    )
