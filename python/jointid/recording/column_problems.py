@@ -339,8 +339,9 @@ def _unit_of_time(table: Table, index: int) -> str:
         with np.errstate(all="ignore"):
             unit = unit_of_stamps(float(stamps[0]), stamps - stamps[0], "")
     except InputError as error:  # milliseconds are likelier than seconds, other pairs are alike
-        second = Action("call", {"units": {"time": "s"}}, function="load")
-        return "ms" if second in error.remedy else ""
+        calls = [each.arguments for each in error.remedy if isinstance(each, Action)]
+        units = [str(call["units"]["time"]) for call in calls if "units" in call]
+        return units[0] if len(units) == 1 or "s" in units else ""
     return "s" if unit is None else unit.name if unit.name in UNITS else ""
 
 

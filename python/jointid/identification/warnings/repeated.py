@@ -14,7 +14,7 @@ from jointid.identification.warnings.inspection import Inspected
 REPEATED_SAMPLES = FindingType(
     code="repeated_samples",
     meaning="more than 3 % of the samples repeat the one before while the joint moves",
-    advice="leave whole copies out (`drop_copies`), or record at the drive's own rate",
+    advice="record at the drive's own rate",
 )
 REPEATED = 0.03  # share of the moving samples
 
@@ -26,11 +26,8 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         if share > REPEATED:
             stale[name] = share
     if stale:
-        measured = {"position", "velocity", "sensor"} & set(inspected.channels)
-        copies = Action("call", {"drop_copies": True}, "to leave copies out", "load")
         yield REPEATED_SAMPLES.finding(
             f"{percent(max(stale.values()))} of the {' and '.join(stale)} samples are copies of the one before",
-            *([copies] if measured == set(stale) else []),
             Action("record", text="at the drive's own rate"),
             details="the joint moves meanwhile; the logger was faster than the drive's bus",
             evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
