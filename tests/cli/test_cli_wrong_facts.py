@@ -187,3 +187,13 @@ def test_no_motion_is_designed_in_silence_from_values_that_cannot_be_used(
     limits = "--position=-1,1 --velocity=2 --torque=30 --duration 2 --criterion other"
     assert main(["design", str(joint), "--after", saved, *limits.split(), "--quiet"]) == 2
     assert "cannot be used: the position moves by 0.02 times" in capsys.readouterr().err
+
+
+def test_what_one_signal_lacks_is_said_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(tmp_path / "a.csv", time_s=TIME, position_rad=ANGLE, **{"iqmeasA [A]": CURRENT})
+    assert main(["identify", path]) == 2
+    message = capsys.readouterr().err
+    assert message.count("torque: ") == 1
+    assert "--torque-constant VALUE --gear-ratio RATIO (facts of motor and gear)" in message

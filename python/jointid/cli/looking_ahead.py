@@ -62,8 +62,11 @@ def looked_ahead(
         return error
     merged = _merged(actions)
     purposes = "; ".join(dict.fromkeys(action.text for action in actions if action.text))
+    said: dict[str, str] = {}  # of one argument the first reason says enough
+    for each, _ in found:
+        said.setdefault(each.argument or each.reason, _reason(each, first=each is error))
     return InputError(
-        "; ".join(_reason(each, first=each is error) for each, _ in found),
+        "; ".join(said.values()),
         argument=error.argument,
         value=error.value,
         place=error.place,
