@@ -205,7 +205,7 @@ COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
         IDENTIFYING | {"report", "report.drawing"},
         270,
     ),
-    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 255),
+    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 262),
     "info": (["info", "RUN"], IDENTIFYING, 220),
 }
 

@@ -90,7 +90,7 @@ def test_a_wrong_rate_is_named_and_cured_by_what_is_pasted(
     line = ["identify", path, "--model", "coulomb_viscous", "--rate"]
     assert main([*line, "230"]) == 0
     said = capsys.readouterr().out
-    found = re.search(r"blocking \(velocity_mismatch\).* load with --rate ([\d.]+) ", said)
+    found = re.search(r"do: jointid identify .* --rate ([\d.]+)", said)
     assert found is not None
     assert float(found[1]) == pytest.approx(200.0, rel=0.01)
     assert main([*line, found[1]]) == 0
@@ -104,7 +104,7 @@ def test_a_column_without_evidence_is_no_torque(
     path = log(tmp_path / "a.csv", f"time_s,position_rad,{header}", TIME, ANGLE, EFFORT)
     _, said = answer(["identify", path], capsys)
     assert said.endswith(
-        "load with --column torque=HEADER or load with --column current=HEADER (if it is in amperes)\n"
+        "load with --column torque=HEADER; or load with --column current=HEADER (if it is in amperes)\n"
     )
 
 

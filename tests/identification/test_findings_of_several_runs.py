@@ -118,7 +118,7 @@ def test_a_run_whose_torque_is_scaled_is_named_and_spoils_the_values(factor: flo
     odd = changed(RUNS[2], torque=factor * np.asarray(RUNS[2].torque))
     estimate = jid.identify([*RUNS[:2], odd, RUNS[3]])
     (found,) = coded(estimate.findings, "other_run")
-    assert "(run_2) explains" in found.cause
+    assert "(run_2): with it" in found.title
     assert found.severity == "blocking"
     assert estimate.verdict.level == "not usable"
 
@@ -126,7 +126,7 @@ def test_a_run_whose_torque_is_scaled_is_named_and_spoils_the_values(factor: flo
 def test_two_runs_that_contradict_each_other_are_both_named() -> None:
     odd = changed(RUNS[1], torque=np.asarray(RUNS[1].torque) + 1.5)
     (found,) = coded(jid.identify([RUNS[0], odd]).findings, "other_run")
-    assert "(run_0 and run_1) explains" in found.cause
+    assert "(run_0 and run_1): with it" in found.title
 
 
 def test_a_run_with_a_little_more_friction_is_worth_a_word() -> None:

@@ -64,7 +64,7 @@ def test_gravity_tells() -> None:
         recording(DRIVE + gravity), model=jid.Model.parse("coulomb_viscous:asymmetric:gravity=free")
     )
     assert "torque_offset" not in estimate.parameters
-    assert "torque_offset" in estimate.report()
+    assert "torque_offset" in estimate.report(verbose=True)
     for name, true in {
         "coulomb_positive": 12.0,
         "coulomb_negative": 8.0,

@@ -18,6 +18,7 @@ from jointid.hardware import Bench, EmulatedBus, Session, emulated_devices
 from jointid.hardware.elmo import ElmoDrive
 from jointid.hardware.proof.certificate import Certificate
 from jointid.hardware.proof.result import FirstMotion
+from jointid.hardware.session.watchdog import Watchdog
 from jointid.joints.reading import load_estimate
 from jointid.recording.file_remarks import remarks
 from jointid.robot.facts import read_facts
@@ -76,7 +77,12 @@ def _certificate() -> Example:
     bench = Bench.load(_BENCH)
     identity = {"drive": "Elmo SimplIQ", "node": 127, "serial": "1959", "peak_current": 8.0}
     passed = FirstMotion(
-        passed=True, travel=0.005, breakaway=(45.7, 44.9), inertia=2.8, identity=identity
+        passed=True,
+        travel=0.005,
+        breakaway=(45.7, 44.9),
+        inertia=2.8,
+        identity=identity,
+        drive_watchdog=Watchdog(time=0.05, fed_by="heartbeat", then="off", read_back=True),
     )
     with TemporaryDirectory() as folder:
         path = Path(folder) / "joint.certificate.toml"

@@ -37,7 +37,7 @@ def _run(path: Path) -> tuple[ModuleType, jid.Estimate]:
 @pytest.mark.parametrize("path", EXAMPLES[:2], ids=lambda path: path.stem)
 def test_example_runs(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _run(path)
-    assert "parameter" in capsys.readouterr().out
+    assert "coulomb" in capsys.readouterr().out
 
 
 def test_arrays_example_recovers_what_it_made() -> None:

@@ -1,7 +1,5 @@
 """What a notebook shows for a result that has no tables of its own: its report."""
 
-from html import escape
-
 
 class Shown:
     """A result with a `report()`, which a notebook shows."""
@@ -13,4 +11,6 @@ class Shown:
         raise NotImplementedError
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         return f"<pre>{escape(self.report())}</pre>"

@@ -29,6 +29,11 @@ class Demonstration:
         What is known of it, and the model.
     published : mapping of str to float
         Values by the authors of the log (SI).
+
+    Examples
+    --------
+    >>> jid.demo().joint.name
+    'KUKA KR300 R2500, joint 1'
     """
 
     recording: Recording

@@ -9,10 +9,11 @@ from jointid.base.error_text import printable
 from jointid.base.errors import InputError
 from jointid.estimate.answers import cut, findings, in_line, joint_lines
 from jointid.estimate.findings import Finding
+from jointid.estimate.objections import acts_against_motion
 from jointid.estimate.verdict import LEVELS
 from jointid.joints.result import FAILED, JointEstimates, JointResult
 
-_SHOWN = ("coulomb", "viscous", "inertia")
+_SHOWN = 3  # values in a line
 _FINDINGS = 1
 _SEVERITIES = ("blocking", "warning", "info")
 _ORDER = (*LEVELS, FAILED)
@@ -59,10 +60,13 @@ def _level(result: JointResult) -> str:
 
 def _row(result: JointResult) -> list[str]:
     estimate = result.estimate
-    cells = [
-        in_line(None if estimate is None else estimate.parameters.get(name)) for name in _SHOWN
-    ]
-    return [result.name, _level(result), *cells]
+    if estimate is None:
+        return [result.name, _level(result), *[""] * _SHOWN]
+    # Friction first: the others are of the links, too.
+    values = [p for p in estimate.parameters.values() if p.vary]
+    ordered = sorted(values, key=lambda p: not acts_against_motion(p.name))
+    cells = [in_line(p) for p in ordered[:_SHOWN]]
+    return [result.name, _level(result), *cells, *[""] * (_SHOWN - len(cells))]
 
 
 def _findings(result: JointEstimates) -> list[tuple[str, Finding]]:

@@ -25,8 +25,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         return  # a known inertia shows the side: what contradicts it is a wrong scale
     if stated.get("assumed_side") == "torque" and isinstance(ratio, int | float):
         yield TORQUE_SIDE.finding(
-            "a motion is stated to be the motor's, and nothing says whether the torque is, too; it is taken as the "
-            f"joint's: if it is the motor's, every torque, inertia and friction is {abs(ratio):.4g} times as large",
+            f"is the torque the motor's, too? Then all values are {abs(ratio):.4g} times as large",
             Action("call", {"side": {"torque": "motor"}}, "if the drive reports it", "load"),
             Action(
                 "call",
@@ -34,6 +33,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
                 "if it is measured or computed behind the gear",
                 "load",
             ),
+            details="the motion is stated to be the motor's, and the torque is taken as the joint's",
             evidence={"gear_ratio": Measured(abs(ratio))},
         )
 

@@ -118,7 +118,7 @@ def raise_if_far_off(recordings: Sequence[Recording]) -> None:
     """Raise `InputError` if a velocity is so large that the joint seems to stand still beside it."""
     for number, run in enumerate(recordings):
         found = inspect(run).found.agreement
-        if found is not None and abs(found.scale) < 1.0 / _OTHER_UNIT:
+        if found is not None and 0.0 < abs(found.scale) < 1.0 / _OTHER_UNIT:
             raise InputError(
                 f"the position moves by {found.scale:.4g} times its integral",
                 argument="velocity",
