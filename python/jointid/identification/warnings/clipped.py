@@ -99,12 +99,13 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         if name == "sensor":
             yield SENSOR_CLIPPED.finding(
                 f"the sensor rests on its limit in {percent(share)} of the samples",
+                # A design cannot always keep the sensor's range, so it does not stand first.
+                Action("inspect", text="the sensor's range: widen it, or load the link less"),
                 other_motion(
                     evidence,
                     "motion with a smaller load on the link",
                     sensor_range=_sensed(evidence, signal),
                 ),
-                Action("inspect", text="the sensor's range, and widen it"),
                 details="it then shows less than the torque",
                 evidence={"clipped": Measured(share)},
                 parameters=evidence.sensor_parameters,

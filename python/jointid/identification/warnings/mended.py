@@ -41,7 +41,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             )
         elif mend.code == HELD_TORQUE.code:
             yield HELD_TORQUE.finding(
-                "the torque is taken for a command that is held between samples: the balance predicts better so",
+                "the torque is read as held between samples: so the balance predicts better",
                 Action(
                     "call", {"torque_hold": "zoh"}, text="so it is stated; linear if it is measured"
                 ),

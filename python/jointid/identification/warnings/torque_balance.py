@@ -43,12 +43,12 @@ _DEGREE = np.pi / 180.0
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if _is_unsigned(evidence):
         yield UNSIGNED_TORQUE.finding(
-            "the torque is never negative, although the joint moves both ways and the magnitude fits a torque that "
-            "changes its sign: it is recorded without its sign",
+            "the torque is never negative, though the joint moves both ways: its sign is missing",
             Action(
                 "inspect",
-                text="the driver's signed value (of a servo that has none, the sign of its position error)",
+                text="the driver's signed value, or the sign of a servo's position error",
             ),
+            details="the magnitude fits a torque that changes its sign",
         )
         return
     correlation = _torque_with_velocity(evidence)
