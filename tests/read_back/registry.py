@@ -335,6 +335,8 @@ OTHERS: dict[str, str] = {
     "base.schema": "what the readers above use",
     "base.toml_file": "what the readers above use",
     "cli.commands": "an estimate of this run",
+    "cli.explaining": "only which kind of file it is; tests/cli",
+    "cli.facts_advice": "lines of a facts file that was read before; tests/cli/test_facts_advice.py",
     "cli.robot": "only which kind of file it is; tests/cli/test_cli_robot.py",
     "cli.session": "a copy of the joint file, which was read before",
     "comparison.result": "an estimate of this run",
