@@ -1,6 +1,9 @@
 #include "bind/bind.hpp"
 
 PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
+  // Eigen divides products into blocks that fit the caches: of one size, so that every host has the
+  // same bits.
+  Eigen::setCpuCacheSizes(32 << 10, 1 << 20, 8 << 20);
   m.doc() = "The compiled core of jointid; use it through the package jointid.";
   m.attr("__version__") = JOINTID_VERSION;
 #if defined(__x86_64__) && defined(JOINTID_ZIG)

@@ -24,7 +24,7 @@ def compiled_by_gcc_12() -> bool:
     return versions == {b"12"} and b"clang version" not in content
 
 
-# NumPy's and the linear algebra's last bits are a processor family's own.
+# The last bits of NumPy are a processor family's own.
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="the table was made on x86-64")
 @pytest.mark.skipif(
     not compiled_by_gcc_12(), reason="bits are a build's own: the table was made with gcc 12"
