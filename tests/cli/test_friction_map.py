@@ -104,7 +104,9 @@ def test_the_report_says_what_is_not_in_it(
         # A column that nobody knows may be the position: a log, and no table of steady speeds.
         ("clock,speed,torque", [], "no position column"),
         ("time,speed,torque", [], "no position column"),
-        ("speed,torque", ["--save", "a.toml"], "a friction map, which is printed only"),
+        ("speed,torque", ["--save", "a.toml"], "--save: a table of steady speeds"),
+        ("speed,torque", ["--model", "stribeck"], "--model: a table of steady speeds"),
+        ("speed,torque", ["--where=speed=1"], "--where: a table of steady speeds"),
     ],
 )
 def test_other_tables_are_refused_as_before(
@@ -129,3 +131,27 @@ def test_too_few_rows_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[
     v = np.array([1.0, 2.0, 0.0])
     assert main(["identify", str(table(tmp_path / "a.csv", v, v))]) == 2
     assert "2 rows at 2 speeds other than 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("header", "options", "assumed"),
+    [
+        ("speed,torque", [], ["velocity", "torque"]),
+        ("rpm,torque_Nm", ["--column", "velocity=rpm"], ["velocity"]),
+        ("speed,torque_Nm", ["--unit", "velocity=rpm"], []),
+        ("speed,torque_Nm", ["--scale", "velocity=0.1"], []),
+    ],
+)
+def test_units_that_nobody_states_are_said(
+    header: str,
+    options: list[str],
+    assumed: list[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = table(tmp_path / "a.csv", SPEEDS, friction(SPEEDS), header)
+    assert main(["identify", str(path), *options]) == 0
+    said = capsys.readouterr().out
+    assert ("SI units assumed" in said) == bool(assumed)
+    assert main(["identify", str(path), *options, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["friction_map"]["assumed"] == assumed

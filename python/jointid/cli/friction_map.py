@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,20 @@ if TYPE_CHECKING:
     from jointid.estimate.steady_speeds import SteadyFriction
     from jointid.recording.columns import Column
 
-_OUTPUTS = ("save", "report")
+_USED = frozenset(
+    (
+        "--column",
+        "--unit",
+        "--scale",
+        "--topic",
+        "--group",
+        "--unpacked",
+        "--json",
+        "--verbose",
+        "--quiet",
+    )
+)
+"""Options that a table of steady speeds has; another one would change nothing."""
 
 
 def printed_map(paths: Sequence[Path], arguments: argparse.Namespace, error: InputError) -> None:
@@ -24,13 +38,13 @@ def printed_map(paths: Sequence[Path], arguments: argparse.Namespace, error: Inp
     found = _friction_map(paths, arguments)
     if found is None:
         raise error
-    for name in _OUTPUTS:
-        if getattr(arguments, name, None) is not None:
+    for word in arguments.typed:
+        option = word.partition("=")[0]
+        if option.startswith("--") and option not in _USED:
             raise InputError(
-                "a table of steady speeds and torques gives a friction map, which is printed only",
-                argument=name,
-                value=getattr(arguments, name),
-                remedy="leave it out; --json prints it for programs",
+                "a table of steady speeds and torques gives a friction map, which has no such option",
+                place=option,
+                remedy="leave it out; --json prints the map for programs",
             ) from None
     if arguments.json:
         import json
@@ -45,12 +59,13 @@ def _friction_map(paths: Sequence[Path], arguments: argparse.Namespace) -> Stead
 
     tables = [_steady(path, arguments) for path in paths]
     known = [each for each in tables if each is not None]
-    if len(known) < len(tables) or len({kind for _, _, kind in known}) > 1:
+    if len(known) < len(tables) or len({each[2] for each in known}) > 1:
         return None
     velocity = np.concatenate([each[0] for each in known])
     torque = np.concatenate([each[1] for each in known])
+    assumed = tuple(dict.fromkeys(signal for each in known for signal in each[3]))
     try:
-        return steady_friction(velocity, torque, known[0][2])
+        return replace(steady_friction(velocity, torque, known[0][2]), assumed=assumed)
     except InputError as error:
         raise error.at(", ".join(map(str, paths))) from None
 
@@ -68,8 +83,10 @@ def _add_friction(headers: Sequence[str], found: dict[str, list[Column]]) -> Non
             found["torque"] = [Column(index=other, unit=unit)]
 
 
-def _steady(path: Path, arguments: argparse.Namespace) -> tuple[np.ndarray, np.ndarray, str] | None:
-    """Velocity, torque and kind of a table that has these, and neither time nor position; None for any other."""
+def _steady(
+    path: Path, arguments: argparse.Namespace
+) -> tuple[np.ndarray, np.ndarray, str, list[str]] | None:
+    """Velocity, torque, kind, and the signals whose unit is assumed; None for a file that is no such table."""
     from jointid.recording.columns import candidates_of
     from jointid.recording.readers.loading import table_of
 
@@ -101,5 +118,8 @@ def _steady(path: Path, arguments: argparse.Namespace) -> tuple[np.ndarray, np.n
             v, tau = velocity.to_si(values[0]), torque.to_si(values[1])
             if not (np.isfinite(v).all() and np.isfinite(tau).all()):
                 return None
-            return v, tau, kind
+            stated = reading["scale"] or {}
+            signals = {"velocity": velocity, "torque": torque}
+            unstated = [n for n, c in signals.items() if c.unit is None and n not in stated]
+            return v, tau, kind, unstated
     return None

@@ -48,6 +48,8 @@ class SteadyFriction:
         What the friction misses of the torque [N·m or N].
     share : float
         The same, of the rms torque.
+    assumed : tuple of str
+        Signals without a stated unit, which are taken as SI.
     """
 
     values: Mapping[str, float]
@@ -59,6 +61,7 @@ class SteadyFriction:
     at_rest: int
     rms: float
     share: float
+    assumed: tuple[str, ...] = ()
 
     def document(self) -> dict[str, object]:
         """The map as JSON has it."""
@@ -71,7 +74,7 @@ class SteadyFriction:
             }
             for name, value in self.values.items()
         }
-        others = ("kind", "speeds", "directions", "rows", "at_rest", "rms", "share")
+        others = ("kind", "speeds", "directions", "rows", "at_rest", "rms", "share", "assumed")
         return {"friction_map": {"parameters": parameters} | {k: getattr(self, k) for k in others}}
 
     def report(self) -> str:
@@ -92,6 +95,8 @@ class SteadyFriction:
             "not in it  inertia and gravity: a table of steady speeds has no acceleration and no position; record "
             "time, position and torque of a motion for them",
         ]
+        if self.assumed:
+            lines.append(f"note       SI units assumed: {', '.join(self.assumed)}")
         if any(self.values[name] < 0.0 for name in self.values if name.startswith("coulomb")):
             lines.append(
                 "warning    friction is negative: a torque needs the sign of its speed; inspect the signs"
