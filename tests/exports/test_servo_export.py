@@ -72,6 +72,16 @@ def test_friction_of_the_load_is_refused(tmp_path: Path) -> None:
         jid.export(plain.identified, tmp_path / "servo.xml")
 
 
+def test_no_friction_of_the_load_is_no_loss(tmp_path: Path) -> None:
+    runs = bench_runs(replace(Truth(), load_friction=0.0), seed=12, runs=8)
+    plain = jid.identify_servo(runs, servo_joint(supply=7.25), model=PLAIN, draws=0)
+    values = {"load_friction": 0.0, "viscous": plain["viscous"], "coulomb": plain["coulomb"]}
+    model = jid.Model("coulomb_viscous", load_friction=True)
+    joint = plain.identified.replace(model=model).with_parameters(values)
+    path = jid.export(joint, tmp_path / "servo.xml")
+    assert "frictionloss" in Path(path).read_text()
+
+
 def test_the_numbers_are_in_the_simulator(tmp_path: Path) -> None:
     runs = bench_runs(Truth(), seed=13, runs=8)
     found = jid.identify_servo(runs, servo_joint(supply=7.25), model=PLAIN, draws=0)

@@ -55,7 +55,7 @@ def lost_terms(subject: Subject) -> tuple[str, ...]:
     lost += [
         f"load friction ({each.value:.4g} {unit} per {unit} of load)"
         for each in law.friction
-        if each.basis == "load"
+        if each.basis == "load" and each.value != 0.0
     ]
     for over, angle in (("ripple", "motor"), ("harmonics", "joint")):
         found = [each for each in law.harmonics if each.over == over]
