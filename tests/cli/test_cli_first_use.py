@@ -119,6 +119,7 @@ def test_an_emulated_session_leaves_the_joint_file_alone(
             "jointid identify: there is no option --modl; did you mean --model?; "
             "see jointid identify --help\n",
         ),
+        ("identify good.csv --gear 101", "there is no option --gear; did you mean --gear-ratio?"),
         ("info good.csv --quiet", "jointid info: there is no option --quiet; see jointid info"),
         ("sweep good.csv --tracking", "--simulate JOINT"),
         ("sweep good.csv --grid sensors.torque_noise=1", "--simulate JOINT"),

@@ -104,7 +104,9 @@ class CommandParser(argparse.ArgumentParser):
                 option = argument.partition("=")[0]
                 if option in _ELSEWHERE:
                     return f"there is no option {option}; {_ELSEWHERE[option]}"
-                close = closest(option, self._option_string_actions, cutoff=0.8)
+                known = self._option_string_actions
+                begun = [each for each in known if each.startswith(option)]
+                close = begun[0] if len(begun) == 1 else closest(option, known, cutoff=0.8)
                 return f"there is no option {option}" + (
                     f"; did you mean {close}?" if close else ""
                 )
