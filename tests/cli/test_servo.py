@@ -108,3 +108,26 @@ def test_what_a_servo_does_not_have_is_refused(
 def test_a_torque_joint_has_no_rollout(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", str(folder / "runs" / "run0.csv"), "--rollout"]) == 2
     assert "voltage" in capsys.readouterr().err
+
+
+def test_a_supply_with_its_unit_is_found(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    joint = ("--joint", folder / "servo.toml")
+    text = (folder / "all.csv").read_text()
+    for header in ("supply_V", "supply_A"):
+        (tmp_path / f"{header}.csv").write_text(text.replace("supply", header, 1))
+    right = answer(capsys, folder / "all.csv", "--by", "run", *joint)
+    volts = answer(capsys, tmp_path / "supply_V.csv", "--by", "run", *joint)
+    assert volts["parameters"] == right["parameters"]
+    command = ["identify", tmp_path / "supply_A.csv", "--by", "run", *joint]
+    assert main([*map(str, command)]) == 2
+    assert "or name its column in [drive.signals]" in capsys.readouterr().err
+
+
+def test_a_file_of_several_runs_is_read_whole(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["identify", folder / "all.csv", "--joint", folder / "servo.toml"]
+    assert main([*map(str, command)]) == 2
+    assert capsys.readouterr().err.endswith("; identify with --by run (all runs)\n")

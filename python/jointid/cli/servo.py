@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, with_terms
 from jointid.cli.joint_options import joint_of
@@ -133,7 +134,25 @@ def _load(arguments: argparse.Namespace, drive: VoltageDrive) -> list[Recording]
             for run in load_runs(path, by=arguments.by, extra=first, **reading)
         ]
     except InputError as error:
-        raise as_given(error, arguments) from None
+        raise _of_all_runs(as_given(error, arguments)) from None
+
+
+def _of_all_runs(error: InputError) -> InputError:
+    """An error about a file of several runs: all of them are one fit, which one run is too little for."""
+    every = [
+        replace(each, function="identify")
+        for each in error.remedy
+        if isinstance(each, Action) and each.function == "load_runs"
+    ]
+    if not every:
+        return error
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=tuple(every),
+    )
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
@@ -159,10 +178,15 @@ def _extra(
 ) -> dict[str, Any]:
     """Return which column each extra signal is: as given, as the joint file has it, or of its own name."""
     from jointid.joint.voltage_drive import SIGNALS
+    from jointid.recording.headers import parsed
     from jointid.recording.readers.loading import table_of
 
     headers = table_of(
         path, topic=arguments.topic, group=arguments.group, unpacked=arguments.unpacked
     ).headers
     own = {name: name for name in SIGNALS if name in headers}
+    for header in headers:
+        name, unit, _ = parsed(header)
+        if name == "supply" and unit is not None and unit.dimension == "voltage":
+            own.setdefault(name, header)
     return own | dict(drive.signals) | given

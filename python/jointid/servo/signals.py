@@ -153,7 +153,10 @@ def _supply(recording: Recording, drive: VoltageDrive, place: str) -> Array:
             "it is neither in the joint's drive nor in the recording",
             argument="supply",
             place=place,
-            remedy="give the supply's voltage in the joint file's [drive]",
+            remedy=(
+                "give the supply's voltage in the joint file's [drive]",
+                "name its column in [drive.signals]",
+            ),
         )
     return np.asarray(recording.extra["supply"])
 
