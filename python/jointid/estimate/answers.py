@@ -162,7 +162,8 @@ def explained(found: Finding, action: Callable[[Action], str] = str) -> list[str
 
 def _listed(codes: Sequence[str]) -> str:
     names = list(dict.fromkeys(codes))
-    more = f" and {len(names) - _NAMED} others" if len(names) > _NAMED else ""
+    rest = len(names) - _NAMED
+    more = f" and {rest} other{'s' * (rest > 1)}" if rest > 0 else ""
     return ", ".join(names[:_NAMED]) + more
 
 

@@ -48,8 +48,6 @@ def answer(
         *values(list({**ordered, **parameters}.values())),
     ]
     if rolled is not None:
-        lines.append(
-            f"closed loop: {np.degrees(rolled.median):.2f}° from the log, median of {len(rolled.runs)} runs"
-        )
+        lines.append(f"rollout: {np.degrees(rolled.median):.2f}° from the log, median of {runs}")
     lines += findings(estimate.findings, action, _FINDINGS, saved)
     return printable("\n".join(lines))
