@@ -193,6 +193,28 @@ def test_what_is_missing_is_named(runs: list[jid.Recording]) -> None:
         jid.identify_servo(changing, joint)
 
 
+def test_a_duty_in_percent_is_refused(runs: list[jid.Recording]) -> None:
+    percent = [changed(r, extra={**r.extra, "duty": 100.0 * r.extra["duty"]}) for r in runs]
+    with pytest.raises(
+        jid.InputError, match=r"duty: it reaches .*, and 1 is .* duty_scale = 0\.01"
+    ):
+        jid.identify_servo(percent, servo_joint(), draws=0)
+    joint = servo_joint()
+    assert joint.voltage is not None
+    scaled = joint.replace(voltage=replace(joint.voltage, duty_scale=0.01))
+    found = jid.identify_servo(percent, scaled, draws=0)
+    assert found["torque_per_voltage"] == pytest.approx(
+        TRUTH.values["torque_per_voltage"], rel=0.02
+    )
+
+
+def test_the_cause_comes_before_its_effects(runs: list[jid.Recording]) -> None:
+    degrees = [changed(r, position=np.degrees(r.position)) for r in runs]
+    first = jid.identify_servo(degrees, servo_joint()).warnings[0]
+    assert first.code == "poor_fit"
+    assert "the position's unit" in str(first.advice[0])
+
+
 def test_a_servo_is_refused_where_a_torque_is_needed(runs: list[jid.Recording]) -> None:
     with pytest.raises(jid.InputError, match="identify_servo"):
         jid.identify(runs, servo_joint())

@@ -33,7 +33,7 @@ TYPES = {
         FindingType(
             code="poor_fit",
             meaning="the model leaves more than 35 % of the load's torque",
-            advice="check scale and sign of the duty, the load, and the link's angle",
+            advice="check scale and sign of the duty, the position's unit, the load, and the link's angle",
         ),
     )
 }

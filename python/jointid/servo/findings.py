@@ -31,9 +31,9 @@ def findings_of(estimate: ServoEstimate, sought: Sought) -> tuple[Finding, ...]:
     found = [
         *_inseparable(estimate, sought),
         *_not_sensed(estimate),
+        *_poor_fit(estimate),  # before its effects
         *_at_bound(estimate),
         *_vague(estimate),
-        *_poor_fit(estimate),
     ]
     return tuple(sorted(found, key=lambda each: _RANK[each.severity]))
 
@@ -110,6 +110,9 @@ def _poor_fit(estimate: ServoEstimate) -> Iterator[Finding]:
     if estimate.relative_residual > _POOR:
         yield TYPES["poor_fit"].finding(
             f"the model leaves {percent(estimate.relative_residual)} of the load's torque unexplained",
-            Action("inspect", text="scale and sign of the duty, the load, and the link's angle"),
+            Action(
+                "inspect",
+                text="scale and sign of the duty, the position's unit, the load, and the link's angle",
+            ),
             evidence={"relative_residual": Measured(estimate.relative_residual)},
         )

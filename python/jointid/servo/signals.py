@@ -16,6 +16,9 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
+_LARGEST = 1.05
+"""Duty that rounding, or the last step of a counter, makes of 1."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ServoSignals:
@@ -115,7 +118,7 @@ def _run(recording: Recording, drive: VoltageDrive, number: int) -> ServoSignals
     if loop is not None:
         gain = loop.gain * _constant(extra.get("gain"), place)
     if "duty" in extra:
-        duty = extra["duty"] * drive.duty_scale
+        duty = _of_full_voltage(extra["duty"] * drive.duty_scale, place)
     elif loop is not None and reference is not None:
         late = np.interp(
             recording.time - loop.delay, recording.time, reference - recording.position
@@ -142,6 +145,19 @@ def _run(recording: Recording, drive: VoltageDrive, number: int) -> ServoSignals
         gain=gain,
         logged="duty" in extra,
     )
+
+
+def _of_full_voltage(duty: Array, place: str) -> Array:
+    """Return a duty; refuse one in another unit, for then every value has its factor and the fit is as good."""
+    top = float(np.abs(duty).max())
+    if top > _LARGEST:
+        raise InputError(
+            f"it reaches {top:.4g}, and 1 is the full voltage",
+            argument="duty",
+            place=place,
+            remedy="state its scale in the joint file's [drive]: duty_scale = 0.01 is of percent",
+        )
+    return duty
 
 
 def _supply(recording: Recording, drive: VoltageDrive, place: str) -> Array:
