@@ -63,3 +63,36 @@ def test_without_the_position_loop_nothing_is_said_of_the_command() -> None:
     assert found.command_lag is None
     # The bias that the loop takes away.
     assert found["torque_constant"] > 1.05 * TRUTH.torque_constant
+
+
+def sampled_runs(row: float, step: float = 1e-4) -> jid.Recording:
+    """A motor without free runs, on a duty that jumps at each row and stands still until the next."""
+    k_t, resistance, inertia, viscous, coulomb = 0.9, 3.0, 0.004, 0.02, 0.05
+    mass, length, gain, supply = 0.3, 0.12, 6.0, 12.0
+    position = velocity = duty = 0.0
+    rows = []
+    for k in range(round(15.0 / step)):
+        t = k * step
+        if k % round(row / step) == 0:
+            wanted = 0.9 * np.sin(2.2 * t) + 0.5 * np.sin(5.3 * t) + 0.2 * np.sin(11.0 * t)
+            duty = float(np.clip(gain * (wanted - position), -1.0, 1.0))
+            rows.append((t, position, duty))
+        torque = k_t / resistance * (supply * duty - k_t * velocity) - viscous * velocity
+        torque -= mass * 9.80665 * length * np.sin(position)
+        friction = coulomb * np.sign(velocity) if velocity else np.clip(torque, -coulomb, coulomb)
+        after = velocity + step * (torque - friction) / (inertia + mass * length**2)
+        velocity = 0.0 if velocity * after < 0.0 and abs(torque) < coulomb else after
+        position += step * velocity
+    time, positions, duties = np.array(rows).T
+    return jid.Recording(time=time, position=positions, extra={"duty": duties})
+
+
+def test_half_a_row_of_lead_describes_a_duty_that_is_held() -> None:
+    link = jid.Link(mass=0.3, centre_of_mass=0.12, angle=-np.pi / 2)
+    joint = jid.Joint(link=link, voltage=jid.VoltageDrive(supply=12.0, resistance=3.0))
+    run = sampled_runs(0.01)
+    found = jid.identify_servo(run, joint, lead=0.005, draws=0)
+    for name, value in {"torque_constant": 0.9, "inertia": 0.004, "viscous": 0.02}.items():
+        assert found[name] == pytest.approx(value, rel=0.04), name
+    # What docs/servos.md says of it otherwise.
+    assert jid.identify_servo(run, joint, draws=0)["inertia"] == pytest.approx(0.00537, rel=0.03)
