@@ -77,7 +77,7 @@ class VoltageDrive:
         It gives the duty where none is logged, and closes the loop in a rollout. Default: not known.
     signals : mapping of str to str
         Which columns hold the extra signals "duty", "supply", "driven" (0 where the motor turns freely) and "gain".
-        Default: columns of these names, as far as there are any.
+        Default: none; the command line then takes columns of these names, as far as there are any.
 
     Raises
     ------
