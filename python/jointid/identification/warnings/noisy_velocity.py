@@ -16,8 +16,8 @@ from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="noise in the velocity moves a parameter by more than 2 %, or is large against the velocity's change over "
-    "every admissible window. The estimated inertia is then too small",
+    meaning="noise in the velocity moves a parameter by more than 2 % and its standard error, or is large against "
+    "the velocity's change over every admissible window. The estimated inertia is then too small",
     advice="record the position with a finer resolution, or record longer. Leave out a velocity column that is noisier "
     "than the position's rate",
 )
@@ -36,7 +36,11 @@ _DERIVED = Action(
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    moved = moved_by_noise(evidence)
+    moved = {
+        name: share
+        for name, share in moved_by_noise(evidence).items()
+        if _size_of(evidence, name) >= (evidence.parameters[name].stderr or 0.0)
+    }
     # Running integrals have no edges whose noise would count.
     limited = evidence.penalty.noise_limited and not evidence.penalty.cumulative
     if not (limited or moved):
@@ -100,12 +104,18 @@ def moved_by_noise(evidence: Evidence) -> dict[str, float]:
 
 def _size(evidence: Evidence, name: str, share: float) -> str:
     """How far the noise moves a value: a share of it, or an amount where it is near zero."""
-    p, effect = evidence.parameters[name], evidence.velocity_effect
-    usual = abs(p.value) >= p.uncertainty and share <= _MANY
-    if effect is None or usual:
+    p = evidence.parameters[name]
+    if abs(p.value) >= p.uncertainty and share <= _MANY:
         return percent(share)
-    size = float(effect.size[list(evidence.penalty.names).index(name)])
-    return f"{two_digits(size)} {p.unit}".rstrip()
+    return f"{two_digits(_size_of(evidence, name))} {p.unit}".rstrip()
+
+
+def _size_of(evidence: Evidence, name: str) -> float:
+    """How far the noise moves a value, in its unit; 0 where no effect of the noise is known."""
+    effect = evidence.velocity_effect
+    if effect is None:
+        return 0.0
+    return float(effect.size[list(evidence.penalty.names).index(name)])
 
 
 def _resolution(evidence: Evidence) -> str:
