@@ -162,11 +162,11 @@ def test_the_simplest_within_one_standard_error_wins() -> None:
     ]
     judged, winner, reason = judge(entries)
     assert judged[winner].model == "also_middle"
-    assert "simplest model within one standard error of the best, rich with 10 ± 1 %" in reason
+    assert "simplest model within one standard error of the best, rich with 10.0 ± 1.0 %" in reason
     assert [entry.reason.split(",")[0] for entry in judged] == [
-        "not significantly better than the winner",
-        "not significantly better than the winner",
-        "more than one standard error worse than the best",
+        "not significantly better",
+        "not significantly better",
+        "worse than the best by more than one standard error",
         "winner",
     ]
 

@@ -1,9 +1,12 @@
 """Models that nobody names are compared with the gravity that `identify` would choose."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.estimate.answers import COLUMNS
 
 TIME = np.arange(0.0, 12.0, 0.004)
 
@@ -33,3 +36,12 @@ def test_a_stated_gravity_and_named_models_stay() -> None:
         jid.compare_models(loaded, models=["coulomb_viscous", "stribeck"], folds=3),
     ):
         assert {row.spec.resolved.gravity for row in found.rows} == {"none"}
+
+
+def test_the_reason_of_each_model_is_whole_in_the_report() -> None:
+    found = jid.compare_models(recording(4.0), models=["coulomb_viscous", "stribeck"], folds=3)
+    long = "not eligible: " + "a bound of a parameter, " * 8 + "at last"
+    rows = (replace(found.rows[0], reason=long), *found.rows[1:])
+    lines = replace(found, rows=rows).report().splitlines()
+    assert max(map(len, lines)) <= COLUMNS
+    assert long in " ".join(" ".join(lines).split())

@@ -9,6 +9,7 @@ from jointid.comparison.load_evidence import load_refusal
 from jointid.comparison.result import ComparedModel
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.student import quantile
+from jointid.estimate.wording import percent_with_error
 from jointid.problem.constant_torque import undivided
 
 _ONE_ERROR = 0.841345  # probability below one standard error of a normal distribution
@@ -32,19 +33,18 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
     limit = best.score + best.stderr * quantile(_ONE_ERROR, max(1, len(best.fold_scores) - 1))
     near = [row for row in entrants if row.score <= limit]
     winner = min(near, key=lambda row: (row.parameters, row.score))
-    best_score = f"{100.0 * best.score:.3g} ± {100.0 * best.stderr:.2g} %"
+    best_score = percent_with_error(best.score, best.stderr)
     judged = []
     for row in rows:
         reason = row.reason
         if row is winner:
             reason = "; ".join(part for part in (reason, "winner") if part)
         elif row.eligible and row.score > limit:
-            reason = f"more than one standard error worse than the best, {best_score}"
+            reason = "worse than the best by more than one standard error"
         elif row.eligible:
-            instead = f"{row.parameters} parameters instead of {winner.parameters}"
-            if row.parameters == winner.parameters:
-                instead = "the same number of parameters"
-            reason = f"not significantly better than the winner, with {instead}"
+            more = row.parameters - winner.parameters
+            count = f"{more} more parameter{'s' * (more != 1)}" if more else "as many parameters"
+            reason = f"not significantly better, with {count}"
         judged.append(replace(row, reason=reason))
     count = f"{winner.parameters} parameter{'s' * (winner.parameters != 1)}"
     if winner is best:

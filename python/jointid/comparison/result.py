@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Callable, Mapping
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.base.frames import data_frame
 from jointid.base.values import dataclass
-from jointid.estimate.answers import COLUMNS, cut, findings, purposes
+from jointid.estimate.answers import COLUMNS, findings, purposes
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import residual_text
-from jointid.estimate.wording import rounded, two_digits
+from jointid.estimate.wording import percent_with_error
 from jointid.joint.model import Model
 
 if TYPE_CHECKING:
@@ -117,11 +117,13 @@ class Comparison:
         if verbose:
             return self._whole()
         first = f"{self._title()}: {self.winner} predicts held-out motion best"
-        names = max(len(row.model) for row in self.rows[:_SHOWN])
         lines = [first if len(first) <= COLUMNS else f"{self.winner} predicts held-out motion best"]
-        for row in sorted(self.rows, key=lambda each: each.score)[:_SHOWN]:
-            score = _percent_with_error(row.score, row.stderr)
-            lines.append(cut(f"  {row.model.ljust(names)}  {score.rjust(12)}  {row.reason}"))
+        shown = sorted(self.rows, key=lambda each: each.score)[:_SHOWN]
+        scores = [percent_with_error(row.score, row.stderr) for row in shown]
+        names, size = max(len(row.model) for row in shown), max(map(len, scores))
+        for row, score in zip(shown, scores, strict=True):
+            line = f"  {row.model.ljust(names)}  {score.rjust(size)}  {row.reason}"
+            lines += wrap(line, COLUMNS, subsequent_indent="      ")
         if len(self.rows) > _SHOWN:
             lines.append(f"  and {len(self.rows) - _SHOWN} more models")
         verdict = self.estimate.verdict
@@ -235,12 +237,6 @@ class Comparison:
             )
             for row in self.rows
         ]
-
-
-def _percent_with_error(share: float, stderr: float) -> str:
-    if not 0.0 < stderr < math.inf:
-        return f"{100.0 * share:.3g} %"
-    return f"{rounded(100.0 * share, 100.0 * stderr)} ± {two_digits(100.0 * stderr)} %"
 
 
 def _row(row: ComparedModel) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 import math
 
 _FAR_BELOW = 1e-3  # errors: such a value is nothing
+_MOST_DIGITS = 7  # of a value with a tiny error
 
 
 def percent(share: float) -> str:
@@ -33,8 +34,19 @@ def rounded(value: float, stderr: float) -> str:
     """A value with the digits that its standard error, above 0 and finite, has: 2030 with one of 170, 7.74 with .21."""
     error = two_digits(stderr)
     if "e" in error:
-        return f"{0.0 if abs(value) < _FAR_BELOW * stderr else value:.3g}"
+        if abs(value) < _FAR_BELOW * stderr:
+            return "0"
+        digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(stderr)) + 2
+        text = f"{value:#.{min(max(1, digits), _MOST_DIGITS)}g}"
+        return text.rstrip(".").replace(".e", "e")
     behind = len(error.partition(".")[2])
     if not behind:  # an error of 1700 leaves hundreds
         behind = min(0, 2 - len(error))
     return f"{round(value, behind):.{max(behind, 0)}f}"
+
+
+def percent_with_error(share: float, stderr: float) -> str:
+    """A share with its standard error, in per cent; alone, where the error is not known."""
+    if not 0.0 < stderr < math.inf:
+        return f"{100.0 * share:.3g} %"
+    return f"{rounded(100.0 * share, 100.0 * stderr)} ± {two_digits(100.0 * stderr)} %"
