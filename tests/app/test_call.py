@@ -53,7 +53,7 @@ def test_stretches_are_left_out_and_the_program_does_the_same() -> None:
 
 
 def test_nothing_left_is_an_error() -> None:
-    with pytest.raises(jid.InputError, match="nothing is left"):
+    with pytest.raises(jid.InputError, match="no samples left"):
         Call(file=LOG, left_out=((-1.0, 100.0),)).recordings()
 
 

@@ -61,7 +61,7 @@ def test_accepted(kind: Kind, value: Any) -> None:
         (Text(), 1, "x: this is 1: text is expected"),
         (Text(longest=2), "abc", "x: 3 characters, at most 2"),
         (Text(known=("a", "b")), "c", "x: this is 'c': known are a, b"),
-        (Text(), "\ud800", "x: half a character"),
+        (Text(), "\ud800", "x: the text has half a character"),
         (Flag(), 1, "x: this is 1: true or false"),
         (OrNull(Flag()), 0, "x: this is 0: true or false"),
         (ListOf(NUMBER), (1,), r"x: this is \(1,\): a list is expected"),
@@ -77,7 +77,7 @@ def test_accepted(kind: Kind, value: Any) -> None:
         (RECORD, {"a": 1, "b": 2}, r"x\.b: this is 2: true or false"),
         (Record({}, other=Plain()), {"a" * 300: 1}, "x: 300 characters"),
         (Plain(), [{"a": float("inf")}], r"x\[0\]\.a: this is inf"),
-        (Plain(), {"a": "\udfff"}, r"x\.a: half a character"),
+        (Plain(), {"a": "\udfff"}, r"x\.a: the text has half a character"),
     ],
 )
 def test_refused(kind: Kind, value: Any, message: str) -> None:

@@ -49,7 +49,7 @@ def test_comments_stand_behind_keys_and_tables() -> None:
         (b"a = 1\na = 2", r"Cannot overwrite a value \(end of document\)"),
         (b"a = 1\nb 2\n", r"line 2"),
         (b"a = " + b"9" * 5000, "not TOML: .*digit"),
-        (b"a = " + b"[" * 40 + b"]" * 40, "not TOML of ours: nested too deeply"),
+        (b"a = " + b"[" * 40 + b"]" * 40, "not TOML of jointid: nested too deeply"),
         (b"a = " + b"[" * 100_000, "not TOML: it is nested too deeply"),
         (b"\xff\xfe", "not text in UTF-8"),
     ],

@@ -189,7 +189,7 @@ def test_a_copy_of_the_bench_is_not_parted_from_its_motion(
     capsys.readouterr()
     assert main([*words, "elsewhere/joint.toml"]) == 2
     said = capsys.readouterr().err
-    assert "--save elsewhere/joint.toml: its session would look for motion.toml" in said
+    assert "--save elsewhere/joint.toml: the motion file motion.toml is in the folder of" in said
     assert main([*words, "known.toml"]) == 0
     assert Bench.load("known.toml").trajectory == Bench.load(bench).trajectory
 

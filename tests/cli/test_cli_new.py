@@ -68,7 +68,7 @@ def test_nothing_is_overwritten(capsys: pytest.CaptureFixture[str]) -> None:
     Path("a.toml").write_text("mine", encoding="utf-8")
     code, sentence = answer(["new", "a.toml"], capsys)
     assert code == 2
-    assert "a.toml: it exists, and is not overwritten" in sentence
+    assert "a.toml: the file exists and is not overwritten" in sentence
     assert Path("a.toml").read_text(encoding="utf-8") == "mine"
 
 

@@ -245,7 +245,7 @@ def test_the_joint_is_not_moved_with_values_that_cannot_be_used(
 
 def test_a_recording_that_nobody_keeps_is_not_made(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(EXAMPLE), "--emulate", "--cycles", "0"]) == 2
-    assert "--cycles 0: 0 cycles only record" in capsys.readouterr().err
+    assert "--cycles 0: with 0 cycles the session only records" in capsys.readouterr().err
 
 
 def test_json_tells_how_a_run_ended(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

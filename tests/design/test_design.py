@@ -54,7 +54,7 @@ def test_the_summary_has_each_error_the_weakest_and_the_limits() -> None:
                 "controller": jid.Pd(stiffness=2e4, damping=400.0),
                 "control_period": 2e-3,
             },
-            "assumes an encoder of 8000 counts a motor turn, velocity from its counts, ripple 0.2; "
+            "assumes an encoder of 8000 counts per motor revolution, velocity from its counts, ripple 0.2; "
             "controller pd with stiffness 2e+04, damping 400, every 2 ms",
         ),
         (

@@ -151,7 +151,7 @@ def test_what_cannot_be_asked_for(poor: jid.Estimate, first: jid.Recording) -> N
         poor.next_motion({"position": (-1.0, 1.0)})
     nothing = np.zeros((0, 0))
     held = dataclasses.replace(poor, free=(), covariance=nothing, information=nothing)
-    with pytest.raises(jid.InputError, match="nothing is free that a motion could tell more of"):
+    with pytest.raises(jid.InputError, match="the estimate has no free parameter, so no motion"):
         held.next_motion(LIMITS)
     bare = jid.identify(first)
     with pytest.raises(jid.InputError, match="the joint has no link; give a joint with its link"):

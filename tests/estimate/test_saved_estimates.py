@@ -180,7 +180,7 @@ def test_the_path_is_named() -> None:
     ("path", "junk", "reason"),
     [
         (("free", 0), '"coulomb"', "there twice"),
-        (("free", 0), '"current"', "none of the parameters"),
+        (("free", 0), '"current"', "this is not a parameter"),
         (("settings", "terms", 0), '"ripple_cos_2"', "no term with a value"),
         (("settings", "terms", 0), '"friction"', "no term with a value"),
         (("parameters", "coulomb", "name"), '"static"', "not the name"),

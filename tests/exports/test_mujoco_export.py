@@ -111,7 +111,7 @@ def test_the_numbers_are_in_the_simulator(tmp_path: Path) -> None:
 
 def test_what_mujoco_cannot_express_is_refused_by_name(tmp_path: Path) -> None:
     path = tmp_path / "joint.xml"
-    with pytest.raises(jid.InputError, match="Coulomb and viscous friction only") as refused:
+    with pytest.raises(jid.InputError, match="only Coulomb and viscous friction") as refused:
         jid.export(EVERYTHING, path, speed=1.0)
     for lost in ("Stribeck", "two directions", "load friction", "motor's angle", "joint's angle"):
         assert lost in refused.value.reason

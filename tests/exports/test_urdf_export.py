@@ -106,7 +106,7 @@ def test_dynamics_and_limits_are_added(tmp_path: Path) -> None:
 
 
 def test_what_urdf_cannot_express(tmp_path: Path) -> None:
-    with pytest.raises(jid.InputError, match="urdf has Coulomb and viscous friction only"):
+    with pytest.raises(jid.InputError, match="urdf has only Coulomb and viscous friction"):
         jid.export(shipped_estimate(), tmp_path / "j.urdf")
     path = jid.export(shipped_estimate(), tmp_path / "j.urdf", approximate=True)
     assert "lost: Stribeck friction" in path.read_text(encoding="utf-8")

@@ -278,7 +278,7 @@ def test_a_session_takes_its_motion_from_a_file_beside_the_bench(
 @pytest.mark.parametrize(
     ("motion", "more", "wording"),
     [
-        (MOTION, "duration = 3.0", "duration: the motion is that of the file"),
+        (MOTION, "duration = 3.0", "duration: the file holds the whole motion"),
         ("", "", r"motion\.toml: trajectory: this is missing"),
         (MOTION.replace("duration = 8.0", "duration = 1e5"), "", "at most 10000 s is expected"),
         (

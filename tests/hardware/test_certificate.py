@@ -224,7 +224,7 @@ def test_no_certificate_without_a_watchdog_that_is_known(bench: Bench) -> None:
     with pytest.raises(InputError, match="the drive declares no watchdog"):
         Certificate.of(bench, passed, NOW)
     unread = replace(passed, drive_watchdog=replace(WATCHDOG, read_back=False))
-    with pytest.raises(InputError, match="--watchdog tries it"):
+    with pytest.raises(InputError, match="test it with --watchdog"):
         Certificate.of(bench, unread, NOW)
     seen = Certificate.of(bench, replace(unread, watchdog=0.0505), NOW)
     assert seen.watchdog["read_back"] is False

@@ -27,8 +27,8 @@ SOON = 10 * PERIOD
 ON = bytes.fromhex("4D 4F 00 00 01 00 00 00")
 AMPERE = bytes.fromhex("54 43 00 80 00 00 80 3F")
 FOREIGN = {
-    "heartbeat": (OURS, b"\x05", "beats as node 1"),
-    "boot-up": (OURS, b"\x00", "beats as node 1"),
+    "heartbeat": (OURS, b"\x05", "sends the heartbeat of node 1"),
+    "boot-up": (OURS, b"\x00", "sends the heartbeat of node 1"),
     "torque": (COMMAND, AMPERE, "TC = 1 "),
     "question": (COMMAND, b"SR\x00\x00", "SR "),
     "motor on": (COMMAND, ON, "MO = 1 "),
@@ -145,7 +145,7 @@ def test_where_our_own_frames_come_back_a_foreign_one_is_told_from_them() -> Non
             bus.transmit(can.Message(arbitration_id=OURS, data=b"\x05", is_extended_id=False))
             break
     bus.sleep_until(bus.now() + PERIOD)
-    with pytest.raises(DriveFaultError, match="beats as node 1") as found:
+    with pytest.raises(DriveFaultError, match="sends the heartbeat of node 1") as found:
         drive.read(0.5 * PERIOD)
     assert found.value.kind == "foreign_master"
 

@@ -83,7 +83,7 @@ JOINT = Path(__file__).resolve().parents[1] / "canlab" / "bench.toml"
     ("options", "complaint"),
     [
         (("--rest", "0.5"), "--rest"),
-        (("--json",), "does not tell what happens to it"),
+        (("--json",), "reports no events"),
     ],
 )
 def test_bad_input_of_emulate_is_refused(

@@ -146,7 +146,7 @@ def test_position_that_repeats_after_motion_is_an_encoder_that_hangs() -> None:
     repeated(guard(), 0.11, 0.0, 10)
     error = stopped(lambda: repeated(guard(), -0.11, 0.0, 11))
     assert (error.limit, error.measured, error.allowed) == ("repeated_positions", 11, 10)
-    assert "0.110 rad/s fast before" in str(error)
+    assert "its speed was 0.110 rad/s before" in str(error)
     repeated(guard(), 0.09, 0.0, 100)  # friction may have stopped it
 
 

@@ -249,7 +249,7 @@ def test_a_late_answer_leaves_no_negative_time() -> None:
         assert 0.1 * PERIOD < found.value.allowed < 0.51 * PERIOD
         drive.command(0.0)
     assert not [text for text in said if " -" in text or "−" in text]
-    assert any("no time is left" in text for text in said)
+    assert any("is left for the next" in text for text in said)
 
 
 def test_a_changed_echo_stops_a_session_and_says_by_how_much() -> None:

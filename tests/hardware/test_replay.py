@@ -164,7 +164,7 @@ def test_a_log_of_another_session_is_refused(
     other = recording.with_signals(position=position)
     with pytest.raises(
         jid.InputError,
-        match=r"row 40 of the recording has the position .* rad, the frames .*; cycles_before=\d+ takes",
+        match=r"row 40 of the recording has the position .* rad, but the frames have .*; cycles_before=\d+ takes",
     ):
         jid.hardware.replay(log, JOINT, recording=other)
     again = jid.hardware.replay(
@@ -302,7 +302,11 @@ def test_missing_cycles_are_counted(
     ("name", "content", "sentence"),
     [
         ("run.txt", "", r"run\.txt: .*a frame log ends in \.log, \.asc, \.blf"),
-        ("run.log", "(1.0) can0 080# T\nnonsense\n", r"run\.log: what follows frame 1 is no frame"),
+        (
+            "run.log",
+            "(1.0) can0 080# T\nnonsense\n",
+            r"run\.log: the data after frame 1 are not a frame",
+        ),
         ("run.log", "", r"run\.log: 0 cycles after the first 0; at least 8 are expected"),
         ("run.asc", None, r"run\.asc: there is no such file"),
     ],

@@ -76,10 +76,10 @@ def fast_at_the_edge(bench: EmulatedSession) -> None:
 CASES: dict[str, tuple[Prepare, str]] = {
     "not homed": (with_elmo(slipped_counts=-(10**6)), "is it homed"),
     "trajectory outside": (limited(position=(-0.2, 0.6)), "outside -0.2000 to 0.6000 rad"),
-    "trajectory too fast": (limited(velocity=1.0), "rad/s fast, more than 1 rad/s"),
+    "trajectory too fast": (limited(velocity=1.0), "rad/s, more than 1 rad/s"),
     "too fast at the edge": (
         fast_at_the_edge,
-        r"too fast to the edge: .* would stop at .* outside -0\.5000 to 0\.5000 rad",
+        r"too fast near the edge of the window: .* would stop at .* outside -0\.5000 to 0\.5000 rad",
     ),
     "torque beyond": (open_loop, "asks for 170 N·m, more than 160 N·m"),
     "peak current": (strong, r"PL\[1\] is 9 A, the session allows 8 A"),

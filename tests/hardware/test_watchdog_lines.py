@@ -180,7 +180,7 @@ def a_drive_that_does_not_take_an_object_is_refused() -> None:
 
 
 def a_period_that_is_too_long_for_the_heartbeat_is_refused() -> None:
-    with pytest.raises(DriveFaultError, match="too long for a heartbeat"):
+    with pytest.raises(DriveFaultError, match="is too long: each cycle sends the heartbeat"):
         Bench().drive.connect(0.4 * AWAITED)
 
 

@@ -172,7 +172,7 @@ def test_inertia_and_torque_over_an_angle_are_centred_in_its_range() -> None:
         (
             {"still": 0.3 + 1e-5 * np.random.default_rng(0).normal(size=len(V))},
             {"still": "coulomb@rate"},
-            "coulomb_of_still_rate.*not more than its own noise",
+            "coulomb_of_still_rate.*does not exceed its own noise",
         ),
         (
             {"a": V6, "b": MODEL, "sum": V6 + MODEL},

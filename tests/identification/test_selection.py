@@ -172,7 +172,7 @@ def test_what_needs_one_model_for_all_refuses_auto() -> None:
         jid.compare_models(recording(), models=("auto", "stribeck"))
     with pytest.raises(jid.InputError, match="name the model"):
         jid.OnlineIdentifier(model="auto", window=2.0)
-    with pytest.raises(jid.InputError, match="a model with a name is needed here"):
+    with pytest.raises(jid.InputError, match="name the model here"):
         jid.sweep(recording(), grid={"model": ["auto"]}, trials=1)
 
 

@@ -114,10 +114,10 @@ def test_a_finding_is_no_surer_of_another_joint_than_the_text() -> None:
 
 
 def test_a_long_remark_about_a_file_gives_its_reason_in_the_details() -> None:
-    cut = "the file ends early: its last record is cut, as after a recorder was killed"
+    cut = "the file ends early: its last record is cut off, as if the recorder was killed"
     run: Any = SimpleNamespace(metadata={"incomplete": cut, "empty_rows": 3}, name="")
     (finding,) = found("message_log", fake_evidence(recordings=(run,)))
     assert finding.title == "the file ends early"
     assert finding.details.startswith(
-        "its last record is cut, as after a recorder was killed; 3 row"
+        "its last record is cut off, as if the recorder was killed; 3 row"
     )

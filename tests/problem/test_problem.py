@@ -58,10 +58,10 @@ def test_what_is_no_recording(recordings: Any) -> None:
 def test_a_recording_is_not_counted_twice() -> None:
     copy = jid.Recording(**MOTION, torque=np.cos(7.0 * TIME), name="under another name")
     error = refused([RECORDING, copy])
-    assert (error.place, error.reason[:26]) == ("recording 1", "it is recording 0 once more"[:26])
+    assert (error.place, error.reason[:26]) == ("recording 1", "it is the same as recording 0"[:26])
     first, second = RECORDING[:1.0], RECORDING[1.0:]
     error = refused([first, second, RECORDING[1.0:]])
-    assert (error.place, error.reason[:26]) == ("recording 2", "it is recording 1 once more"[:26])
+    assert (error.place, error.reason[:26]) == ("recording 2", "it is the same as recording 1"[:26])
     for other in ({"torque_hold": "zoh"}, {"extra": {"q6_rate": np.cos(TIME)}}):
         listed([RECORDING, jid.Recording(**MOTION, torque=RECORDING.torque, **other)])
 

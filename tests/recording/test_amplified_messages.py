@@ -154,7 +154,7 @@ def test_plain_messages_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(unpacking, "LEAST", 100)
     monkeypatch.setattr(unpacking, "TIMES", 0)
     path = _db3(tmp_path / "a.db3", [_state(b"elbow")] * 3)
-    assert "unpacked it is larger than" in refused(path)
+    assert "unpacked file is larger than" in refused(path)
 
 
 def test_pages_that_name_each_other(tmp_path: Path) -> None:
@@ -315,7 +315,7 @@ def test_entries_that_name_one_chunk_are_counted(
     described = _schema(1, _STATE, "") + _channel(1, 1, "/j")
     once = _mcap(tmp_path / "a.mcap", chunk, described + entry)
     assert "larger than" not in refused(once)  # all have one stamp
-    assert "unpacked it is larger than" in refused(
+    assert "unpacked file is larger than" in refused(
         _mcap(tmp_path / "b.mcap", chunk, described + entry * 30)
     )
 

@@ -157,16 +157,16 @@ def test_a_bomb_is_refused_in_little_memory(ending: str, tmp_path: Path) -> None
     BOMBS[ending](path)
     assert path.stat().st_size < 8_000_000
     sentence = refusal(path)
-    assert "unpacked it is larger than" in sentence
+    assert "unpacked file is larger than" in sentence
     assert "load with unpacked=..." in sentence
 
 
 _NAMES = b"time,position,torque\n"
 TEXTS = {  # just below what may be unpacked, or just below what may become texts
-    "short lines": (b"1\n", 18_000_000, "unpacked it is larger than"),
-    "time stamps": (b"2025-11-01 12:26:40.5,0,1.000000\n", 4_000_000, "unpacked it is larger"),
+    "short lines": (b"1\n", 18_000_000, "unpacked file is larger than"),
+    "time stamps": (b"2025-11-01 12:26:40.5,0,1.000000\n", 4_000_000, "unpacked file is larger"),
     "quoted": (b'"0","0","0"\n', 2_000_000, "time stamps must strictly increase"),
-    "a word": (b"0,0.00000000,word\n", 6_000_000, "unpacked it is larger than"),
+    "a word": (b"0,0.00000000,word\n", 6_000_000, "unpacked file is larger than"),
     "long": (b'"0",0,' + b"1" * 4000 + b"\n", 35_000, "torque is inf"),
 }
 
@@ -206,5 +206,5 @@ def test_several_members_are_counted_together(tmp_path: Path) -> None:
     assert len(jid.load(path).time) == 20
     room = unpacking.Room(path)
     room.left = len(run) - 1
-    with pytest.raises(jid.InputError, match="unpacked it is larger"):
+    with pytest.raises(jid.InputError, match="unpacked file is larger"):
         room.gunzip(path.read_bytes())

@@ -186,4 +186,4 @@ def test_all_chunks_together_are_counted(tmp_path: Path, monkeypatch: pytest.Mon
         maxshape=(None, None),
         compression="gzip",
     )
-    assert "unpacked it is larger than" in _refused(path)
+    assert "unpacked file is larger than" in _refused(path)

@@ -59,7 +59,7 @@ def parquet_pages(path: Path) -> str:
     footer = content[start:].replace(said, _zigzag(12, len(said)))
     path.write_bytes(content[:start] + footer)
     assert writer.ParquetFile(path).metadata.num_rows == 12
-    return "unpacked it is larger than"
+    return "unpacked file is larger than"
 
 
 def parquet_rows(path: Path) -> str:
@@ -73,7 +73,7 @@ def parquet_rows(path: Path) -> str:
     said = _zigzag(rows)
     footer = content[start:].replace(said, _zigzag(12, len(said)), 1)  # the first is the file's
     path.write_bytes(content[:start] + footer)
-    return "its groups hold 1000003 rows, and it has 12"
+    return "its row groups hold 1000003 rows, but the file has 12"
 
 
 def parquet_texts(path: Path) -> str:
@@ -114,7 +114,7 @@ def hdf5_large_chunk(path: Path) -> str:
                 name, (12,), "f8", chunks=(100_000_000,), maxshape=(None,), compression="gzip"
             )
             dataset.id.write_direct_chunk((0,), packed)
-    return "unpacked it is larger than"
+    return "unpacked file is larger than"
 
 
 def npz_bzip2(path: Path) -> str:
@@ -319,7 +319,7 @@ def test_texts_by_differences_are_counted(tmp_path: Path) -> None:
         for _ in range(5):
             file.write_table(table)
     assert path.stat().st_size < 1_000_000
-    with pytest.raises(jid.InputError, match="unpacked it is larger than"):
+    with pytest.raises(jid.InputError, match="unpacked file is larger than"):
         jid.load(path)
 
 

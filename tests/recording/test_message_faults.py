@@ -23,7 +23,7 @@ def log(folder: Path, states: list[State]) -> Path:
 def test_velocities_of_zero_are_named_with_what_to_paste(tmp_path: Path) -> None:
     states = [replace(state, velocity=[0.0]) for state in motion(200, ["a"])]
     path = log(tmp_path, states)
-    with pytest.raises(jid.InputError, match="velocity: it is 0 throughout") as caught:
+    with pytest.raises(jid.InputError, match="velocity: it is always 0") as caught:
         jid.identify(jid.load(path))
     (advice,) = caught.value.remedy
     assert not isinstance(advice, str)
@@ -37,7 +37,7 @@ def test_an_effort_that_ends_can_be_left_out(tmp_path: Path) -> None:
     text = refusal(path, joint="elbow")
     assert "message 30" in text
     assert "load with columns={'torque': None}" in text
-    assert "one at a time" not in text
+    assert "one joint at a time" not in text
     assert len(jid.load(path, joint="elbow", columns={"torque": None})) == 50
 
 

@@ -158,7 +158,7 @@ def test_plain_messages(kind: str, make: Any, columns: dict[str, float]) -> None
 def test_a_joint_that_stands_twice_is_refused() -> None:
     state = State(stamp=START, name=["a", "a"], position=[1.0, 2.0])
     raw = encoded(STORES["cdr"], joint_state("/js", state), "cdr")
-    with pytest.raises(DamageError, match="message 0: the joint 'a' stands twice in it"):
+    with pytest.raises(DamageError, match="message 0: it has the joint 'a' twice"):
         BinaryDecoder(topic_of("cdr")).decode([raw], 0)
 
 

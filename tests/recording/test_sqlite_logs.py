@@ -76,7 +76,7 @@ def test_messages_in_a_log_are_said_with_the_way_to_them(bag: Path, tmp_path: Pa
     said = recording.metadata["incomplete"]
     assert said == (
         f"its last messages may be in {path.name}-wal, which is not read: "
-        "SQLite joins the two when it opens a copy of both"
+        "SQLite merges both when it opens a copy of them"
     )
     assert _contents(path.parent) == before
     copy = _copied(path, tmp_path / "whole", "-wal")
@@ -106,7 +106,7 @@ def test_an_unfinished_write_is_said(bag: Path, tmp_path: Path) -> None:
     path = _unfinished(bag, tmp_path / "unfinished")
     before = _contents(path.parent)
     assert _said(path) == (
-        f"its last write was not finished: what {path.name}-journal holds of before it is not put back"
+        f"its last write was not finished: the earlier content in {path.name}-journal is not restored"
     )
     assert _contents(path.parent) == before
 

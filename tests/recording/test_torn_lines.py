@@ -31,7 +31,7 @@ def test_cut_line_is_left_out_and_said(
     loaded = jid.load(path)
     path.write_text(whole)
     assert loaded.time.tolist() == jid.load(path).time[:59].tolist()
-    assert loaded.metadata["incomplete"] == "the last line is cut and left out"
+    assert loaded.metadata["incomplete"] == "the last line is incomplete and left out"
 
 
 def test_cut_line_may_end_in_a_newline_or_be_in_a_long_or_packed_file(tmp_path: Path) -> None:

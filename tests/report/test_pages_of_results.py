@@ -158,7 +158,7 @@ def test_a_page_is_written_whole(tmp_path: Path) -> None:
     written = jid.save_report(design, tmp_path / "page.html")
     assert written.read_text(encoding="utf-8") == report_page(design)
     assert jid.save_report is save_report
-    with pytest.raises(jid.InputError, match="result is 'dict': of this there is no report"):
+    with pytest.raises(jid.InputError, match="result is 'dict': this has no report"):
         save_report({}, tmp_path / "page.html")  # type: ignore[arg-type]
 
 

@@ -254,5 +254,5 @@ def test_the_verdict_minds_wide_intervals_and_missing_errors(
 def test_without_a_link_no_swing_is_claimed(runs: list[jid.Recording]) -> None:
     found = jid.identify_servo(without_free_runs(runs), replace(servo_joint(), link=None))
     (said,) = (each for each in found.findings if each.code == "inseparable_back_emf")
-    assert "swing is nearest" not in said.cause
-    assert "for want of a load that swings" in said.cause
+    assert "free swing from other shares" not in said.cause
+    assert "because no load swings freely" in said.cause

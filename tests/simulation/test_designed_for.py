@@ -105,4 +105,4 @@ def test_a_controller_without_torque_feedback_believes_nothing_of_the_sensor() -
 def test_many_differences_are_counted() -> None:
     other = JOINT.replace(gear_ratio=30.0, torque_constant=0.1, link=None)
     said = warning(joint=other, controller=jid.Pd(), control_period=4e-3)
-    assert ", and 2 more: what the joint reaches" in said
+    assert ", and 2 more: the values that the joint reaches" in said

@@ -81,7 +81,7 @@ class Call:
         pieces = [whole.crop(start, stop) for start, stop in self._kept_of(whole)]
         if not pieces:
             raise InputError(
-                "nothing is left of the recording", argument="left_out", value=self.left_out
+                "the recording has no samples left", argument="left_out", value=self.left_out
             )
         return pieces
 

@@ -93,7 +93,7 @@ def _row(desk: Desk, signal: str, headers: dict[int, str]) -> ui.label:
 
 def _counts(desk: Desk) -> None:
     ui.number(
-        "counts a turn of the joint",
+        "counts per revolution of the joint",
         value=desk.counts_per_turn,
         min=1,
         on_change=lambda event: desk.count(event.value),

@@ -155,7 +155,7 @@ class Desk:
         """Do what a finding advises, and identify again."""
         again = None if self.call is None else self.call.obey(action)
         if again is None:
-            self._said("that is for a person to do", True)
+            self._said("jointid cannot do this; do it by hand", True)
             return
         self.call = again
         if action.function == "Joint":
@@ -296,7 +296,7 @@ class Desk:
         except InputError as error:
             self._said(str(error), True)
         except RuntimeError as error:
-            self._said(f"a fault of jointid: {str(error).strip().splitlines()[-1]}", True)
+            self._said(f"an error in jointid: {str(error).strip().splitlines()[-1]}", True)
         except asyncio.CancelledError:
             self.worker.cancel()
             raise

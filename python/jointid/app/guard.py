@@ -77,7 +77,7 @@ class Guard:
                 receive,
                 send,
                 403,
-                "open the page by the address that `jointid app` printed: it holds the token of this start",
+                "open the page at the address that `jointid app` printed; it contains the token of this start",
             )
             return
         await self._app(scope, self._counted(receive), _with_policy(send))
@@ -91,14 +91,14 @@ class Guard:
             )
         origins = [value.lower() for name, value in headers if name == "origin"]
         if any(origin not in self._origins for origin in origins):
-            return 403, "a page of another origin may not ask this one"
+            return 403, "requests from pages of another origin are refused"
         if scope["type"] == "websocket" and not origins:
-            return 403, "a websocket without an origin is no browser's"
+            return 403, "the websocket has no origin, so it is not from a browser"
         for name, value in headers:
             if name == "content-length" and (not value.isdigit() or int(value) > self._largest):
                 return (
                     413,
-                    f"the file is larger than the {self._largest / 1e6:.0f} MB that are accepted",
+                    f"the file is larger than {self._largest / 1e6:.0f} MB, the limit of an upload",
                 )
         return None
 

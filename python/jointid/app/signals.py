@@ -21,9 +21,9 @@ def signals_step(desk: Desk) -> Callable[[], object]:
         if recording is None or desk.call is None:
             ui.label("They are shown when time and position are known.")
             return
-        ui.label("Drag over a stretch to see its windows below, or to leave it out.").classes(
-            "text-caption"
-        )
+        ui.label(
+            "Drag over a part of the recording to see its windows below, or to leave it out."
+        ).classes("text-caption")
         chart = (
             ui.echart(signals_options(recording, desk.call.left_out))
             .props("id=signals")

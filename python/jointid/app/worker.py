@@ -70,7 +70,7 @@ class Worker:
                 except EOFError:
                     self.cancel()
                     raise RuntimeError(
-                        "the computation ended: no memory was left, or it was killed"
+                        "the computation ended: memory ran out, or the process was killed"
                     ) from None
                 if kind == "progress":
                     report(*content)

@@ -108,7 +108,7 @@ def open_locked(path: Path) -> FileIO:
         raise InputError(
             "another program is writing this file",
             place=str(path),
-            remedy=("wait for its end", "write another file"),
+            remedy=("wait until it ends", "write another file"),
         ) from None
     return file
 

@@ -89,12 +89,12 @@ def read_json(text: str) -> Any:
     try:
         value = json.loads(text)
     except RecursionError:
-        raise InputError("not JSON of ours: nested too deeply") from None
+        raise InputError("not JSON of jointid: nested too deeply") from None
     except json.JSONDecodeError as error:
         raise InputError(f"not JSON: line {error.lineno}, column {error.colno}") from None
     except ValueError:  # an integer of 5000 digits
-        raise InputError("not JSON of ours: a number has too many digits") from None
-    check_depth(value, "not JSON of ours")
+        raise InputError("not JSON of jointid: a number has too many digits") from None
+    check_depth(value, "not JSON of jointid")
     return value
 
 
@@ -179,7 +179,7 @@ class Text:
             reason = f"{len(value)} characters, at most {self.longest} are expected"
             _refuse(place, NOT_GIVEN, reason)
         if not value.isascii() and any("\ud800" <= letter <= "\udfff" for letter in value):
-            _refuse(place, NOT_GIVEN, "half a character, which no file can hold")
+            _refuse(place, NOT_GIVEN, "the text has half a character, which no file can store")
         if self.known and value not in self.known:
             _refuse(place, value, f"known are {', '.join(self.known)}")
         return value

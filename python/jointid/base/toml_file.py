@@ -16,7 +16,7 @@ def check_length(text: str, path: Path) -> None:
     """Raise `InputError` for a text that is longer than any TOML file of ours."""
     if len(text) > _LONGEST:
         raise InputError(
-            f"too long for a TOML file of ours: {len(text)} characters, at most {_LONGEST}",
+            f"too long for a TOML file of jointid: {len(text)} characters, at most {_LONGEST}",
             place=str(path),
         )
 
@@ -33,7 +33,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     check_length(text, path)
     try:
         tables = tomllib.loads(text.removeprefix("\ufeff"))  # some editors on Windows write it
-        check_depth(tables, "not TOML of ours")
+        check_depth(tables, "not TOML of jointid")
     except RecursionError:
         raise InputError("not TOML: it is nested too deeply", place=str(path)) from None
     except InputError as error:

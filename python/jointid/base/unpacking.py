@@ -92,12 +92,12 @@ class Room:
         self.left -= size
         if self.left < 0:
             raise TooLargeError(
-                f"unpacked it is larger than {self._allowed / 1e6:.0f} MB, which is the limit for a file of its size",
+                f"the unpacked file is larger than {self._allowed / 1e6:.0f} MB, the limit for a file of its size",
                 place=str(self._path),
                 remedy=Action(
                     "call",
                     {"unpacked": ...},
-                    text="the bytes that it may hold, if it is no damaged or hostile file",
+                    text="the bytes that it may hold, if you trust the file",
                     function="load",
                 ),
             )
@@ -149,5 +149,5 @@ class Room:
         found = unpacker.decompress(content, self.left + 1)
         self.take(len(found))
         if not unpacker.eof:
-            raise EOFError("it is cut off")
+            raise EOFError("it ends early")
         return found

@@ -16,13 +16,15 @@ _LARGEST_PORT = 65535
 def add_app(command: CommandParser) -> None:
     """Add the command's grammar."""
     command.epilog = (
-        "The page is served to this machine alone, at an address with a token that changes with each start. It needs "
+        "Only this machine can open the page. Its address contains a token that changes at each start. It needs "
         "NiceGUI: pip install nicegui."
     )
-    command.add_argument("--port", type=int, default=0, help="default: a free one")
+    command.add_argument(
+        "--port", type=int, default=0, help="port of the page (default: a free one)"
+    )
     command.add_argument("--no-browser", action="store_true", help="print the address only")
     command.add_argument(
-        "--largest", type=float, default=200.0, help="megabytes of an upload (default 200)"
+        "--largest", type=float, default=200.0, help="largest upload in megabytes (default 200)"
     )
 
 

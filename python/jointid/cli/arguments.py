@@ -29,7 +29,9 @@ class Once(argparse.Action):
     ) -> None:
         """Keep the value."""
         if getattr(namespace, self.dest) is not None:
-            raise argparse.ArgumentError(self, "it is given twice, and one file is written")
+            raise argparse.ArgumentError(
+                self, "it is given twice, but only one file can be written"
+            )
         setattr(namespace, self.dest, values)
 
 
@@ -57,14 +59,14 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         (
             "--column",
             "SIGNAL=HEADER",
-            "which column (header or number) is which signal, or none; may be repeated",
+            "column of a signal: its header or number, or none; may be repeated",
         ),
         ("--unit", "SIGNAL=UNIT", "unit of a signal, instead of the one in the header"),
         ("--scale", "SIGNAL=FACTOR", "factor from file units to SI"),
         (
             "--side",
             "SIGNAL=SIDE",
-            "velocity=motor: beside the joint's position; with --gear-ratio or --joint",
+            "side of the gear of a signal, e.g. velocity=motor; with --gear-ratio or --joint",
         ),
         ("--where", "COLUMN=VALUE", "keep only the rows with this value"),
         ("--extra", "NAME=COLUMN", "keep a column as an extra signal of this name, for --term"),
@@ -75,46 +77,45 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--joints",
         metavar="JOINT[,JOINT...]",
-        help="of a file with several joints: which one, by number or name as in the headers; identify takes several, "
-        "and all",
+        help="joint to read, of a file with several: number or name in the headers; identify takes several, or all",
     )
     command.add_argument(
         "--gear-ratio",
         metavar="RATIO[,RATIO...]",
-        help="motor's angle per angle of the joint, one for each of --joints: 32,45,-48; columns of the motor are "
-        "converted to the joint",
+        help="motor angle per joint angle, one for each of --joints (32,45,-48); it converts columns of the motor "
+        "to the joint",
     )
     command.add_argument(
         "--rate",
         type=decimal,
         metavar="HZ",
-        help="rows that were taken so many times a second, for a file without a time column",
+        help="rows per second, for a file without a time column",
     )
     command.add_argument(
         "--topic",
         metavar="TOPIC",
-        help="topic of a log of messages (.mcap, .bag, .db3) that is the recording (default: the only one with joints)",
+        help="topic to read in a message log (.mcap, .bag, .db3); default: the only one with joints",
     )
     command.add_argument(
         "--group",
         metavar="PATH",
-        help="group of an HDF5 or MATLAB 7.3 file that is the recording (default: the only one)",
+        help="group to read in an HDF5 or MATLAB 7.3 file (default: the only one)",
     )
     command.add_argument(
         "--unpacked",
         type=whole,
         metavar="BYTES",
-        help="what a compressed file may hold (default: 64 MB or 50 times its size)",
+        help="largest unpacked size of a compressed file (default: 64 MB or 50 times its size)",
     )
     command.add_argument(
         "--drop-copies",
         action="store_true",
-        help="leave out rows that repeat the one before, as a logger makes them that is faster than the bus",
+        help="leave out rows that repeat the row before, as when the logger is faster than the bus",
     )
     command.add_argument(
         "--drop-invalid",
         action="store_true",
-        help="leave out damaged rows: a value is not finite, or larger than any of a joint",
+        help="leave out damaged rows: a value is not finite, or too large for a joint",
     )
 
 
@@ -152,7 +153,7 @@ def whole(text: str) -> int:
     """A whole number."""
     value = number_or_text(text)
     if not isinstance(value, int):
-        raise argparse.ArgumentTypeError(f"'{text}' is no whole number")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
     return value
 
 
@@ -160,7 +161,7 @@ def decimal(text: str) -> float:
     """A number."""
     value = number_or_text(text)
     if isinstance(value, str):
-        raise argparse.ArgumentTypeError(f"'{text}' is no number")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number")
     return float(value)
 
 
@@ -175,10 +176,10 @@ def windows(text: str) -> int | float | str:
     )
     if isinstance(value, str):
         raise argparse.ArgumentTypeError(
-            f"'{text}' is neither a number (400) nor a duration (0.05s) nor cumulative"
+            f"'{text}' is not a number (400), a duration (0.05s) or cumulative"
         )
     if value > _MOST_WINDOWS:
-        raise argparse.ArgumentTypeError(f"'{text}' is more than any recording holds")
+        raise argparse.ArgumentTypeError(f"'{text}' is larger than any recording")
     return float(value) if text.endswith("s") else value
 
 
@@ -186,7 +187,7 @@ def whole_seed(text: str) -> int:
     """A seed."""
     value = number_or_text(text)
     if not isinstance(value, int) or not 0 <= value < 2**64:
-        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 0 to 2^64 - 1")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 to 2^64 - 1")
     return value
 
 
@@ -194,8 +195,8 @@ def method_argument(command: CommandParser) -> None:
     """Add the method of the search."""
     command.add_argument(
         "--method",
-        help="separable (default), ga or random; an option of the genetic algorithm alone means ga, which takes seven "
-        "times as long with stribeck_general",
+        help="separable (default), ga or random; options of the genetic algorithm imply ga, which takes seven times "
+        "as long with stribeck_general",
     )
 
 
@@ -207,8 +208,8 @@ def term_argument(command: argparse.ArgumentParser) -> None:
         type=pair,
         default=[],
         metavar="SIGNAL=KIND",
-        help="an own term: a column (or --extra), and how it enters: viscous, coulomb, known, scaled, inertia, ...; "
-        "viscous@rate+coulomb@rate: its rate's; may be repeated",
+        help="own term: a column (or --extra) and its kind: viscous, coulomb, known, scaled, inertia, ...; "
+        "viscous@rate+coulomb@rate: of its rate; may be repeated",
     )
 
 
@@ -246,13 +247,13 @@ def refinement_arguments(command: argparse.ArgumentParser) -> None:
         action="append",
         type=pair,
         metavar="SIGNAL=SECONDS",
-        help="delay of torque, sensor or velocity to take away, positive: late; torque=0 takes away none "
-        "(default: those that are certain)",
+        help="delay of torque, sensor or velocity to remove, positive: late; torque=0 removes none (default: delays "
+        "that are certain)",
     )
     command.add_argument(
         "--min-speed",
         type=decimal,
-        help="leave out slower motion, rad/s or m/s; 0: nothing (default: chosen)",
+        help="leave out motion slower than this, rad/s or m/s; 0: leave out nothing (default: chosen from the data)",
     )
 
 
@@ -289,5 +290,5 @@ def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str
 def verbose_argument(command: CommandParser) -> None:
     """Add `-v`, which prints all that an answer leaves out."""
     command.add_argument(
-        "-v", "--verbose", action="store_true", help="print everything, not the answer alone"
+        "-v", "--verbose", action="store_true", help="print everything, not only the answer"
     )

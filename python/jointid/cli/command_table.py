@@ -11,7 +11,7 @@ _TABLE = {
         "jointid.cli.commands:demo",
     ),
     "new": (
-        "write a joint file to begin with: from options, a recording, or answers at the terminal",
+        "write a first joint file from options, a recording, or answers at the terminal",
         "jointid.cli.new_joint:add_new",
         "jointid.cli.new_joint:new",
     ),
@@ -56,7 +56,7 @@ _TABLE = {
         "jointid.cli.session:run",
     ),
     "emulate": (
-        "an emulated drive and joint on a CAN bus, for other programs to move",
+        "emulate a drive and joint on a CAN bus, for other programs to move",
         "jointid.cli.emulation:add_emulate",
         "jointid.cli.emulation:emulate",
     ),

@@ -161,14 +161,14 @@ def _with_checks(
 
 def _for_one_joint(arguments: argparse.Namespace) -> None:
     if arguments.facts is not None:
-        raise InputError("this is for a robot; name its URDF with --robot", argument="facts")
+        raise InputError("this option is for a robot; name its URDF with --robot", argument="facts")
 
 
 def _for_a_torque(arguments: argparse.Namespace) -> None:
     for name in ("by", "rollout"):
         if getattr(arguments, name):
             raise InputError(
-                'this is for a servo, whose joint file says input = "voltage" in [drive]',
+                'this option is for a servo: its joint file has input = "voltage" in [drive]',
                 argument=name,
             )
 
@@ -239,7 +239,7 @@ def report(arguments: argparse.Namespace) -> None:
     else:
         if arguments.joints is not None:
             raise InputError(
-                "a robot's page has all joints", argument="joints", value=arguments.joints
+                "the page of a robot shows all joints", argument="joints", value=arguments.joints
             )
         estimate = robot
         page = save_report(robot, arguments.output, action=ADVICE.of_action)

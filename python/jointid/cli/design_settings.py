@@ -199,7 +199,9 @@ def _numbers(argument: str, text: str, count: int, unit: str) -> tuple[float, ..
     """Numbers with commas between them, or angles such as 60deg where no unit is said."""
     parts = [part.strip() for part in text.split(",")]
     if unit and any(part.endswith("deg") for part in parts):
-        raise InputError(f"no angle is expected, but {unit}", argument=argument, value=text)
+        raise InputError(
+            f"this is not an angle; a value in {unit} is expected", argument=argument, value=text
+        )
     values = [number_or_angle(part) for part in parts]
     if len(values) != count or any(isinstance(value, str) for value in values):
         expected = "a number is expected" if count == 1 else "two numbers LOW,HIGH are expected"

@@ -39,27 +39,39 @@ def add_design(design: argparse.ArgumentParser) -> None:
         "--after",
         type=Path,
         metavar="ESTIMATE",
-        help="the .json file of an estimate: what to record next, given what its recordings tell",
+        help="estimate (.json): design what to record next, from what its recordings already show",
     )
     design.add_argument(
-        "--after-joint", metavar="NAME", help="of the estimates of several joints: which one"
+        "--after-joint",
+        metavar="NAME",
+        help="joint to take, if the file has the estimates of several joints",
     )
     design.add_argument(
-        "--duration", type=decimal, help="of the motion [s] (default 12; with --after: as advised)"
+        "--duration",
+        type=decimal,
+        help="duration of the motion [s] (default 12; with --after: as advised)",
     )
     for name, shown, explanation in (
         (
             "--position",
             "LOW,HIGH",
-            "window [rad], or as -60deg,60deg; default: nine tenths of the file's; with --after: as recorded",
+            "position window [rad], or as -60deg,60deg; default: nine tenths of the file's; with --after: as recorded",
         ),
         (
             "--velocity",
             "LIMIT",
-            "largest [rad/s], or as 200deg; default: nine tenths of the file's",
+            "largest velocity [rad/s], or as 200deg; default: nine tenths of the file's",
         ),
-        ("--acceleration", "LIMIT", "largest of the reference [rad/s²]; default: not limited"),
-        ("--torque", "LIMIT", "largest of the drive at the output [N·m]; default: the file's"),
+        (
+            "--acceleration",
+            "LIMIT",
+            "largest acceleration of the reference [rad/s²]; default: not limited",
+        ),
+        (
+            "--torque",
+            "LIMIT",
+            "largest torque of the drive at the output [N·m]; default: the file's",
+        ),
         (
             "--sensor-range",
             "LIMIT",
@@ -84,11 +96,12 @@ def _believed(design: argparse.ArgumentParser) -> None:
         type=pair,
         default=[],
         metavar="NAME=LOW,HIGH",
-        help="where a parameter may lie; default: its bounds in the joint file; may be repeated",
+        help="range of a parameter (default: its bounds in the joint file); may be repeated",
     )
     design.add_argument(
         "--controller",
-        help="as in simulate; default: the one of [session.controller], or adaptive_robust without torque feedback",
+        help="controller, as in simulate; default: that of [session.controller], or adaptive_robust without torque "
+        "feedback",
     )
     design.add_argument(
         "--believe",
@@ -119,21 +132,21 @@ def _sought(design: argparse.ArgumentParser) -> None:
         "--parameter",
         action="append",
         metavar="NAME",
-        help="a parameter that counts; may be repeated; default: all that are identified",
+        help="parameter that the motion must determine (default: all that are identified); may be repeated",
     )
     design.add_argument(
         "--criterion",
         default="worst",
-        help="worst (default): the largest relative error; determinant: all errors together",
+        help="error to minimise: worst (default), the largest relative error; determinant, all errors together",
     )
-    design.add_argument("--evaluations", type=whole, help="motions to try (default 3600)")
+    design.add_argument("--evaluations", type=whole, help="number of motions to try (default 3600)")
     design.add_argument(
-        "--joints", type=whole, help="joints drawn from what is believed (default 4)"
+        "--joints", type=whole, help="number of joints drawn from the prior (default 4)"
     )
     design.add_argument(
         "--rehearsals",
         type=whole,
-        help="simulated recordings from which the errors are counted (default 256)",
+        help="number of simulated recordings that give the errors (default 256)",
     )
     design.add_argument("--seed", type=whole_seed, default=0, help="seed of the search (default 0)")
     design.add_argument(
@@ -221,7 +234,11 @@ def _estimate(arguments: argparse.Namespace) -> Estimate | None:
     joint = arguments.after_joint
     if arguments.after is None:
         if joint is not None:
-            raise InputError("it names a joint of --after", argument="after_joint", value=joint)
+            raise InputError(
+                "this names a joint of --after, which is not given",
+                argument="after_joint",
+                value=joint,
+            )
         return None
     try:
         estimate = load_estimate(arguments.after, joint)

@@ -34,13 +34,13 @@ def add_emulate(emulate: argparse.ArgumentParser) -> None:
     emulate.add_argument(
         "--json",
         action="store_true",
-        help="print what happens to the drive (state, motor, failure), a line of JSON each",
+        help="print each event of the drive (state, motor, failure) as a line of JSON",
     )
     emulate.add_argument(
         "--rest",
         type=decimal,
         default=0.0,
-        help="on a machine that wakes slowly: wake so seldom [s]; frames are so much later (default 0)",
+        help="interval between two wake-ups [s], for a slow machine; frames are late by as much (default 0)",
     )
 
 
@@ -72,7 +72,7 @@ def emulate(arguments: argparse.Namespace) -> int:
     if arguments.json:
         if not hasattr(devices[0], "condition"):
             raise InputError(
-                f"the emulated drive of the type {bench.drive_type!r} does not tell what happens to it",
+                f"the emulated drive of the type {bench.drive_type!r} reports no events",
                 argument="json",
             )
         journal = Journal(devices[0], sys.stdout)

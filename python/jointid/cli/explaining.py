@@ -25,7 +25,7 @@ def add_explain(explain: CommandParser) -> None:
     explain.epilog = (
         "examples:\n  jointid explain undetermined\n  jointid explain undetermined estimate.json"
     )
-    explain.add_argument("code", nargs="?", help="of a finding; default: list all")
+    explain.add_argument("code", nargs="?", help="code of a finding (default: list all)")
     explain.add_argument(
         "estimate", type=Path, nargs="?", help="estimate (.json) that has the finding"
     )

@@ -37,16 +37,18 @@ def add_export(export: argparse.ArgumentParser) -> None:
     export.add_argument(
         "--target",
         metavar="NAME",
-        help=f"instead of the one that the ending {endings_text()} chooses: "
+        help=f"target, if the ending {endings_text()} does not choose it: "
         + ", ".join(each.name for each in TARGETS),
     )
     export.add_argument(
-        "--joints", metavar="JOINT", help="of the estimates of several joints: which one"
+        "--joints",
+        metavar="JOINT",
+        help="joint to take, if the file has the estimates of several joints",
     )
     export.add_argument(
         "--into",
         type=Path,
-        help="MuJoCo or URDF file whose joint gets the values; all else in it stays, and it may be --to itself",
+        help="MuJoCo or URDF file to edit: its joint gets the values, the rest stays; --to may be the same file",
     )
     export.add_argument(
         "--joint-name", help="name of the joint in --into (default: the joint's own)"
@@ -54,17 +56,18 @@ def add_export(export: argparse.ArgumentParser) -> None:
     export.add_argument(
         "--approximate",
         action="store_true",
-        help="where the target has Coulomb and viscous friction only, write the nearest, and what it loses",
+        help="for a target with only Coulomb and viscous friction: write the nearest, and state in the file what is "
+        "lost",
     )
     export.add_argument(
         "--inertia",
         action="store_true",
-        help="of a whole robot: write the identified inertia of its links, too",
+        help="for a robot: also write the identified inertia of its links",
     )
     export.add_argument(
         "--speed",
         type=float,
-        help="largest speed for the nearest friction and for tables, rad/s or m/s (default: as recorded)",
+        help="largest speed of tables and of the friction by --approximate, rad/s or m/s (default: as recorded)",
     )
     export.add_argument("--json", action="store_true", help="print the outcome as JSON")
 

@@ -52,8 +52,8 @@ def add_identify(identify: CommandParser) -> None:
         "--model",
         metavar="NAME[:OPTION[=VALUE]]",
         help=(
-            f"friction model: {', '.join(model_names())}, or auto (default where the joint names none): the one of "
-            "the first two, with or without gravity, that predicts held-out torque; with options: "
+            f"friction model: {', '.join(model_names())}, or auto (default if the joint has no model): of the first "
+            "two, with or without gravity, the best on held-out torque; options follow, as in "
             "stribeck:asymmetric:ripple=2,4"
         ),
     )
@@ -61,28 +61,28 @@ def add_identify(identify: CommandParser) -> None:
     identify.add_argument(
         "--inertia",
         metavar="VALUE|MODE",
-        help="of the drive alone, at the output [kg·m²]; with --robot: urdf (default), scaled, or free: whether the "
-        "links' inertias are identified",
+        help="inertia of the drive alone at the output [kg·m²]; with --robot: urdf (default), scaled or free, how "
+        "the links' inertias are identified",
     )
     identify.add_argument(
         "--selftest",
         action="store_true",
-        help="inject the result into the recorded motion, with noise as recorded, and identify it again",
+        help="self-test: simulate the recorded motion with the result and its noise, and identify it again",
     )
     identify.add_argument(
         "--causes",
         action="store_true",
-        help="say why the model does not fit: causes by name, what they explain and what they move",
+        help="list the causes of the misfit: what each explains, and which values it moves",
     )
     identify.add_argument(
         "--by",
         metavar="COLUMN",
-        help="of a servo: a file holds several runs, and this column numbers them; see docs/servos.md",
+        help="for a servo: column that numbers the runs in a file; see docs/servos.md",
     )
     identify.add_argument(
         "--rollout",
         action="store_true",
-        help="of a servo: simulate the closed loop of each run and say how far it ends from the log",
+        help="for a servo: simulate the closed loop of each run and print its difference from the log",
     )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
@@ -96,12 +96,12 @@ def add_identify(identify: CommandParser) -> None:
         nargs="?",
         const=1000,
         metavar="DRAWS",
-        help="check the standard errors by drawing stretches of the recording anew (default 1000 draws)",
+        help="check the standard errors by a bootstrap over blocks of the recording (default 1000 draws)",
     )
     identify.add_argument(
         "--require",
         choices=LEVELS,
-        help="end with exit code 4 where the verdict is worse: usable, or care (usable with care)",
+        help="lowest verdict to accept, usable or care (usable with care); a worse one gives exit code 4",
     )
     _output_arguments(identify)
 
@@ -111,13 +111,14 @@ def _robot_arguments(command: CommandParser) -> None:
         "--robot",
         type=Path,
         metavar="URDF",
-        help="all joints together with the links of this URDF; see docs/robots.md",
+        help="identify all joints together, with the links of this URDF; see docs/robots.md",
     )
     command.add_argument(
         "--facts",
         type=Path,
         metavar="TOML",
-        help="with --robot: joints, gear_ratios, couplings, rotor_inertias, zero_offsets, side, gravity",
+        help="with --robot: file of the robot's facts (.toml): joints, gear_ratios, couplings, rotor_inertias, "
+        "zero_offsets, side, gravity",
     )
 
 
@@ -137,8 +138,8 @@ def add_compare(compare: CommandParser) -> None:
         "--inertia",
         action="append",
         metavar="VALUE|MODE",
-        help="of the drive alone, at the output [kg·m²]; with --robot: of urdf, scaled and free one to compare; may be "
-        "repeated; default: all",
+        help="inertia of the drive alone at the output [kg·m²]; with --robot: urdf, scaled or free (default: all "
+        "are compared); may be repeated",
     )
     compare.add_argument(
         "--model",
@@ -163,7 +164,9 @@ def add_report(report: CommandParser) -> None:
         "estimate", type=Path, help="estimate (.json), from identify --save or estimate.save"
     )
     report.add_argument(
-        "--joints", metavar="JOINT", help="of the estimates of several joints: which one"
+        "--joints",
+        metavar="JOINT",
+        help="joint to take, if the file has the estimates of several joints",
     )
     report.add_argument(
         "--output",
@@ -187,7 +190,7 @@ def add_info(info: CommandParser) -> None:
 def _identification_arguments(command: CommandParser) -> None:
     joint_arguments(command)
     method_argument(command)
-    command.add_argument("--residual", help="instruments, sensor or torque")
+    command.add_argument("--residual", help="residual to minimise: instruments, sensor or torque")
     command.add_argument(
         "--torque-hold", help="torque between samples: zoh (held command) or linear (measured)"
     )
@@ -219,7 +222,9 @@ def _identification_arguments(command: CommandParser) -> None:
 
 def _output_arguments(command: CommandParser) -> None:
     command.add_argument(
-        "--report", type=Path, help="write the HTML report to this file, and the estimate beside it"
+        "--report",
+        type=Path,
+        help="write the HTML report to this file, and the estimate next to it",
     )
     command.add_argument(
         "--save", type=Path, action=Once, help="write the estimate to a joint file (.toml) or .json"

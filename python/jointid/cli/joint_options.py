@@ -30,9 +30,9 @@ def joint_arguments(command: argparse.ArgumentParser) -> None:
 def fact_arguments(command: argparse.ArgumentParser) -> None:
     """Add the facts of a drive and its link; the gear ratio is among the options of a reading."""
     for option, explanation in (
-        ("--torque-constant", "of the motor [N·m/A], for a recorded current"),
-        ("--rotor-inertia", "of the motor with all that turns with it, motor side [kg·m²]"),
-        ("--mass", "of the link [kg], with --centre-of-mass: its weight is then known"),
+        ("--torque-constant", "torque constant of the motor [N·m/A], for a recorded current"),
+        ("--rotor-inertia", "inertia of the motor and all that turns with it, motor side [kg·m²]"),
+        ("--mass", "mass of the link [kg], with --centre-of-mass: its weight is then known"),
         ("--centre-of-mass", "distance of the link's centre of mass from the axis [m]"),
     ):
         command.add_argument(option, type=decimal, metavar="VALUE", help=explanation)
@@ -40,7 +40,7 @@ def fact_arguments(command: argparse.ArgumentParser) -> None:
         "--link-angle",
         type=_angle,
         metavar="ANGLE",
-        help="of the centre of mass above the horizontal at position 0: rad, or as 90deg (default 0)",
+        help="angle of the centre of mass above the horizontal at position 0: rad, or as 90deg (default 0)",
     )
 
 
@@ -197,7 +197,7 @@ def _inertia(arguments: argparse.Namespace) -> float | None:
     stated = getattr(arguments, "inertia", None)
     if isinstance(stated, list):  # compare --robot takes several
         if len(stated) > 1:
-            raise InputError("one joint has one inertia", argument="inertia", value=stated)
+            raise InputError("give one inertia for one joint", argument="inertia", value=stated)
         stated = stated[0]
     if stated is None:
         return None

@@ -35,7 +35,7 @@ def add_new(new: CommandParser) -> None:
         "examples:\n  jointid new joint.toml\n"
         "  jointid new joint.toml run.csv --gear-ratio 101 --rotor-inertia 2.5e-4\n"
         "  jointid new elbow.toml arm.csv --joints 3 --gear-ratio -48 --name elbow\n"
-        "at a terminal it asks for what most joints need; Enter leaves a fact out, as a comment in the file"
+        "at a terminal it asks for the facts that most joints need; Enter skips a fact, which becomes a comment"
     )
     new.add_argument("file", type=Path, help="joint file to write (.toml); it must not exist")
     recording = new.add_argument("recording", type=Path, nargs="?", help="recording of the joint")
@@ -43,14 +43,18 @@ def add_new(new: CommandParser) -> None:
         recording,
         lambda: f"recording of the joint, for its kind, sensor, columns and units: {file_kinds()}",
     )
-    new.add_argument("--name", help="of the joint (default: the file's name)")
-    new.add_argument("--kind", help="revolute (default) or prismatic; a recording shows it")
+    new.add_argument("--name", help="name of the joint (default: the file's name)")
+    new.add_argument(
+        "--kind", help="revolute or prismatic (default: as in the recording, or revolute)"
+    )
     fact_arguments(new)
-    new.add_argument("--inertia", metavar="VALUE", help="of the drive alone, at the output [kg·m²]")
+    new.add_argument(
+        "--inertia", metavar="VALUE", help="inertia of the drive alone at the output [kg·m²]"
+    )
     new.add_argument(
         "--position",
         metavar="LOW,HIGH",
-        help="limits of the position: rad, or as -60deg,60deg; m of a slide",
+        help="position limits: rad, or as -60deg,60deg; m for a prismatic joint",
     )
     for option, explanation in (
         ("--velocity", "largest velocity [rad/s]"),
@@ -59,7 +63,7 @@ def add_new(new: CommandParser) -> None:
     ):
         new.add_argument(option, type=decimal, metavar="VALUE", help=explanation)
     new.add_argument(
-        "--no-questions", action="store_true", help="ask nothing, at a terminal neither"
+        "--no-questions", action="store_true", help="ask no questions, even at a terminal"
     )
     reading_arguments(new)
 
@@ -98,7 +102,7 @@ def _check_file(path: Path) -> None:
 
 def _exists(path: Path) -> InputError:
     return InputError(
-        "it exists, and is not overwritten", place=str(path), remedy="give another name"
+        "the file exists and is not overwritten", place=str(path), remedy="give another name"
     )
 
 
@@ -159,7 +163,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Recording | None, list[str]]:
     except InputError as error:
         advised = _obeyed(arguments, error)
         (recording,) = load_all([arguments.recording], arguments)
-        found.append(f"proposed: {advised}; look whether that is so")
+        found.append(f"proposed: {advised}; check whether that is right")
     from jointid.recording.plausible_units import proposed_units
 
     for signal, proposed in proposed_units(recording).items():
@@ -243,7 +247,7 @@ def _answers(
     from jointid.joint.new_file import FACTS
 
     known = dict(facts)
-    print("Enter leaves out what is not known.")
+    print("Press Enter to skip a fact that you do not know.")
     for fact in FACTS:
         if fact.key in known or fact.key not in _ASKED:
             continue

@@ -27,7 +27,7 @@ def add_check(check: argparse.ArgumentParser) -> None:
         "examples:\n"
         "  jointid check joint.toml\n"
         "  jointid check joint.toml --emulate\n"
-        "reads only, the motor stays off. Exit code 3: something speaks against moving the joint."
+        "it only reads; the motor stays off. Exit code 3: the joint must not be moved yet."
     )
     _add_common(check, "print what was found as JSON")
 
@@ -39,29 +39,29 @@ def add_first_motion(first: argparse.ArgumentParser) -> None:
         "  jointid first-motion joint.toml --emulate\n"
         "  jointid first-motion joint.toml\n"
         "  jointid first-motion joint.toml --unknown-friction --largest-torque 20\n"
-        "a real bench that passes gets the certificate that `jointid run` asks for, beside the joint\n"
-        "file. Before: docs/hardware.md and `jointid check`, which says how far the joint will move with\n"
-        "its encoder: 0.4°, or 40 counts of a coarse one. Exit code 3: the bench is refused."
+        "a real bench that passes gets the certificate that `jointid run` needs, next to the joint file.\n"
+        "First read docs/hardware.md, and run `jointid check`: it says how far the joint will move,\n"
+        "0.4°, or 40 counts of a coarse encoder. Exit code 3: the bench is refused."
     )
     _add_common(first, "print passed, reason, travel, torques, signs and what is unchecked as JSON")
     first.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
     first.add_argument(
         "--largest-torque",
         type=decimal,
-        help="without motion, the torque ends there [N·m, by the joint file's constants]; default: five "
-        "times the friction that the joint file states, and never more than the torque limit",
+        help="largest torque while nothing moves [N·m, by the joint file's constants]; default: five times the "
+        "friction in the joint file, at most the torque limit",
     )
     first.add_argument(
         "--unknown-friction",
         action="store_true",
-        help="the joint file's friction is only a guess: no scale is held against it",
+        help="the joint file's friction is only a guess: do not check the scales with it",
     )
     first.add_argument(
         "--watchdog",
         action="store_true",
-        help="at the end also fall silent, at no torque: the drive must stop its motor by itself",
+        help="at the end, stop sending at zero torque: the drive must stop its motor by itself",
     )
-    first.add_argument("--quiet", action="store_true", help="no line for each step")
+    first.add_argument("--quiet", action="store_true", help="print no line for each step")
 
 
 def _add_common(command: Any, printed: str) -> None:
@@ -232,7 +232,7 @@ def _show(line: str) -> None:
 def _agreed(bench: Bench, sizes: Sizes) -> bool:
     """Whether the user agrees that the real joint moves."""
     print(
-        f"'{bench.joint.name}' will move by {sizes}, over {bench.address}. With a wrong gear ratio it is more.",
+        f"'{bench.joint.name}' will move by {sizes}, over {bench.address}. With a wrong gear ratio it moves farther.",
         file=sys.stderr,
     )
     if not sys.stdin.isatty():

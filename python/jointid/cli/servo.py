@@ -88,7 +88,7 @@ def _check(arguments: argparse.Namespace) -> None:
     for name in _OF_TORQUE:
         if getattr(arguments, name) not in (None, False, []):
             raise InputError(
-                "a servo whose drive's input is a voltage has no such option",
+                "a servo with a voltage as input has no such option",
                 argument="n" if name == "bootstrap" else "terms" if name == "term" else name,
             )
     check_outputs(arguments)

@@ -39,8 +39,8 @@ def add_run(run: argparse.ArgumentParser) -> None:
         "  jointid run joint.toml --cycles 2 --emulate --output runs\n"
         "  jointid run joint.toml --dry-run\n"
         "  jointid run joint.toml --cycles 2 --output runs --save joint.toml\n"
-        "the joint file has a table [session]: examples/hardware/joint.toml; before the first motion\n"
-        "of a real joint: docs/hardware.md. Exit code 3: stopped by a limit, a fault or you, or refused."
+        "the joint file has a table [session]: examples/hardware/joint.toml; read docs/hardware.md before\n"
+        "the first motion of a real joint. Exit code 3: stopped by a limit, a fault or you, or refused."
     )
     run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
     run.add_argument(
@@ -194,7 +194,7 @@ def _check(arguments: argparse.Namespace) -> None:
         )
     if arguments.cycles == 0 and arguments.output is None and not arguments.dry_run:
         raise InputError(
-            "0 cycles only record, and nothing says where; the recording would be lost",
+            "with 0 cycles the session only records, but no folder for the recording is given",
             argument="cycles",
             value=arguments.cycles,
             remedy="give a folder: --output runs",
@@ -224,7 +224,7 @@ def _check_motion(arguments: argparse.Namespace) -> None:
     motion = read_document(arguments.joint)["session"]["trajectory"].get("file", "/")
     if not Path(motion).is_absolute():
         raise InputError(
-            f"its session would look for {motion}, the motion, in another folder than {arguments.joint}",
+            f"the motion file {motion} is in the folder of {arguments.joint}, and its session would not find it",
             argument="save",
             value=save,
             remedy="give a name in the same folder",

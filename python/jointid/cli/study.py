@@ -54,7 +54,7 @@ def add_sweep(sweep: CommandParser) -> None:
         "--simulate",
         type=Path,
         metavar="JOINT",
-        help="instead of recordings: simulate the joint of this file for each trial",
+        help="simulate the joint of this file for each trial, instead of reading recordings",
     )
     scenario_arguments(sweep)
     sweep.add_argument("--joint", type=Path, help="joint file (.toml) with the known values")
@@ -72,9 +72,9 @@ def add_sweep(sweep: CommandParser) -> None:
         help="trials of each combination (default: 10 of a simulation or a random search, 1 otherwise)",
     )
     for name, explanation in (
-        ("--ga", "default, thesis or thesis_code"),
+        ("--ga", "options of the genetic algorithm: default, thesis or thesis_code"),
         ("--model", "friction model, such as stribeck:ripple=2"),
-        ("--residual", "instruments, sensor or torque"),
+        ("--residual", "residual to minimise: instruments, sensor or torque"),
     ):
         sweep.add_argument(name, help=explanation)
     method_argument(sweep)
@@ -97,12 +97,12 @@ def add_sweep(sweep: CommandParser) -> None:
         "--standard-errors",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="of each trial (default: they are computed)",
+        help="compute the standard errors of each trial (default: yes)",
     )
     sweep.add_argument(
         "--tracking",
         action="store_true",
-        help="with --simulate: track again with the identified parameters",
+        help="with --simulate: simulate again with the identified parameters, for the tracking error",
     )
     sweep.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the first trial (default 0)"
@@ -110,7 +110,9 @@ def add_sweep(sweep: CommandParser) -> None:
     sweep.add_argument("--threads", type=whole, help="number of threads; 0: all cores")
     sweep.add_argument("--workers", type=whole, help="number of processes that share the trials")
     sweep.add_argument("--output", type=Path, help="a .jsonl file to which each trial is added")
-    sweep.add_argument("--resume", action="store_true", help="continue the file of --output")
+    sweep.add_argument(
+        "--resume", action="store_true", help="continue the study in the file of --output"
+    )
     sweep.add_argument("--table", type=Path, help="file for the table: .csv or .parquet")
     sweep.add_argument(
         "--plot", type=Path, help="draw the penalty over the first settings: .png, .pdf, .svg"

@@ -77,7 +77,7 @@ def _runs(result: Commissioning) -> list[str]:
     lines = [
         *_table(run_rows(result)),
         "",
-        "Errors without each run's first sixth, by the encoder.",
+        "Tracking errors by the encoder, without the first sixth of each run.",
     ]
     said = summary(result)
     blank = [""] if result.blocked is not None else []
@@ -99,7 +99,7 @@ def timing_rows(result: Commissioning) -> list[list[str]]:
     return rows
 
 
-TIMING = "Late or lost samples are left out of the estimates; times are median to worst."
+TIMING = "Late or lost samples are left out of the estimates; times are from median to worst."
 
 
 def _timing(result: Commissioning) -> list[str]:

@@ -138,7 +138,7 @@ def compare_models(
         others = (parameters, search, residual, windows, torque_hold, shift, callback)
         if not all(usual) or any(each is not None for each in others):
             raise InputError(
-                "it takes no options but models; compare_servo_models has more",
+                "a servo takes no option but models here; compare_servo_models has more",
                 argument="score",
                 value=score,
             )
@@ -236,7 +236,7 @@ def compare_models(
 def _servo(joint: Joint | None) -> Joint:
     if joint is None or joint.voltage is None:
         raise InputError(
-            "rollouts are of a joint whose drive's input is a voltage",
+            'rollouts need a joint with input = "voltage" in its drive',
             argument="score",
             value="rollout",
         )

@@ -46,21 +46,21 @@ def load_refusal(estimate: Estimate) -> str | None:
     if found.value > _NEAR_ONE:
         return f"{_NAME} is {found.value:.3g}: near 1 it explains any torque"
     if found.value < _SMALLEST:
-        return f"{_NAME} is {found.value:.2g}, less than a recording tells from noise"
+        return f"{_NAME} is {found.value:.2g}, too small to separate from noise"
     source = estimate.follow_up
     if not isinstance(source, EstimateSource):
         return None
     choice = source.problem.choice
     if not choice.sensor and choice.model.resolved.gravity == "none":
         return (
-            f"{_NAME} needs a load that is known beside the drive's torque, from a sensor or from gravity; without "
-            "one it cannot be told from the scale of the other terms"
+            f"{_NAME} needs a known load in addition to the drive's torque, from a sensor or from gravity; without "
+            "it, the scale of the other terms has the same effect"
         )
     value, error = _beside_other_causes(estimate, source.problem)
     if not value > _SURE * error or not _KEPT < value / found.value < 1.0 / _KEPT:
         return (
-            f"{_NAME} is {found.value:.2g} alone and {value:.2g} ± {error:.1g} where other causes are allowed for "
-            "(drift, torque over the angle, delay, slow motion): the motion does not tell it from these"
+            f"{_NAME} is {found.value:.2g} alone, but {value:.2g} ± {error:.1g} with other causes in the fit (drift, "
+            "torque over the angle, delay, slow motion): the motion does not separate them"
         )
     return None
 

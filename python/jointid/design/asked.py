@@ -81,14 +81,14 @@ def free_parameters(joint: Joint, wanted: Sequence[str] | None) -> Asked:
     for name in chosen:
         if name in together:
             raise InputError(
-                f"no motion tells it apart from {', '.join(sorted(together - {name}))}",
+                f"no motion separates it from {', '.join(sorted(together - {name}))}",
                 argument="parameters",
                 value=name,
                 remedy="fix one of them in the joint",
             )
         if name not in names:
             raise InputError(
-                f"the identification leaves no parameter of this name free; {suggestion(name, list(names))}",
+                f"the identification has no free parameter of this name; {suggestion(name, list(names))}",
                 argument="parameters",
                 value=name,
             )

@@ -30,7 +30,7 @@ def _sensors(sensors: _core.Sensors, prismatic: bool) -> Iterator[str]:
         unit = "N" if prismatic else "N·m"
         yield f"noise of {stated.pop('torque_noise'):.3g} {unit} at the torque sensor"
     if "encoder_counts" in stated:
-        yield f"an encoder of {stated.pop('encoder_counts'):.7g} counts a motor turn"
+        yield f"an encoder of {stated.pop('encoder_counts'):.7g} counts per motor revolution"
     if stated.get("velocity") in _VELOCITIES:
         yield _VELOCITIES[stated.pop("velocity")]
     for name, value in stated.items():

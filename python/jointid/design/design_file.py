@@ -79,9 +79,9 @@ _FILE = Record(
 )
 _SAYS = COMMENTS | {
     "trajectory": "a sum of sines: amplitude · sin(frequency · t + phase)",
-    "believed": "the ranges from which joints were drawn that keep the limits",
-    "limits": "what the motion keeps",
-    "peaks": "what joints drawn from what is believed reach",
+    "believed": "joints were drawn from these ranges; they keep the limits",
+    "limits": "limits of the motion",
+    "peaks": "largest values over joints drawn from the prior",
     "reference": "largest relative errors in the thesis's motion, for comparison",
     "design.control_period": "s",
     "controller": "that drives the joint",

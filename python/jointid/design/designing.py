@@ -330,7 +330,7 @@ class _Designing:
                 and _judged(judge, _trajectory(judge, found.best)) is None
             ):
                 raise InputError(
-                    "along none of the motions tried is the loop stable for all joints of the prior",
+                    "on each motion tried, the loop is unstable for some joint of the prior",
                     argument="controller",
                     remedy="narrow the prior, or give the controller that will drive the joint",
                 )

@@ -81,7 +81,7 @@ def what_limits(design: Design, situation: Situation, judgement: _core.MotionJud
     reasons.append(f"the duration of {design.duration:g} s and the noise of the sensors")
     text = ", ".join(reasons)
     partner = _partner(situation, judgement, design.weakest)
-    return text + (f"; its error goes with that of {partner}" if partner else "")
+    return text + (f"; its error is correlated with that of {partner}" if partner else "")
 
 
 def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: str) -> str:

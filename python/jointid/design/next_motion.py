@@ -57,11 +57,13 @@ def motion_after(
                 value=name,
             )
     if not wanted:
-        raise InputError("nothing is free that a motion could tell more of", argument="parameters")
+        raise InputError(
+            "the estimate has no free parameter, so no motion can improve it", argument="parameters"
+        )
     believed = joint_of(estimate, given, joint)
     if believed.sensor and believed.link is None and {"sensor_gain", "sensor_offset"} & set(wanted):
         raise InputError(
-            "what loads the torque sensor is not known: the joint has no link",
+            "the load of the torque sensor is not known: the joint has no link",
             argument="joint",
             remedy="give a joint with its link's mass, centre_of_mass and inertia",
         )

@@ -102,7 +102,7 @@ def check_gain(joint: Joint, asked: Asked) -> None:
         return
     if gain.min <= 0.0 <= gain.max:
         raise InputError(
-            "what is believed and the joint's bounds contain 0, a sensor that reads nothing",
+            "the prior and the joint's bounds contain 0, a sensor that reads nothing",
             argument="sensor_gain",
             value=[gain.min, gain.max],
             place="prior",

@@ -118,8 +118,8 @@ def judged_with(design: Design) -> str:
     """Return how many joints and motions were tried, and what counted."""
     joints = f"{design.joints} joint{'' if design.joints == 1 else 's'}"
     return (
-        f"judged with {joints} drawn from what is believed, {design.evaluations} motions tried, "
-        f"criterion {design.criterion}, seed {design.seed}"
+        f"judged with {joints} drawn from the prior, {design.evaluations} motions tried, criterion "
+        f"{design.criterion}, seed {design.seed}"
     )
 
 

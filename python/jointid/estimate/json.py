@@ -123,7 +123,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield f"delays.{name}.signal", "this is not the name of the entry"
     for i, name in enumerate(free):
         if name not in names or name in free[:i]:
-            yield f"free[{i}]", "this is none of the parameters, or there twice"
+            yield f"free[{i}]", "this is not a parameter, or it is there twice"
     yield from empty_calls(d.get("findings", ()))
     for field in ("correlation", "covariance", "information"):
         matrix = d.get(field)

@@ -91,14 +91,14 @@ def objections_of(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Ob
     if self_test is not None and self_test.lost:
         yield Objection(
             code="self_test",
-            reason=f"known values of {', '.join(self_test.lost)} in the recorded motion are not found again",
+            reason=f"the self-test does not recover the known values of {', '.join(self_test.lost)}",
             blocking=True,
             parameters=self_test.lost,
         )
     given = tuple(p.name for p in estimate.parameters.values() if _rests_on_given(p))
     if given:
         names = ", ".join(given)
-        reason = f"what is stated of the joint is more uncertain than all else that {names} rest on"
+        reason = f"the stated facts of the joint cause most of the uncertainty of {names}"
         yield Objection(code="given", reason=reason, blocking=False, parameters=given)
 
 
@@ -130,8 +130,8 @@ def no_values(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]
         )
         yield Objection(
             code="undetermined",
-            reason=f"compensation and simulation need {' and '.join(merged)}, of which this recording determines no "
-            f"single value{sums}",
+            reason=f"compensation and simulation need {' and '.join(merged)}, but this recording determines no "
+            f"single value of them{sums}",
             blocking=True,
             parameters=merged,
         )
@@ -144,7 +144,7 @@ def held_on_bounds(findings: Iterable[Finding], asked: Collection[str]) -> Itera
     if needed:
         yield Objection(
             code="at_bound",
-            reason=f"compensation and simulation need {' and '.join(needed)}, which ended on a bound: that is no value",
+            reason=f"compensation and simulation need {' and '.join(needed)}, which ended on a bound and have no value",
             blocking=True,
             parameters=needed,
         )
@@ -187,14 +187,14 @@ def hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objec
         if p.at_bound is not None:  # such a one is not among the free ones
             yield Objection(
                 code="at_bound",
-                reason=f"a simulation needs {name}, and it ended on its bound",
+                reason=f"a simulation needs {name}, which ended on its bound",
                 blocking=True,
                 parameters=(name,),
             )
         elif name in asked and name in doubted and p.interval is not None and p.interval[0] <= 0.0:
             yield Objection(
                 code="undetermined",
-                reason=f"a simulation needs {name}, and its 95 % interval reaches zero",
+                reason=f"a simulation needs {name}, but its 95 % interval reaches zero",
                 blocking=True,
                 parameters=(name,),
             )

@@ -86,7 +86,7 @@ class Selection:
         if other.refused:
             return f"{text} ({other.refused})"
         if other.score < chosen.score:
-            return f"{text}, which is not better by more than chance"
+            return f"{text}; the difference may be chance"
         return text
 
 

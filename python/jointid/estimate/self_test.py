@@ -121,12 +121,12 @@ class SelfTest:
             return f"a trial could not be identified: {self.failed}"
         if self.passed:
             return (
-                f"all parameters come back in {self.trials} trials: such a motion, with noise and a misfit as "
+                f"all parameters are recovered in {self.trials} trials: this motion, with noise and misfit as "
                 "recorded, determines them if the joint is as modelled"
             )
         parts = [f"{name} ({self._worst(name)})" for name in self.lost]
         return (
-            f"these parameters do not come back: {', '.join(parts)}: such a motion, with noise and a misfit as "
+            f"these parameters are not recovered: {', '.join(parts)}: this motion, with noise and misfit as "
             "recorded, does not determine them, even if the joint is as modelled"
         )
 

@@ -99,7 +99,7 @@ class SteadyFriction:
             lines.append(f"note       SI units assumed: {', '.join(self.assumed)}")
         if any(self.values[name] < 0.0 for name in self.values if name.startswith("coulomb")):
             lines.append(
-                "warning    friction is negative: a torque needs the sign of its speed; inspect the signs"
+                "warning    friction is negative: the torque must have the sign of the speed; check the signs"
             )
         elif "coulomb_positive" in self.values:
             lines.append(

@@ -38,8 +38,8 @@ def _write(subject: Subject, order: Order) -> bytes:
     )
     notes = [
         f"define {big}_USE_FLOAT before including this file to compute in single precision",
-        "at velocity 0, where friction takes any value up to the breakaway friction, friction is 0: pass the"
-        " velocity that is wanted, not the measured one",
+        "friction is 0 at velocity 0, where a real joint has any friction up to the breakaway: pass the reference "
+        "velocity, not the measured one",
     ]
     if law.inertia is None:
         notes.append("inertia: it is not known, and taken as 0")
@@ -153,7 +153,7 @@ def _write(subject: Subject, order: Order) -> bytes:
             used=bool(law.functions("inertia")),
         ),
         "",
-        "/* Slope of the inertia over the position: of its product with velocity^2, half is a torque. */",
+        "/* Slope of the inertia over the position: half of its product with velocity^2 is a torque. */",
         *_function(
             f"{name}_inertia_slope",
             name,

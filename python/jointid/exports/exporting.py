@@ -120,7 +120,7 @@ def export(
     )
     if joint_name is not None and order.into is None:
         raise InputError(
-            "it names a joint of the file to edit, and there is none",
+            "it names a joint of the file to edit, but no file is given",
             argument="joint_name",
             value=joint_name,
         )
@@ -176,7 +176,7 @@ def _existing(target: Target, into: str | os.PathLike[str] | None, joint: str) -
         able = " and ".join(each.name for each in TARGETS if each.edits)
         raise InputError(f"only {able} files can be edited", argument="into", value=str(path))
     if not joint:
-        raise InputError("which joint of the file is meant is not said", argument="joint_name")
+        raise InputError("the joint of the file is not named", argument="joint_name")
     try:
         if path.stat().st_size > _LARGEST:
             raise InputError("the file is too large", argument="into", value=str(path))

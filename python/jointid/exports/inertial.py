@@ -100,7 +100,7 @@ def body_of(subject: Subject) -> Body:
     inner = joint.link_inertia - link.mass * link.centre_of_mass**2
     if inner < -1e-9 * joint.link_inertia:
         raise InputError(
-            "it is below mass · centre_of_mass², which no body has",
+            "it is below mass · centre_of_mass², which is impossible for a body",
             argument="inertia",
             value=joint.link_inertia,
             place=f"{joint.owner}: link",
@@ -145,6 +145,6 @@ def _equivalent(law: Law, joint: Joint, total: float, weight: float) -> Body:
         inertia=_NOTHING * total,
         gravity=field,
         drive=drive,
-        note="mass and distance of the body are chosen: the recording determines their product with gravity, and the"
-        " inertia of drive and body together",
+        note="mass and distance of the body are chosen: the recording determines only their product, by gravity, "
+        "and the inertia of drive and body together",
     )

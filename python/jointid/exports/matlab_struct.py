@@ -39,9 +39,8 @@ def _write(subject: Subject, order: Order) -> bytes:
     law = subject.law
     if law.centred:
         notes.append(
-            "position_torque.centred and position_inertia: cos * (cos(position - centre) - 1)"
-            " + sin * sin(position - centre); of an inertia that grows by it, the torque grows by slope"
-            " * velocity^2 / 2, too"
+            "position_torque.centred and position_inertia: cos * (cos(position - centre) - 1) + sin * sin(position "
+            "- centre); where the inertia changes by it, the torque also has slope * velocity^2 / 2"
         )
     struct = {
         "name": subject.joint.name,

@@ -51,8 +51,8 @@ def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
     loads = any(each.basis == "load" for each in subject.law.friction)
     return [
         *notes,
-        f"friction here is {nearest.constant!r} {unit} + {nearest.slope!r} {unit}*s/{subject.position_unit} * speed,"
-        f" the least-squares fit over speeds up to {nearest.speed!r} {subject.position_unit}/s, all alike",
+        f"friction here is {nearest.constant!r} {unit} + {nearest.slope!r} {unit}*s/{subject.position_unit} * speed, "
+        f"the least-squares fit over speeds up to {nearest.speed!r} {subject.position_unit}/s, equally weighted",
         f"largest difference of the torque over this range: {nearest.worst:.4g} {unit}"
         f"{' without load' if loads else ''}; of the friction, root mean square: {nearest.rms:.4g} {unit}",
     ]
@@ -79,8 +79,8 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
     )
     if slides and changes.get("armature"):
         notes.append(
-            "of a joint that slides, MuJoCo softens friction by the body's mass without the armature: give the body"
-            " the mass, or the joint a solimpfriction nearer to 1"
+            "for a prismatic joint, MuJoCo softens friction by the body's mass without the armature: give the body "
+            "the mass, or the joint a solimpfriction nearer to 1"
         )
     notes += _elsewhere(subject)
     if subject.law.offset:

@@ -109,7 +109,7 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
             {"speed": ...} if friction and subject.speed is None else {}
         )
         raise InputError(
-            f"{target} has Coulomb and viscous friction only; lost would be {' and '.join(lost)}",
+            f"{target} has only Coulomb and viscous friction; the export would lose {' and '.join(lost)}",
             argument="model",
             value=subject.model,
             remedy=Action("call", needed, "the nearest of that kind", "export"),

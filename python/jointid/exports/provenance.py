@@ -59,7 +59,7 @@ def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
     lines += [f"  {value_line(each)}" for each in subject.values]
     if subject.undetermined:
         names = ", ".join(subject.undetermined)
-        lines.append(f"The recording did not determine, or not well: {names}.")
+        lines.append(f"The recording did not determine these values, or not well: {names}.")
     if subject.unknown:
         lines.append(f"Of unknown uncertainty: {', '.join(subject.unknown)}.")
     if subject.findings:

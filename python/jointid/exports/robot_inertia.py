@@ -61,7 +61,7 @@ def _check(estimate: RobotEstimate) -> None:
         )
     if not estimate.consistent:
         raise InputError(
-            "no bodies can have the identified inertia, and a simulator would refuse it",
+            "the identified inertia is impossible for rigid bodies, so a simulator would refuse it",
             argument="inertia",
             value=True,
             remedy=() if estimate.inertia == FREE else again,
@@ -87,7 +87,7 @@ def _bodies(estimate: RobotEstimate, found: Sequence[Element], place: str) -> li
         what = "other joints that move" if others else "no such joints"
         which = ", ".join(others or missing)
         raise InputError(
-            f"of a body's inertia all joints have to be identified; the URDF has {what}: {which}",
+            f"the inertia of a body needs all joints to be identified; the URDF has {what}: {which}",
             argument="inertia",
             value=True,
             place=place,
@@ -159,12 +159,15 @@ def _words(estimate: RobotEstimate, number: int) -> Iterator[str]:
     name = estimate.robot.names[number]
     joint = estimate.joints[name]
     if estimate.inertia == FREE:
-        yield f"inertia of all that {name} moves before the next joint, one of many that move alike; single numbers"
-        yield "mean nothing, what the motion shows is right together"
+        yield (
+            f"inertia of all that {name} moves before the next joint; other inertias give the same motion, so single "
+            "numbers"
+        )
+        yield "mean nothing, and only the set is right"
     else:
         yield f"inertia of all that {name} moves before the next joint: the URDF's, scaled"
     rotor = joint.parameters.get("rotor_inertia")
     if rotor is not None:
-        yield f"without the motor's inertia, which URDF has not: {rotor.value!r} {rotor.unit} at the joint"
+        yield f"without the motor's inertia, which URDF cannot hold: {rotor.value!r} {rotor.unit} at the joint"
     elif estimate.robot.rotor_inertias[number] is None:
-        yield "with the motor's inertia about the joint's axis, which no motion tells from the link's"
+        yield "with the motor's inertia about the joint's axis, which no motion separates from the link's"

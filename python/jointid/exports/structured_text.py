@@ -26,9 +26,9 @@ _TOLERANCE = 1e-9
 def _write(subject: Subject, order: Order) -> bytes:
     name = identifier(order.name)
     notes = [
-        "at velocity 0, where friction takes any value up to the breakaway friction, friction is 0: connect the"
-        " velocity that is wanted, not the measured one",
-        "elements of the second edition of IEC 61131-3 alone are used, so that older systems read it, too",
+        "friction is 0 at velocity 0, where a real joint has any friction up to the breakaway: connect the "
+        "reference velocity, not the measured one",
+        "only elements of the second edition of IEC 61131-3 are used, so that older systems can read it",
     ]
     if subject.law.inertia is None:
         notes.append("inertia: it is not known, and taken as 0")

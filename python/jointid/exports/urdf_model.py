@@ -42,7 +42,9 @@ def _notes(subject: Subject, nearest: Nearest) -> list[str]:
     drive = drive_inertia(subject)
     if drive is not None:
         unit = "kg" if subject.joint.kind == "prismatic" else "kg·m²"
-        notes.append(f"inertia of the drive at the output, which URDF has not: {drive!r} {unit}")
+        notes.append(
+            f"inertia of the drive at the output, which URDF cannot hold: {drive!r} {unit}"
+        )
     if subject.law.offset:
         notes.append(f"constant torque of {subject.law.offset!r} {subject.torque_unit}")
     if subject.law.sensor is not None:

@@ -11,8 +11,8 @@ GROUP = 1
 """Group of the actuator; disabled, the motor turns freely."""
 
 VOLTAGE_NOTES = (
-    "the control is the duty of the servo, -1 to 1: the position loop stands outside; while the motor is not driven,"
-    f" disable actuator group {GROUP}, or back-EMF goes on braking",
+    "the control is the duty of the servo, -1 to 1; the position loop is not part of it. While the motor is not "
+    f"driven, disable actuator group {GROUP}; otherwise back-EMF still brakes",
 )
 
 

@@ -306,7 +306,7 @@ def prepare(
     merged = stated if joint is None else stated.over(joint.model)
     if merged.name == AUTO and not choose:
         raise InputError(
-            "a model with a name is needed here; only an identification by itself chooses one",
+            "name the model here; only identify chooses one by itself",
             argument="model",
             value=str(merged),
             remedy=Action("call", {"model": "stribeck"}),

@@ -326,7 +326,7 @@ def _parsed(text: str, path: Path) -> dict[str, Any]:
         raise InputError(
             f"not TOML: {reason}"
             if path.suffix.lower() == ".toml"
-            else "a joint file (.toml) or an estimate (.json) is expected here, and this is no TOML",
+            else "a joint file (.toml) or an estimate (.json) is expected here, but this is not TOML",
             place=f"{path}, line {line}",
             remedy="write lines like gear_ratio = 101" if path.suffix.lower() == ".toml" else (),
         ) from None

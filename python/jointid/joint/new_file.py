@@ -30,7 +30,7 @@ class Fact:
 
 
 FACTS: tuple[Fact, ...] = (
-    Fact("drive", "gear_ratio", "101", "motor's angle per angle of the joint, negative if they turn opposite ways"),
+    Fact("drive", "gear_ratio", "101", "motor angle per joint angle, negative if they turn in opposite directions"),
     Fact("drive", "torque_constant", "0.2", "N·m/A of the motor; needed where only the current is recorded"),
     Fact("drive", "rotor_inertia", "2.5e-4", "kg·m² of the motor and what turns with it, motor side"),
     Fact("drive", "torque_hold", '"zoh"', '"zoh": a command held between samples, "linear": a measured torque'),
@@ -84,7 +84,7 @@ def new_joint_text(joint: Joint, notes: Sequence[str] = ()) -> str:
     if joint.gear_ratio == 1.0:
         document["drive"].pop("gear_ratio", None)
     lines = [f"# {' '.join(note.split())}" for note in notes]  # a line break would end the comment
-    lines += ["# Take the # away from a line whose value is known, and put the value there."]
+    lines += ["# To state a value, remove the # of its line and write the value there."]
     lines += [
         f"schema = {SCHEMA}",
         f"name = {_written(joint.name)}",

@@ -110,7 +110,7 @@ class OwnTerms(Mapping[str, str]):
             return value
         if not isinstance(value, Mapping):
             raise InputError(
-                "a mapping from signals to how they enter is expected, like q6_rate: viscous",
+                "a mapping from signals to kinds of term is expected, like q6_rate: viscous",
                 argument="terms",
                 value=value,
             )
@@ -236,7 +236,7 @@ def _own_term(signal: str, text: str) -> OwnTerm:
             )
     if signal == POSITION and (kind not in CENTRED or rate):
         raise InputError(
-            f"of the joint's own position, {' and '.join(CENTRED)} can be identified",
+            f"for the joint's own position, only {' and '.join(CENTRED)} can be identified",
             argument=place,
             value=text,
             remedy="give another signal as an extra one",

@@ -64,7 +64,7 @@ def _sentence(name: str, share: Share) -> str:
     alike = ""
     if share.alike:
         others = " and ".join(f"joint {each}" for each in share.alike)
-        alike = f"; {others} would do as well: they move alike"
+        alike = f"; {others} would explain it as well: they move alike"
     if share.own_too:
         alike += f"; joint {name}'s own motion explains nearly as much"
     verb = "explains" if share.certain else "explains perhaps"

@@ -73,8 +73,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         travel = highest - lowest
         if not run.velocity_derived and run.ranges["velocity"] == (0.0, 0.0) and travel > 0.0:
             raise InputError(
-                f"it is 0 throughout, as if the joint never moved, but the position changes by {travel:.3g}: "
-                "drivers that do not measure it log zeros",
+                f"it is always 0, but the position changes by {travel:.3g}: drivers that do not measure it log zeros",
                 argument="velocity",
                 place=place,
                 remedy=Action(
@@ -109,7 +108,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         for earlier in alike:
             if _same(runs[earlier], run):
                 raise InputError(
-                    f"it is recording {earlier} once more, whose noise would count as that of two",
+                    f"it is the same as recording {earlier}, and its noise would count as that of two",
                     place=place,
                     remedy="give each recording once",
                 )
@@ -157,8 +156,8 @@ def _check_magnitudes(run: Recording, place: str) -> None:
             index = int(beyond[0])
             rest = float(np.abs(np.delete(values, beyond)).max())
             raise InputError(
-                f"{len(beyond)} sample(s) of this size, the first at {float(run.time[index]):.6g} s, while all others "
-                f"stay within {rest:.3g}: no measurement",
+                f"{len(beyond)} sample(s) of this size, the first at {float(run.time[index]):.6g} s, while all "
+                f"others stay within {rest:.3g}: these are not measured values",
                 argument=name,
                 value=float(values[index]),
                 place=place,

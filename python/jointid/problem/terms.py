@@ -116,14 +116,14 @@ def choose_terms(
         )
     if model.ripple and joint is None:
         raise InputError(
-            "its orders count turns of the motor, and there is no joint that has a gear_ratio",
+            "its orders are per motor revolution, but no joint with a gear_ratio is given",
             argument="ripple",
             value=list(model.ripple),
             remedy="give a joint with its gear_ratio",
         )
     if model.gravity == "known" and joint is None:
         raise InputError(
-            "there is no joint whose link is known",
+            "no joint with a known link is given",
             argument="gravity",
             value=model.gravity,
             remedy="give a joint with a link, or set gravity to free",
@@ -209,7 +209,7 @@ def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str
         return False, ""
     if joint.torque_offset is None and model.asymmetric and model.gravity != "none":
         # No motion tells a constant from a difference of Coulomb frictions; gravity it does tell.
-        return False, "torque_offset: all torque that does not reverse is taken for gravity"
+        return False, "torque_offset: all torque that does not reverse counts as gravity"
     return joint.torque_offset is not False, ""
 
 

@@ -184,7 +184,7 @@ def _asked(
     left = len(table.headers) - len({*known, *proposed.values()})
     if torque or not headerless or left < 1:
         return ""
-    return "; which column is the torque or current? No number shows it"
+    return "; which column is the torque or current? The numbers do not show it"
 
 
 def _with_absent(proposal: Action | None, absent: Sequence[str]) -> Action:

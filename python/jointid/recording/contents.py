@@ -113,7 +113,7 @@ class Contents:
         if self.table.saved is None and (large := too_large(signals)) is not None:
             signal, index = large
             damaged = InputError(
-                "no joint has such a value; it is damaged, or stands for a value that is missing",
+                "no joint has such a value: it is damaged, or marks a missing value",
                 argument=signal,
                 value=float(signals[signal][index]),
                 place=place(signal, index),

@@ -26,7 +26,7 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
         found.append("times are those of the logger: the messages have no stamps")
     for name, what in (
         ("repeated_messages", "repeat another one and are left out"),
-        ("reordered_messages", "stand behind a younger one and are put in order"),
+        ("reordered_messages", "come after a later one and are put in order"),
     ):
         count = metadata.get(name)
         if isinstance(count, int) and count:
@@ -34,7 +34,9 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     topics = metadata.get("topics_not_compared")
     if isinstance(topics, int) and topics:
         what = "1 topic is" if topics == 1 else f"{topics} topics are"
-        found.append(f"{what} not compared with this one: too many have as many messages")
+        found.append(
+            f"{what} not compared with this one: too many topics have the same number of messages"
+        )
     dropped = metadata.get("dropped_rows")
     if isinstance(dropped, int) and dropped:
         rows = "1 damaged row is" if dropped == 1 else f"{dropped} damaged rows are"
@@ -63,7 +65,7 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
         )
     cut = metadata.get("cut_samples")
     if isinstance(cut, int) and cut:
-        found.append(f"{cut} samples at the ends are left out, where a channel has none")
+        found.append(f"{cut} samples at the ends are left out, because a channel has none there")
     if metadata.get("converted"):
         found.append(str(metadata["converted"]))
     skipped = metadata.get("not_read")

@@ -44,7 +44,7 @@ class Parts(Changes):
         if isinstance(wanted, slice):
             if wanted.step is not None:
                 raise InputError(
-                    "times are given from : to; `resample` changes the period",
+                    "times are written as [start:stop]; `resample` changes the period",
                     argument="step",
                     value=wanted.step,
                 )

@@ -105,7 +105,7 @@ def _recognise_products(
         unit = speed_unit(time, position, values["velocity"])
         if unit is None:
             raise InputError(
-                "none of the units that its name has in servos' manuals agrees with the position's rate",
+                "no unit in the servos' manuals for this name agrees with the position's rate",
                 argument="velocity",
                 place=f"{table.header_place}, column {table.headers[velocity.index]!r}",
                 remedy=(

@@ -35,7 +35,7 @@ def design_report(design: Design) -> str:
         *_answer(design),
         element("h2", "Expected errors", id="errors"),
         table([list(row) for row in rows(design)], head=head(design), class_="errors"),
-        element("p", "Standard errors that are expected of one recording of this motion."),
+        element("p", "Expected standard errors of one recording of this motion."),
         element("h2", "Limits", id="limits"),
         element("ul", *(element("li", line) for line in limits_held(design))),
         element("h2", "Motion", id="motion"),
@@ -70,7 +70,7 @@ def _answer(design: Design) -> list[Html]:
         ),
         element(
             "p",
-            f"One standard error, at worst over {design.joints} joints drawn from what is believed. The weakest is "
+            f"One standard error, the worst of {design.joints} joints drawn from the prior. The weakest is "
             f"{name}.{limited}",
         ),
     ]
@@ -104,7 +104,8 @@ def _pictures(design: Design) -> list[Html]:
     )
     parts = [
         captioned(
-            "Position and velocity of the reference, and their limits; what joints reach is in the list above.",
+            "Position and velocity of the reference, and their limits; the list above has the values that joints "
+            "reach.",
             over_time,
             speeds,
         )

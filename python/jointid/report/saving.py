@@ -78,7 +78,7 @@ def report_page(
     pages = {**_PAGES, **_WITHOUT_FINDINGS}
     if kind.__name__ not in pages or not kind.__module__.startswith("jointid."):
         raise InputError(
-            f"of this there is no report, but of {', '.join(pages)}",
+            f"this has no report; reports are made of {', '.join(pages)}",
             argument="result",
             value=kind.__name__,
         )

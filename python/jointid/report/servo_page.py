@@ -44,7 +44,7 @@ def servo_report(
         element(
             "p",
             f"From {len(estimate.runs)} runs without a torque signal, by integrals of the torque balance over "
-            f"{estimate.windows} windows; errors by drawing runs anew.",
+            f"{estimate.windows} windows; errors by a bootstrap over the runs.",
         ),
         element("div", table([list(row) for row in rows(estimate)], head=[*head()]), class_="wide"),
         element(

@@ -45,12 +45,10 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
         element("h2", "Tracking error", id="tracking"),
         _tracking(result),
         _table(run_rows(result)),
-        element("p", "Errors without each run's first sixth, by the encoder."),
+        element("p", "Tracking errors by the encoder, without the first sixth of each run."),
         element("h2", "Limits", id="limits"),
         _table(margin_rows([run.recording for run in result.runs])),
-        element(
-            "p", "The largest of all runs, as recorded, and the share of the limit that it took."
-        ),
+        element("p", "The largest recorded values of all runs, and their share of the limit."),
         element("h2", "Stops", id="stops"),
         *_stops(result),
     ]
@@ -112,7 +110,7 @@ def _tracking(result: Commissioning) -> Html:
     ends = result.runs[:1] if len(result.runs) == 1 else (result.runs[0], result.runs[-1])
     others = (*result.runs[1:-1], *last)
     panels = [_errors(ends, ("measured", "fitted"), unit)]
-    caption = "Position less reference over time, by the encoder"
+    caption = "Position minus reference over time, by the encoder"
     if others:
         panels.append(_errors(others, ("second", "third", "fourth", "fifth"), unit, height=110))
         caption += "; below: the other runs, on a scale of their own"

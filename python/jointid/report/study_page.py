@@ -83,7 +83,7 @@ def _answer(study: Study, summary: Summary) -> list[Html]:
             )
     else:
         lines.append(answer(_moves_most(cells)))
-        lines.append(element("p", "The true values are not known, so nothing is said of errors."))
+        lines.append(element("p", "The true values are not known, so errors are not shown."))
     refused = sum(cell.refused for cell in cells)
     if refused:
         first = next(cell for cell in cells if cell.refused)

@@ -119,16 +119,16 @@ def _told(code: str, away: Array, found: Aligned) -> Finding:
     if away.any():
         details.append("it was shifted before the identification")
     elif found.chosen:
-        details.append("the position is late or coarse, the torque early, or the gear gives way")
+        details.append("the position is late or coarse, the torque early, or the gear is elastic")
         text = "the position's filter and resolution, and both clocks"
         advice = (Action("inspect", text=text),)
     else:
         after = " after the stated shift" if attempt.delay.any() else ""
-        details.append(f"that is what is left{after}, and it biases the values")
+        details.append(f"this delay is left{after} and biases the values")
         shift = {"shift": told_shift(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
         if not alike:
-            text = "the delays; without a stated shift each joint's is found and taken away"
+            text = "the delays; without a stated shift, each joint's delay is found and removed"
             advice += (Action("inspect", text=text),)
     return TYPES[code].finding(
         titles[0] + more, *advice, details="; ".join([*titles[1:], *details]), evidence=evidence

@@ -37,7 +37,7 @@ def assumptions_told(
         if columns == list(range(robot.n)) and not set(taken) & set(robot.names):
             pairs = zip(robot.names, taken, strict=True)
             yield TYPES["joints_in_order"].finding(
-                "the recording does not name the URDF's joints, which are taken in order",
+                "the recording does not name the URDF's joints; they are taken in order",
                 details=", ".join(f"{name} is {each}" for name, each in pairs),
             )
             break
@@ -59,7 +59,7 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
             yield TYPES["locked_joint_moves"].finding(
                 f"{name} moves by {max(spans):.3g} and is not one of the robot's joints",
                 Action("inspect", text=f"the list of the robot's joints, which lacks {name}"),
-                details="it is taken to stand at 0",
+                details="it is assumed to stay at 0",
                 evidence={"range": Measured(max(spans))},
             )
 

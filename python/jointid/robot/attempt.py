@@ -135,7 +135,7 @@ def attempted(
             "no joint moves by more than the noise of its velocity",
             argument="recordings",
             value=runs[0].name,
-            remedy="where one does, look for time stamps that are late or of lost rows",
+            remedy="if one does, look for late time stamps or lost rows",
         )
     estimate, fit = _solved(robot, balance, asked.inertia, duration, asked.models, numbers)
     return Attempt(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from jointid.base.argument_checks import require_kind, whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.student import quantile
+from jointid.estimate.wording import percent_with_error
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.aligning import aligned
@@ -148,7 +149,7 @@ def _modes(inertia: object) -> tuple[Inertia, ...]:
     found: Any = (inertia,) if isinstance(inertia, str) else inertia
     if not isinstance(found, list | tuple) or not found or set(found) - set(MODES):
         raise InputError(
-            f"some of {', '.join(MODES)} are expected", argument="inertia", value=inertia
+            f"one or more of {', '.join(MODES)} are expected", argument="inertia", value=inertia
         )
     return tuple(dict.fromkeys(found))
 
@@ -239,9 +240,7 @@ def _with_reasons(
             reason = "winner"
         elif number != best and _worse(excess):
             error = float(excess.std(ddof=1)) / np.sqrt(excess.size)
-            reason = (
-                f"worse than the best by {100.0 * float(excess.mean()):.2g} ± {100.0 * error:.2g} %"
-            )
+            reason = f"worse than the best by {percent_with_error(float(excess.mean()), error)}"
         elif row.parameters == winner.parameters:
             reason = "not significantly better than the winner, with the same number of parameters"
         else:
@@ -255,7 +254,7 @@ def _with_reasons(
 
 def _sentence(rows: Sequence[ComparedRobotModel], best: int, chosen: int) -> str:
     winner, first = rows[chosen], rows[best]
-    score = f"{100.0 * first.score:.3g} ± {100.0 * first.stderr:.2g} %"
+    score = percent_with_error(first.score, first.stderr)
     if best == chosen:
         return (
             f"{winner.name} ({winner.parameters} parameters) predicts held-out torque best, {score}"

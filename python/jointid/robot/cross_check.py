@@ -146,7 +146,7 @@ def _compared(attempt: Attempt, look: Looked, joint: int, name: str) -> Compared
     if joint not in look.matrix:
         return Compared(value=value, stderr=stderr, reason="too few rows of fast motion")
     if name == "rotor_inertia" and look.recorded:
-        reason = "the recorded velocity explains more, and may be late, which counts as inertia"
+        reason = "the recorded velocity explains more, but it may be late, which looks like inertia"
         return Compared(value=value, stderr=stderr, reason=reason)
     label = (joint, name)
     second, error, spread = look.values[label], look.errors[label], look.spread[label]

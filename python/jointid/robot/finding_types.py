@@ -16,9 +16,9 @@ TYPES = {
         FindingType(
             code="scaled_torques",
             severity="blocking",
-            meaning="all torques are smaller or larger than the URDF's links weigh, by a factor above 1.6 that hardly "
-            "differs between the joints: currents, or the motor's side of a gear. With a factor below 2.5, one link "
-            "with another weight must not explain it half as well",
+            meaning="all torques differ from the weight of the URDF's links by nearly the same factor, above 1.6: "
+            "they are currents, or of the motor's side of a gear. Below a factor of 2.5, one link with "
+            "another weight must not explain it half as well",
             advice="state the unit, the gear ratios or `torque_scales`",
         ),
         FindingType(
@@ -56,37 +56,39 @@ TYPES = {
         ),
         FindingType(
             code="swapped_joints",
-            meaning="the columns of two joints are probably exchanged. It is looked for where a joint's balance leaves "
-            "more than 5 % or friction would be negative",
+            meaning="the columns of two joints are probably exchanged. It is looked for where a joint's balance "
+            "leaves more than 5 %, or where friction would be negative",
             advice=_COLUMNS,
         ),
         FindingType(
             code="swapped_torques",
-            meaning="the torque columns of two joints are probably exchanged; looked for as `swapped_joints`",
+            meaning="the torque columns of two joints are probably exchanged; looked for where `swapped_joints` is",
             advice=_COLUMNS,
         ),
         FindingType(
             code="wrong_sign",
-            meaning="all signals of a joint have the wrong sign; looked for as `swapped_joints`. The mirror image of "
-            "an arm that moves in one plane fits as well: both joints that may turn the other way are then named",
+            meaning="all signals of a joint have the wrong sign; looked for where `swapped_joints` is. The mirror "
+            "image of an arm that moves in one plane fits as well: both joints that may turn the other way "
+            "are then named",
             advice="state `directions`",
         ),
         FindingType(
             code="wrong_torque_sign",
-            meaning="the torque of a joint has the wrong sign; looked for as `swapped_joints`",
+            meaning="the torque of a joint has the wrong sign; looked for where `swapped_joints` is",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="wrong_motion_sign",
-            meaning="the position of a joint has the wrong sign, its torque the right one; looked for as "
-            "`swapped_joints`",
+            meaning="the position of a joint has the wrong sign, its torque the right one; looked for where "
+            "`swapped_joints` is",
             advice="state `directions` and `torque_scales`",
         ),
         FindingType(
             code="wrong_coupling",
-            meaning="a coupling of motors is missing or has another factor; looked for as `swapped_joints`. "
-            "Neighbouring joints with factors 0 and ±1, and exchanged rows and columns, are tried with free inertias. "
-            "A factor that makes friction negative counts only where the balance is much better with it",
+            meaning="a coupling of motors is missing or has another factor; looked for where `swapped_joints` is. "
+            "Neighbouring joints with factors 0 and ±1, and exchanged rows and columns, are tried with free "
+            "inertias. A factor that makes friction negative counts only where the balance is much better "
+            "with it",
             advice="state `couplings`",
         ),
         FindingType(
@@ -130,8 +132,7 @@ TYPES = {
         FindingType(
             code="several_wrong_facts",
             severity="info",
-            meaning="facts are looked for one after the other, up to three, each with those before it corrected; here "
-            "is the call that corrects them all",
+            meaning="several facts are wrong. Up to three are found, one after the other; the call corrects them all",
             advice="state all of them",
         ),
         FindingType(
@@ -143,8 +144,8 @@ TYPES = {
         FindingType(
             code="turned_zero",
             meaning="the log counts joints from another zero than the URDF, by a multiple of 90 degrees. The URDF's "
-            "inertias fit at least twice as well with it, and it is taken into account. A joint about the vertical has "
-            "no zero that gravity shows",
+            "inertias fit at least twice as well with it, and it is taken into account. Gravity does not "
+            "show the zero of a joint with a vertical axis",
             advice="state `zero_offsets`",
         ),
         FindingType(
@@ -160,9 +161,9 @@ TYPES = {
         ),
         FindingType(
             code="unexamined_causes",
-            meaning="what is left of the torque is not noise: windows resemble those before them. Lists what is not "
-            'examined for a robot and makes the verdict "usable with care"; for information where the named facts '
-            "explain it",
+            meaning="the rest of the torque is not noise: neighbouring windows are alike. The finding lists causes "
+            'that are not examined for a robot, and makes the verdict "usable with care". Info: the named '
+            "facts explain it",
             advice="identify the joint by itself, which examines these causes",
         ),
         FindingType(
@@ -182,13 +183,14 @@ TYPES = {
         ),
         FindingType(
             code="at_bound",
-            meaning="friction would be negative and is held at 0; for information where it is at most a tenth of the "
-            "joint's friction",
+            meaning="friction would be negative and is held at 0. Info: it is at most a tenth of the joint's "
+            "friction",
             advice="check the model and the given facts",
         ),
         FindingType(
             code="standing",
-            meaning="joints stand still, stick or are too slow, which is left out; a warning above 35 % of the time",
+            meaning="joints stand still, stick or are too slow; these parts are left out. A warning above 35 % of "
+            "the time",
             advice="record more motion",
         ),
         FindingType(

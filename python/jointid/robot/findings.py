@@ -76,7 +76,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
     if some:
         most = max(some, key=lambda name: some[name])
         yield TYPES["standing"].finding(
-            f"joints stand still, stick or are too slow at times, {most} {percent(some[most])} of it",
+            f"joints stand still, stick or are too slow, most often {most}: {percent(some[most])} of the time",
             details=f"{', '.join(f'{name} {percent(share)}' for name, share in some.items())}; {_LEFT_OUT}",
             severity="info",
             evidence={name: Measured(share) for name, share in some.items()},

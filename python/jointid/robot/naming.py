@@ -29,11 +29,11 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
         Action(
             "call",
             {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
-            text="if that is so",
+            text="if this is right",
             function="Robot.from_urdf",
         ),
-        details=f"the offsets are {', '.join(turned)}, and are taken into account; with the URDF's inertias "
-        f"{percent(zeros.before)} of the torque stays unexplained without them, {percent(zeros.after)} with them",
+        details=f"the offsets are {', '.join(turned)} and are taken into account; the URDF's inertias leave "
+        f"{percent(zeros.before)} of the torque unexplained without them, {percent(zeros.after)} with them",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
@@ -150,7 +150,7 @@ def _torque(error: SmallError, name: str) -> _Worded:
     value, spread = float(error.values[0]), float(error.errors[0])
     return (
         f"the torque of {name} is {_with_error(100.0 * abs(value), 100.0 * spread)} % too {_side(value)}",
-        "the links' weight and the other joints say so; its torque constant or gear ratio is probably wrong",
+        "the links' weight and the other joints show it; its torque constant or gear ratio is probably wrong",
         {"scale": Measured(1.0 + value), "scale_error": Measured(spread)},
         (_call({"torque_scales": _plain(error.robot.torque_scales)}),),
     )
@@ -218,12 +218,12 @@ def _coupled(robot: Robot) -> dict[str, dict[str, float]]:
 
 def _or(wrong: WrongFact) -> str:
     nearly = " and ".join(f"{each.coupling or 0.0:g}" for each in wrong.others)
-    return f" ({nearly} is nearly as good; the sign rests on little)" if nearly else ""
+    return f" ({nearly} is nearly as good; the sign is uncertain)" if nearly else ""
 
 
 def _or_other(wrong: WrongFact) -> str:
     names = [name for each in wrong.others for name in each.joints]
-    return f" (or {' or '.join(names)} does: this motion does not tell them apart)" if names else ""
+    return f" (or {' or '.join(names)} does: this motion does not separate them)" if names else ""
 
 
 def _call(arguments: Mapping[str, object]) -> Action:

@@ -59,8 +59,8 @@ def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
     distance = two_digits(estimate.impossible_by)
     yield TYPES["impossible_inertia"].finding(
         f"no bodies can have these base parameters, by {distance} standard errors",
-        details="that is the distance of all of them together from the nearest that bodies can have; friction and the "
-        "torque of motion may be right, single inertial parameters are not",
+        details="that is the distance to the nearest parameters that bodies can have; friction and the torque of "
+        "motion may be right, single inertial parameters are not",
         severity="info",
         evidence={"distance": Measured(estimate.impossible_by)},
     )

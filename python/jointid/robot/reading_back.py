@@ -151,9 +151,9 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for name, each in d["joints"].items():
         yield from _of_joint(name, each, len(d["settings"]["recordings"]))
     if len(d["inertial"]) != len(names):
-        yield "inertial", f"{len(names)} lists are expected, one a link"
+        yield "inertial", f"{len(names)} lists are expected, one per link"
     if len(d["settings"]["min_speed"]) != len(names):
-        yield "settings.min_speed", f"{len(names)} numbers are expected, one a joint"
+        yield "settings.min_speed", f"{len(names)} numbers are expected, one per joint"
     every = {f"{name}.{key}" for name, each in d["joints"].items() for key in each["parameters"]}
     base = [each["name"] for each in d["base_parameters"]]
     if len(set(base)) != len(base):
@@ -220,6 +220,6 @@ def _of_robot(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "robot.couplings", "the motors' speeds do not give the joints': it is singular"
     for key in ("gear_ratios", "zero_offsets", "torque_scales", "directions"):
         if d.get(key) is not None and len(d[key]) != count:
-            yield f"robot.{key}", f"{count} numbers are expected, one a joint"
+            yield f"robot.{key}", f"{count} numbers are expected, one per joint"
     if d["gear_ratios"] is not None and 0.0 in d["gear_ratios"]:
         yield "robot.gear_ratios", "a gear ratio is not 0"

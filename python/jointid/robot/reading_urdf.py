@@ -68,11 +68,10 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
     expected = [name for name in names if name in kept]
     if kept != expected:  # the other facts' lists would go to other joints than their author means
         raise InputError(
-            "the order of the URDF is expected, which is that of all other lists: "
-            + ", ".join(expected),
+            "the order of the URDF is expected, as in all other lists: " + ", ".join(expected),
             argument="joints",
             value=list(kept),
-            remedy="order gear_ratios and all other lists alike",
+            remedy="use this order in gear_ratios and all other lists",
         )
     locked = [model.getJointId(name) for name in names if name not in kept]
     if locked:
@@ -107,7 +106,7 @@ def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
     joint = model.joints[model.getJointId(name)]
     if joint.nv != 1:
         raise InputError(
-            "it has several degrees of freedom; hinges and slides are understood",
+            "it has several degrees of freedom; only revolute and prismatic joints are read",
             argument="joints",
             value=name,
             remedy="leave it out of joints",

@@ -168,7 +168,7 @@ class RobotEstimate(Shown):
             raise InputError("finite speeds are expected", argument="velocity", value=velocity)
         if speeds.ndim not in (1, 2) or speeds.shape[-1] != self.robot.n:
             raise InputError(
-                f"{self.robot.n} numbers are expected, one a joint",
+                f"{self.robot.n} numbers are expected, one per joint",
                 argument="velocity",
                 value=velocity,
             )

@@ -228,8 +228,7 @@ class Robot:
             lacking = [name for name in self.names if name not in recording.names]
             other = [name for name in recording.names if name not in self.names]
             raise InputError(
-                f"the recording has {', '.join(known)}, but not {', '.join(lacking)}; beside these it has "
-                f"{', '.join(other)}",
+                f"the recording has {', '.join(known)}, but not {', '.join(lacking)}; it also has {', '.join(other)}",
                 argument="joints",
                 value=list(self.names),
                 place=recording.name,
@@ -297,7 +296,7 @@ def _couplings(
             matrix = np.full((0, 0), np.nan)
         if matrix.shape != (n, n) or not np.all(np.isfinite(matrix)):
             raise InputError(
-                f"a matrix of {n} x {n} numbers is expected, a row a motor and a column a joint",
+                f"a matrix of {n} x {n} numbers is expected, one row per motor and one column per joint",
                 argument="couplings",
                 value=couplings,
             )

@@ -42,15 +42,15 @@ def torque_shift(shift: object, robot: Robot) -> Array:
     for signal in shift:
         if signal not in SHIFTED:
             raise InputError(
-                "there is no such signal; of a robot the delay of torque is taken away",
+                "there is no such signal; only the torque of a robot can have a delay removed",
                 argument="shift",
                 value=signal,
                 remedy="pass shift={'torque': seconds}",
             )
         if signal != "torque":
             raise InputError(
-                "of a robot, the torque's delay against the position is taken away; velocities are always derived from "
-                "the positions",
+                "only the torque of a robot can have a delay removed; velocities are always derived from the "
+                "positions",
                 argument="shift",
                 value=signal,
                 remedy="leave it out",

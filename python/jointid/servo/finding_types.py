@@ -20,14 +20,13 @@ TYPES = {
         ),
         FindingType(
             code="at_bound",
-            meaning="a value ended on its bound 0: the runs show none; a warning for the torque per voltage and the "
-            "inertia, for information otherwise",
+            meaning="a value ended on its bound 0: the runs show none. Info: a value other than torque per voltage "
+            "and inertia",
             advice="record runs with other gains and motions",
         ),
         FindingType(
             code="undetermined",
-            meaning="half of a value's 95 % interval exceeds a quarter of the value; for information for viscous "
-            "friction",
+            meaning="half of a value's 95 % interval exceeds a quarter of the value. Info: viscous friction",
             advice="record more runs, with other gains and motions",
         ),
         FindingType(

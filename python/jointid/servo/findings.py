@@ -55,8 +55,8 @@ def _inseparable(estimate: ServoEstimate, sought: Sought) -> Iterator[Finding]:
 
 def _chosen(estimate: ServoEstimate) -> str:
     if estimate.joint.link is None:
-        return "for want of a load that swings"
-    return "because its free swing is nearest to those of all other shares, at worst"
+        return "because no load swings freely"
+    return "because its largest difference of the free swing from other shares is the smallest"
 
 
 def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
@@ -75,7 +75,9 @@ def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
             continue
         top = p.interval[1] if p.interval is not None else np.nan
         upto = (
-            f"runs drawn anew give up to {two_digits(top)} {p.unit}".rstrip() if top > 0.0 else ""
+            f"a bootstrap over the runs gives up to {two_digits(top)} {p.unit}".rstrip()
+            if top > 0.0
+            else ""
         )
         blocking = name in ("torque_per_voltage", "inertia")
         yield TYPES["at_bound"].finding(

@@ -58,7 +58,7 @@ def _objections(estimate: ServoEstimate) -> Iterable[Objection]:
     if sought and all(p.stderr is None for p in sought):
         yield Objection(
             code="errors",
-            reason="errors were not asked for: nothing says how far the values may be off",
+            reason="errors were not asked for, so the accuracy of the values is not known",
             blocking=False,
             parameters=tuple(p.name for p in sought),
         )

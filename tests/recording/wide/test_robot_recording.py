@@ -72,7 +72,7 @@ def test_a_joint_without_a_signal() -> None:
     ("changes", "message"),
     [
         ({"position": ARRAY.T}, "exchanged"),
-        ({"position": ARRAY[:, 0]}, "one row a sample"),
+        ({"position": ARRAY[:, 0]}, "one row per sample"),
         ({"torque": ARRAY[:, :2]}, "torque"),
         ({"names": ["a", "a", "b"]}, "two joints"),
         ({"names": ["a", "b"]}, "one name"),

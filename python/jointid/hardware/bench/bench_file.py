@@ -123,7 +123,7 @@ def _motion(table: Table, folder: Path) -> Motion:
         table.refuse("file", "the name of a motion's file is expected", name)
     for other in table.entries:
         if other != "file":
-            table.refuse(other, "the motion is that of the file, and needs no other key")
+            table.refuse(other, "the file holds the whole motion; remove this key")
     try:
         return load_motion(folder / name)
     except InputError as error:

@@ -67,9 +67,8 @@ class LoggedPositions:
         found = self._position[self.kept(before)[: len(session.position)]]
         row = int(np.argmax(~(np.abs(found - session.position) <= _tolerance(session.position))))
         return InputError(
-            f"row {row} of the recording has the position {session.position[row]:.9g} rad, the frames "
-            f"{found[row]:.9g} rad, and no other cycle as the first makes them agree; is it the log of this "
-            "session, and of this joint?",
+            f"row {row} of the recording has the position {session.position[row]:.9g} rad, but the frames have "
+            f"{found[row]:.9g} rad, whichever cycle is taken as the first; is it the log of this session and joint?",
             remedy=f"cycles_before={before} takes the frames as they are",
         )
 

@@ -139,7 +139,8 @@ class Table:
         for name in self.entries:
             if name not in known:
                 self.refuse(
-                    name, f"unknown key; {suggestion(name, known) if known else 'none is expected'}"
+                    name,
+                    f"unknown key; {suggestion(name, known) if known else 'this table has no keys'}",
                 )
 
     def refuse(self, name: str, reason: str, value: object = NOT_GIVEN) -> NoReturn:

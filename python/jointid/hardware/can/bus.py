@@ -116,14 +116,14 @@ def check_bitrates(bitrate: int, *, fd: bool, data_bitrate: int | None) -> None:
         return
     if not fd:
         raise InputError(
-            "classic CAN has no bit rate of the data of its own",
+            "classic CAN has no separate bit rate for the data",
             argument="data_bitrate",
             value=data_bitrate,
             remedy="fd = true opens the bus for CAN FD",
         )
     if not bitrate <= data_bitrate <= _FASTEST:
         raise InputError(
-            f"bitrate, {bitrate}, to {_FASTEST} bit/s is expected",
+            f"a value from bitrate, {bitrate}, to {_FASTEST} bit/s is expected",
             argument="data_bitrate",
             value=data_bitrate,
         )
@@ -223,7 +223,7 @@ def _check_network(channel: str, bitrate: int, data_bitrate: int | None) -> None
             "the network carries no frames of CAN FD",
             argument="channel",
             value=channel,
-            remedy=f"let it do so with `{other}`",
+            remedy=f"enable them with `{other}`",
         )
 
 

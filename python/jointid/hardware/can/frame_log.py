@@ -99,7 +99,9 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     except OSError as error:
         raise InputError(f"the file cannot be read ({error.strerror})") from None
     except Exception as error:  # each of python-can's readers has errors of its own
-        raise InputError(f"what follows frame {number} is no frame ({reason_of(error)})") from error
+        raise InputError(
+            f"the data after frame {number} are not a frame ({reason_of(error)})"
+        ) from error
 
 
 def _problem(message: can.Message) -> str:

@@ -70,7 +70,7 @@ class ElmoDrive:
     ) -> None:
         if joint.torque_constant is None:
             raise InputError(
-                "missing, so no torque can be commanded; it stands in the joint file under [drive]",
+                "missing, so no torque can be commanded; state it under [drive] of the joint file",
                 argument="torque_constant",
             )
         self.joint = joint
@@ -158,8 +158,8 @@ class ElmoDrive:
         if period > CYCLES * self.options.heartbeat:
             raise DriveFaultError(
                 "drive_fault",
-                f"a period of {1e3 * period:g} ms is too long for a heartbeat awaited every "
-                f"{1e3 * self.options.heartbeat:g} ms, which each cycle sends; at most a third of it is expected",
+                f"a period of {1e3 * period:g} ms is too long: each cycle sends the heartbeat that the drive expects "
+                f"every {1e3 * self.options.heartbeat:g} ms; at most a third of that is expected",
             )
         self._period, self._cycle = period, 0
         self._found_off = link.up = False
@@ -232,7 +232,7 @@ class ElmoDrive:
         if end - asked < _LEAST * timeout:
             raise DriveFaultError(
                 "stale_position",
-                f"the answer to the SYNC before was late: of {1e3 * timeout:g} ms for another no time is left",
+                f"the answer to the last SYNC was late, so none of the {1e3 * timeout:g} ms is left for the next",
                 measured=asked - end + timeout,
                 allowed=timeout,
             )

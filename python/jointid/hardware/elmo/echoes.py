@@ -59,8 +59,8 @@ class CommandEchoes:
             return ""  # a frame that came twice
         wanted_text = f", sent was {self._waiting[0]:.6g} A" if self._waiting else ""
         return (
-            f"the drive acknowledges TC = {current:.6g} A{wanted_text}: a command was changed on its way, "
-            "or somebody else commands the drive"
+            f"the drive acknowledges TC = {current:.6g} A{wanted_text}: a command was changed in transmission, or "
+            "another program commands the drive"
         )
 
     def check(self) -> None:

@@ -15,10 +15,10 @@ _ANSWER = 0.05  # [s] for a register; a drive that does not have one refuses it 
 # Letters, index, meaning, unit (SimplIQ Command Reference).
 _LIMITS = (
     ("PL", 1, "peak current", "A"),
-    ("PL", 2, "longest time at it", "s"),
+    ("PL", 2, "longest time at peak current", "s"),
     ("CL", 1, "continuous current", "A"),
-    ("CL", 2, "share of it above which a motor that stands is stuck", "%"),
-    ("CL", 3, "speed below which it counts as standing", "count/s"),
+    ("CL", 2, "share of peak current above which a standing motor is stuck", "%"),
+    ("CL", 3, "speed below which the motor counts as standing", "count/s"),
     ("MC", 0, "the drive's own peak current", "A"),
     ("HL", 2, "highest speed of the motor", "count/s"),
     ("LL", 2, "lowest speed of the motor", "count/s"),
@@ -26,7 +26,7 @@ _LIMITS = (
     ("LL", 3, "lowest position of the motor", "count"),
     ("ER", 2, "largest speed error", "count/s"),
     ("ER", 3, "largest position error", "count"),
-    ("XM", 1, "begin of the counter's range", "count"),
+    ("XM", 1, "start of the counter's range", "count"),
     ("XM", 2, "end of the counter's range", "count"),
     ("BV", 0, "highest supply", "V"),
 )

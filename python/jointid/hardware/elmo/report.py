@@ -69,7 +69,7 @@ def _counts(link: ElmoLink, options: ElmoOptions) -> Reported:
     value = registers.counts_per_turn(link)
     return Reported(
         name="CA[18]",
-        meaning="encoder counts of a motor turn",
+        meaning="encoder counts per motor revolution",
         value=value,
         unit="count",
         expected=None if value is None else float(options.counts_per_turn),
@@ -78,7 +78,7 @@ def _counts(link: ElmoLink, options: ElmoOptions) -> Reported:
 
 def _trouble(link: ElmoLink, status: DriveStatus | None) -> str:
     if status is None:
-        return "it does not tell its status (SR)"
+        return "it does not report its status (SR)"
     found = [status.problem]
     if status.failure:
         meaning = failure_meaning(int(link.number("MF") or 0))

@@ -49,7 +49,7 @@ def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
         if each.differs:
             raise DriveFaultError(
                 "drive_fault",
-                f"the drive's watchdog is not armed: object {each}; it would go on when this program has died",
+                f"the drive's watchdog is not armed: object {each}; the motor would go on after this program has died",
             )
 
 
@@ -60,7 +60,7 @@ def watchdog_objects(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ..
     return (
         Reported(
             name="1016h:1",
-            meaning=f"heartbeat awaited from node {options.master_node}, within {1e3 * options.heartbeat:g} ms",
+            meaning=f"heartbeat expected from node {options.master_node}, within {1e3 * options.heartbeat:g} ms",
             value=_hexadecimal(_object(link, 0x1016, 1), 8),
             expected=_hexadecimal(watched, 8),
         ),
@@ -79,13 +79,13 @@ def watchdog_objects(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ..
         ),
         Reported(
             name="1029h:1",
-            meaning="state it enters then (1: none, it goes on to answer)",
+            meaning="state it enters then (1: no change, it still answers)",
             value=_object(link, 0x1029, 1),
             expected=1,
         ),
         Reported(
             name="2F21h",
-            meaning="emergencies that it sends, of those needed",
+            meaning="needed emergencies that it sends",
             value=_hexadecimal(emergencies & _EMERGENCIES, 3),
             expected=_hexadecimal(_EMERGENCIES, 3),
         ),

@@ -49,8 +49,8 @@ def reasons_not_to_start(
         allowed = min(allowed, allowed_current)
     if peak > allowed * (1.0 + 1e-6):
         reasons.append(
-            f"the drive's peak current PL[1] is {peak:g} A, the session allows {allowed:.4g} A; "
-            "set PL[1] down, or the session's torque limit or the joint's current limit up"
+            f"the drive's peak current PL[1] is {peak:g} A, the session allows {allowed:.4g} A; lower PL[1], or "
+            "raise the session's torque limit or the joint's current limit"
         )
     status = DriveStatus.of(int(link.ask(Command(letters="SR")).value))
     if status.problem:

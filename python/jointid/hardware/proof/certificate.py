@@ -98,7 +98,9 @@ class Certificate:
             It was not passed, or the drive's watchdog is not known.
         """
         if not result.passed:
-            raise InputError("only one that was passed is certified", argument="first motion")
+            raise InputError(
+                "only a first motion that passed is certified", argument="first motion"
+            )
         if result.drive_watchdog is None or result.uncertified:
             raise InputError(result.uncertified, argument="first motion")
         found = {
@@ -122,7 +124,7 @@ class Certificate:
     def save(self, path: str | Path) -> None:
         """Write it as TOML, whole or not at all."""
         lines = [
-            "# Written by `jointid first-motion`; `jointid run` on a real joint asks for it. Not to be edited.",
+            "# Written by `jointid first-motion`; `jointid run` on a real joint asks for it. Do not edit it.",
             f"schema = {SCHEMA}",
             f'date = "{self.date.isoformat(timespec="seconds")}"',
         ]

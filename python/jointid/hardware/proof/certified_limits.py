@@ -83,11 +83,13 @@ def notes(
     # Homing changes it each time that the encoder loses its zero: no objection, or it would be void daily.
     if was is not None and now is not None and abs(now - was) > _MOVED:
         found.append(
-            f"position_offset was {was:g} and is {now:g} rad: the position window is elsewhere by "
-            f"{abs(now - was):.4g} rad, unless the joint was homed anew"
+            f"position_offset was {was:g} and is {now:g} rad: the position window has moved by {abs(now - was):.4g} "
+            "rad, unless the joint was homed again"
         )
     if identity is not None and not has_serial(identity):
-        found.append("the drive reports no serial number: another one of its type passes for it")
+        found.append(
+            "the drive reports no serial number, so another drive of its type looks the same"
+        )
     return found
 
 

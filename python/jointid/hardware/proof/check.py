@@ -130,7 +130,7 @@ class BenchCheck:
         lines += [f"DIFFERENT: {each}" for each in self.differences]
         lines += [f"PROBLEM: {each}" for each in self.problems]
         if self.passed:
-            lines.append(f"nothing speaks against a first motion: {self.first_motion}")
+            lines.append(f"a first motion is possible: {self.first_motion}")
         return "\n".join(lines)
 
 

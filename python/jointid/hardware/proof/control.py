@@ -68,8 +68,8 @@ def small_move(
             axis.command(0.0)
             raise RefusedBenchError(
                 "control",
-                f"the joint is {worst:.5f} rad away from where a motion of {abs(amplitude):.5f} rad wants it, "
-                f"more than {allowed:.5f} rad",
+                f"the joint is {worst:.5f} rad away from the reference of a motion of {abs(amplitude):.5f} rad, more "
+                f"than {allowed:.5f} rad",
             )
         side = breakaway[0] if pace > 0.0 else breakaway[1]
         torque = stiffness * error + damping * (pace - speed_of(sample.time, sample.position))

@@ -119,7 +119,7 @@ def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
         raise RefusedBenchError(
             "encoder_stands",
             f"{direction * torque:.4g} N·m did not move the joint, which broke away at less before: the encoder "
-            "hangs, or is not connected any more; or something blocks the joint",
+            "hangs or is disconnected, or something blocks the joint",
         )
     return Push(axis.trace(begin), direction, axis.latency, axis.resolution)
 

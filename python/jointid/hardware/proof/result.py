@@ -9,18 +9,18 @@ from typing import Any
 from jointid.hardware.session.watchdog import Watchdog
 
 UNCHECKED = {
-    "positive_direction": "torque and encoder inverted together look like a right bench: see which way the link goes",
-    "encoder": "that the encoder counts: no sensor shows a joint that moves behind one that hangs, and nobody turned "
-    "it by hand, motor off, before the torque; the travel reported is what the encoder saw",
+    "positive_direction": "torque and encoder inverted together look correct: check which way the link goes",
+    "encoder": "that the encoder counts: no other sensor shows motion, and nobody turned the joint by hand with the "
+    "motor off; the reported travel is what the encoder saw",
     "homing": "that the joint's zero is where position_offset says",
     "backlash": "how far the motor turns without the output",
-    "torque_constant": "the torque constant: the joint file states neither friction nor inertia to hold it against",
-    "gear_ratio": "the gear ratio and the encoder's counts: there is no encoder at the output, and no friction "
-    "in the joint file to hold them against",
-    "inertia": "the joint's inertia: the joint file states none to hold it against, or it could not be measured",
+    "torque_constant": "the torque constant: the joint file states neither friction nor inertia to check it with",
+    "gear_ratio": "the gear ratio and the encoder's counts: there is no encoder at the output, and no friction in "
+    "the joint file to check them with",
+    "inertia": "the joint's inertia: the joint file states none to check it with, or it could not be measured",
     "sensor_sign": "the sign of the torque sensor: it shows too little of the joint's acceleration",
-    "watchdog": "that the drive stops by itself when the host is gone: --watchdog tries it, or pull the plug once",
-    "serial_number": "which drive it is: it reports no serial number, and another one of its type passes for it",
+    "watchdog": "that the drive stops by itself when the host is gone: test it with --watchdog, or pull the plug once",
+    "serial_number": "which drive it is: it reports no serial number, so another drive of its type looks the same",
     "emergency_stop": "the emergency stop, the brake and the end stops",
     "control": "a motion under control: the inertia is not known",
 }
@@ -94,7 +94,7 @@ class FirstMotion:
         if self.drive_watchdog is None:
             return "the drive declares no watchdog"
         if not self.drive_watchdog.read_back and self.watchdog is None:
-            return "the drive does not confirm its watchdog, and nobody has seen it work: --watchdog tries it"
+            return "the drive does not confirm its watchdog, and nobody has seen it work: test it with --watchdog"
         return ""
 
     def to_dict(self) -> dict[str, Any]:

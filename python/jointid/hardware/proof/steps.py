@@ -141,9 +141,9 @@ class Steps:
                 # Up to the torque limit a joint whose encoder hangs would turn many times, and nothing sees it.
                 raise RefusedBenchError(
                     "not_ready",
-                    "neither a known friction nor a torque sensor ends a search for motion if the encoder hangs: give "
-                    "the joint file its friction, or set largest_torque (--largest-torque) to at most twice "
-                    "the torque at which the joint is thought to move",
+                    "if the encoder hangs, neither a known friction nor a torque sensor ends the search for motion: "
+                    "state the friction in the joint file, or set largest_torque (--largest-torque) to at most "
+                    "twice the torque at which you expect motion",
                 )
             factor = _CAP if self._watched else _CAP_UNWATCHED
             given = math.inf if stated is None else factor * stated
@@ -151,7 +151,7 @@ class Steps:
         if not math.isfinite(cap):
             raise RefusedBenchError(
                 "not_ready",
-                "there is no torque to end at: give the joint file a torque or current limit, or its friction",
+                "the largest torque is not known: give the joint file a torque or current limit, or its friction",
             )
         return cap
 
@@ -186,8 +186,8 @@ class Steps:
         low, high = bench.limits.position
         if not low + sizes.travel <= axis.sample.position <= high - sizes.travel:
             reasons.append(
-                f"the joint stands at {axis.sample.position:.4f} rad, too near to the end of its window, "
-                f"{low:.4f} to {high:.4f} rad, to be moved by {sizes.travel:.4f} rad"
+                f"the joint stands at {axis.sample.position:.4f} rad, too near to the end of its window, {low:.4f} "
+                f"to {high:.4f} rad, for a motion of {sizes.travel:.4f} rad"
             )
         if reasons:
             raise RefusedBenchError("not_ready", "; ".join(reasons))
@@ -267,8 +267,8 @@ class Steps:
         raise RefusedBenchError(
             "torque_and_encoder_disagree",
             "a positive torque makes the encoder count down, and a negative one up: either the torque or the "
-            "encoder is inverted. See which way the link goes under a positive torque: if it is the one that you "
-            "call positive, the encoder is inverted, else the torque",
+            "encoder is inverted. Check which way the link goes under a positive torque: if that is your positive "
+            "direction, the encoder is inverted, otherwise the torque",
         )
 
     def _judge_scales(self, axis: Axis, breakaway: tuple[float, float]) -> None:
@@ -278,7 +278,7 @@ class Steps:
             return
         if scale_fault(expected, friction, math.nan) is None:
             self._say(
-                f"friction at a stand {friction:.3f} N·m; the joint file states {stated:.3f} N·m"
+                f"friction at rest {friction:.3f} N·m; the joint file states {stated:.3f} N·m"
             )
             return
         inertia = math.nan

@@ -25,10 +25,7 @@ _BEATEN = 1.0  # [s] at no torque: a drive that only begins to watch has begun b
 _LATE = 3.0  # times the time allowed: the drive is asked after twice that, and the host may be late
 
 
-NO_WATCHDOG = (
-    "the drive declares no watchdog: nobody knows whether it stops when this program has died, and the bench gets no "
-    "certificate"
-)
+NO_WATCHDOG = "the drive declares no watchdog: it may go on when this program dies, so the bench gets no certificate"
 
 
 def watchdog_of_bench(bench: Bench, drive: Drive, position: float) -> WatchdogTravel | None:
@@ -132,8 +129,8 @@ def _judged(silence: DriveSilence, wanted: str) -> float:
         still = "still on" if silence.state == "on" else silence.state
         raise RefusedBenchError(
             "watchdog",
-            f"the motor is {still} after {1e3 * silence.asked:.0f} ms without a sign of the host; the drive was told "
-            f"that it be {wanted} after {allowed}. It would go on when this program has died or the cable is pulled",
+            f"the motor is {still} after {1e3 * silence.asked:.0f} ms without a sign of the host; the drive was set "
+            f"to be {wanted} after {allowed}. It would go on if this program died or the cable was pulled",
         )
     if not silence.missed_host:
         raise RefusedBenchError(

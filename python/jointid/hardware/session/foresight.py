@@ -184,8 +184,8 @@ class Foresight:
         if self._beyond > self._longest:
             raise LimitError(
                 "torque_envelope",
-                f"{torque:.4g} N·m is commanded where the joint's values need {needed:.4g} N·m; for "
-                f"{self._beyond} cycles it has been more than {most:.4g} N·m",
+                f"{torque:.4g} N·m is commanded, but the joint's values need {needed:.4g} N·m; for {self._beyond} "
+                f"cycles the command has been more than {most:.4g} N·m",
                 measured=torque,
                 allowed=most,
             )

@@ -68,8 +68,8 @@ def doubt_of_gains(controller: Controller, joint: MovingJoint | None, period: fl
         return ""
     text = ", ".join(f"{name} = {value:.3g}" for name, value in gains.items())
     return (
-        f"gains times period is {share:.2g}, more than {_MOST:g}, at {inertia:.3g} kg·m² and {1e3 * period:g} ms; "
-        f"these fit, in [session.controller]: {text}"
+        f"the gains are too high for {inertia:.3g} kg·m² and a period of {1e3 * period:g} ms: gains times period is "
+        f"{share:.2g}, more than {_MOST:g}; these fit, in [session.controller]: {text}"
     )
 
 

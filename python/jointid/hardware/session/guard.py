@@ -25,15 +25,15 @@ _NEARLY_ALL = 1.98
 
 _WHY_CUT = (
     "likely: a torque limit, or a PL[1] of the drive, that is too small for this motion; a torque_constant or "
-    "gear_ratio that is not the joint's; a brake that is closed, a blocked joint, or an encoder that hangs"
+    "gear_ratio that is not the joint's; a closed brake, a blocked joint, or an encoder that hangs"
 )
 _WHY_FAST = (
-    "; likely: late or lost cycles, behind which the command jumps; [session.limits] torque_rate too small for the "
+    "; likely: late or lost cycles, after which the command jumps; [session.limits] torque_rate too small for the "
     "step of the friction compensation at a reversal; gains too high for the encoder's counts"
 )
 _WHY_STANDING = (
-    "; the joint file states no friction ([parameters] coulomb, static): where the breakaway torque is more than half "
-    "the torque limit, a healthy joint stands like this at a slow reversal"
+    "; the joint file states no friction ([parameters] coulomb, static): if the breakaway torque is more than half "
+    "the torque limit, a healthy joint also stands like this at a slow reversal"
 )
 
 
@@ -230,7 +230,7 @@ class Guard:
         change = abs(self._accepted - self._accepted_there)
         doubt = ""
         if abs(self._speed_there) > self._moving:
-            reason = f"it was {abs(self._speed_there):.3f} rad/s fast before"
+            reason = f"its speed was {abs(self._speed_there):.3f} rad/s before"
         elif change > self._largest_swing:
             reason = f"the torque has changed by {change:.0f} N·m since"
             if not self._friction_known:
@@ -256,8 +256,8 @@ class Guard:
         if mean > self._largest_difference:
             raise LimitError(
                 "torque_difference",
-                f"the drive gives {torque:.1f} N·m where {self._accepted:.1f} N·m is commanded; in the mean over "
-                f"{_COMPARED} samples it is {mean:.1f} N·m off, more than {self._largest_difference:g} N·m",
+                f"the drive gives {torque:.1f} N·m, but {self._accepted:.1f} N·m is commanded; the mean difference "
+                f"over {_COMPARED} samples is {mean:.1f} N·m, more than {self._largest_difference:g} N·m",
                 measured=mean,
                 allowed=self._largest_difference,
             )

@@ -58,13 +58,13 @@ def problems_on_paper(
         )
     fastest = float(np.abs(speed).max())
     if fastest > limits.velocity:
-        yield f"the trajectory is up to {fastest:.3f} rad/s fast, more than {limits.velocity:g} rad/s"
+        yield f"the trajectory reaches {fastest:.3f} rad/s, more than {limits.velocity:g} rad/s"
     watching = foresight_of(joint, drive, limits, options)
     if watching is not None:
         try:
             watching.whole(wanted, speed)
         except LimitError as error:
-            yield f"the trajectory comes too fast to the edge: {error}"
+            yield f"the trajectory is too fast near the edge of the window: {error}"
 
 
 def problems_of_drive(drive: Drive, limits: SessionLimits) -> list[str]:

@@ -179,13 +179,13 @@ def watchdog_problems(travel: WatchdogTravel, options: SessionOptions) -> Iterat
     watchdog = travel.watchdog
     if watchdog.then == "nothing":
         yield (
-            f"the drive does nothing when the host is gone ({watchdog}): a motor whose program has died would go on; "
-            "let it switch the motor off"
+            f"the drive does nothing when the host is gone ({watchdog}), so the motor would go on; set the drive to "
+            "switch its motor off"
         )
     elif watchdog.then != "off" and not options.acknowledge_damped:
         yield (
-            f"the drive does not switch its motor off when the host is gone, the motor is {watchdog.then} then; if "
-            "that is meant, state acknowledge_damped = true under [session]"
+            f"when the host is gone, the drive does not switch its motor off, which is then {watchdog.then}; if you "
+            "accept that, set acknowledge_damped = true under [session]"
         )
     if options.period * _PERIODS > watchdog.time * (1.0 + 1e-9):
         yield (

@@ -102,7 +102,7 @@ def _columns_again(problem: Problem, penalty: _core.Penalty, shapes: Array) -> A
 
 def _no_signal(name: str) -> InputError:
     return InputError(
-        "its signal is not more than its own noise throughout these recordings",
+        "its signal does not exceed its own noise in these recordings",
         argument="terms",
         value=name,
         remedy=("leave it out", Action("record", text="motion in which it changes")),
@@ -112,7 +112,7 @@ def _no_signal(name: str) -> InputError:
 def _refused(name: str, others: list[str], relation: str) -> InputError:
     alike = " and ".join(others)
     return InputError(
-        f"it is {relation} {alike} throughout these recordings, so nothing divides the torque between them",
+        f"it is {relation} {alike} throughout these recordings, so the data cannot divide the torque between them",
         argument="terms",
         value=name,
         remedy=(

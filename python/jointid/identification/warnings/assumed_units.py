@@ -46,7 +46,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     if recognised:
         shown = [f"{signal} in {unit}" for signal, unit in recognised]
         yield ASSUMED_UNITS.finding(
-            f"unit seen from numbers or names: {listed(shown, _ROOM)}",
+            f"unit inferred from numbers or names: {listed(shown, _ROOM)}",
             Action("inspect", text="the header, and name the unit there (time_ns)"),
             details=_all_of(shown),
             severity="info",

@@ -60,7 +60,7 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
             concerned = tuple(dict.fromkeys((*concerned, *cause.relative)))
     if not delay.fits:
         # A delay of one signal alone would make the balance worse: others are as late.
-        alike = "other signals may be as late, or filtered alike"
+        alike = "other signals may have the same delay or filter"
         yield SIGNAL_LAG.finding(
             described,
             Action("inspect", text=_WHERE if early else _FILTERS),

@@ -25,8 +25,8 @@ HELD_ROWS = FindingType(
 HELD_TORQUE = FindingType(
     code="held_torque",
     severity="info",
-    meaning="nobody says how the torque varies between samples, and the torque balance predicts better with one that "
-    "is held, as a command is; the identification takes it for that",
+    meaning="the recording does not say how the torque varies between samples. The torque balance predicts better "
+    "if it is held, as a command is, so the identification assumes that",
     advice="state it; `linear` if it is a measured torque that is not held",
 )
 
@@ -41,7 +41,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             )
         elif mend.code == HELD_TORQUE.code:
             yield HELD_TORQUE.finding(
-                "the torque is read as held between samples: so the balance predicts better",
+                "the torque is read as held between samples: the balance then predicts better",
                 Action(
                     "call", {"torque_hold": "zoh"}, text="so it is stated; linear if it is measured"
                 ),

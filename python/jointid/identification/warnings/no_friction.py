@@ -17,7 +17,7 @@ from jointid.recording.header_words import AT_THE_LINK
 NO_FRICTION = FindingType(
     code="no_friction",
     meaning="friction is less than 2 % of the torque. The torque was measured behind the friction, or the joint has "
-    "none, as in a simulation. Blocking where the torque's header names the joint or a sensor, then below 5 %",
+    "none, as in a simulation. Blocking below 5 %, if the torque's header names the joint or a sensor",
     advice="give the motor's torque or current as torque, and this column as sensor. Nothing, if the joint has no "
     "friction",
 )

@@ -35,7 +35,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         f"an effect is missing: residuals of neighbouring windows correlate (r = {correlation:.2f})"
     )
     if not correlation > _CORRELATED:  # what is uncertain is all that shows it
-        title = f"{listed(uncertain, _ROOM)} uncertain, though well moved (r = {correlation:.2f})"
+        title = (
+            f"{listed(uncertain, _ROOM)} uncertain, although well excited (r = {correlation:.2f})"
+        )
         makes = "the model misses an effect, or the windows are too long to show it"
     # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
     yield STRUCTURED_RESIDUAL.finding(

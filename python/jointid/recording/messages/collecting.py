@@ -85,7 +85,7 @@ def _times(batch: list[Message]) -> npt.NDArray[np.int64]:
     try:
         return np.fromiter((time for time, _ in batch), dtype=np.int64, count=len(batch))
     except OverflowError:
-        raise DamageError("a log time is no time") from None
+        raise DamageError("a log time is not valid") from None
 
 
 def _batches(messages: Iterator[Message]) -> Iterator[list[Message]]:

@@ -194,7 +194,7 @@ def _nanoseconds(seconds: float, rest: float, number: int) -> int:
     except (ValueError, OverflowError):
         stamp = 1 << 63
     if not -(1 << 63) <= stamp < 1 << 63:
-        raise DamageError(f"message {number}: its stamp is no time")
+        raise DamageError(f"message {number}: its time stamp is not valid")
     return stamp
 
 

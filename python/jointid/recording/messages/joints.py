@@ -152,5 +152,5 @@ def _by_records(
 
 def _enter(found: dict[Column, int], joint: str, signal: str, index: int) -> None:
     if (joint, signal) in found:
-        raise DamageError(f"the joint {joint!r} stands twice in it")
+        raise DamageError(f"it has the joint {joint!r} twice")
     found[joint, signal] = index

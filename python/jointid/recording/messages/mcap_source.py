@@ -169,7 +169,7 @@ class McapSource:
                 return
             if record is None:
                 self.incomplete = (
-                    "the file ends early: it has no end, as after a recorder was killed"
+                    "the file ends early: its end is missing, as if the recorder was killed"
                 )
                 return
             if isinstance(record, Chunk):

@@ -139,7 +139,7 @@ class MessageTable:
         jump = jump_between_publishers(values)
         if jump is not None:
             raise InputError(
-                f"the position jumps by {jump:.3g} and back from message to message, as where two nodes publish the "
+                f"the position jumps by {jump:.3g} and back from message to message, as if two nodes publish the "
                 "same joint on one topic",
                 place=f"{self.source}, column {self.headers[column]!r}",
                 remedy="log one of them, or each on a topic of its own",
@@ -159,7 +159,7 @@ class MessageTable:
         _, signal = self._columns[missing - 2]
         remedy: tuple[str | Action, ...] = ()
         if len({joint for joint, _ in wanted}) > 1:
-            remedy = ("load joints that are logged at different times one at a time",)
+            remedy = ("load one joint at a time: they are logged at different times",)
         elif signal != "position":
             named = {"effort": "torque"}.get(signal, signal)
             remedy = (

@@ -81,10 +81,10 @@ class Ros1Source:
                 try:
                     header, body = _record(stream, self._size)
                 except _EndError:
-                    self.incomplete = "the file ends early: its last record is cut, as after a recorder was killed"
+                    self.incomplete = "the file ends early: its last record is cut off, as if the recorder was killed"
                     return
                 if header.get(b"op") == _BAG and header.get(b"index_pos", b"") == bytes(8):
-                    self.incomplete = "the file has no index, as after a recorder was killed"
+                    self.incomplete = "the file has no index, as if the recorder was killed"
                 if header.get(b"op") == _CHUNK:
                     yield from self._parts(_content(header, body, self._room))
                 elif header.get(b"op") == _CONNECTION:

@@ -93,10 +93,10 @@ def _left_beside(path: Path) -> str:
     with suppress(OSError):
         if log.stat().st_size:
             return (
-                f"its last messages may be in {log.name}, which is not read: "
-                "SQLite joins the two when it opens a copy of both"
+                f"its last messages may be in {log.name}, which is not read: SQLite merges both when it opens a copy "
+                "of them"
             )
     with suppress(OSError), journal.open("rb") as file:
         if file.read(len(_UNFINISHED)) == _UNFINISHED:
-            return f"its last write was not finished: what {journal.name} holds of before it is not put back"
+            return f"its last write was not finished: the earlier content in {journal.name} is not restored"
     return ""

@@ -279,7 +279,7 @@ class CsvTable:
     def _appended(self, line: int) -> InputError:
         file = shlex.quote(str(self.source))
         return RepeatedHeaderError(
-            "the headers stand here again: another file was appended",
+            "the headers are repeated here: another file was appended",
             place=f"{self.source}, line {line}",
             remedy=f"cut it there (head -n {line - 1} {file} > run_1.csv; tail -n +{line} {file} > run_2.csv), and "
             "give both files",

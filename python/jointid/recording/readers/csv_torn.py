@@ -5,7 +5,7 @@ import csv
 from jointid.recording.readers.csv_dialect import cells_of, number_of
 from jointid.recording.readers.csv_layout import Layout, is_comment
 
-TORN = "the last line is cut and left out"
+TORN = "the last line is incomplete and left out"
 """What a recording's metadata say of it."""
 _COMPARED = 50  # lines before the last one
 _FEW = 20  # lines that show how short a cell may be

@@ -41,7 +41,7 @@ class Sizes:
         self._groups = [_structure(each) for each in footer.get((4, _LIST), [])]
         rows = [group.get((3, _I64), -1) for group in self._groups]
         if min(rows, default=0) < 0 or sum(rows) != self.rows:
-            raise ValueError(f"its groups hold {sum(rows)} rows, and it has {self.rows}")
+            raise ValueError(f"its row groups hold {sum(rows)} rows, but the file has {self.rows}")
 
     def of(self, column: int) -> int:
         """Return the bytes of a column's pages, by the number of the column in the file.

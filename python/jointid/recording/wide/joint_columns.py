@@ -175,8 +175,8 @@ def _ask(
         return
     names = " and ".join(repr(table.headers[each.index]) for each in asked[:2])
     raise InputError(
-        f"joint {asked[0].joint} has no measured torque or current; {names} "
-        f"{'is' if len(asked) == 1 else 'are'} commanded or filtered and not taken unless named",
+        f"joint {asked[0].joint} has no measured torque or current; {names} {'is' if len(asked) == 1 else 'are'} "
+        "commanded or filtered, and not used unless named",
         place=table.header_place,
         remedy=(
             *(_naming(each.meaning.signal, each) for each in asked[:2] if each.meaning),

@@ -38,10 +38,10 @@ def joint_arrays(
         array = _matrix(name, values)
         joints = arrays["position"].shape[1] if arrays else array.shape[1]
         if array.shape != (len(time), joints):
-            hint = "; are samples and joints exchanged?" if array.shape[1] == len(time) else ""
+            hint = "; are samples and joints swapped?" if array.shape[1] == len(time) else ""
             raise InputError(
-                f"its shape is {array.shape}; {(len(time), joints)} is expected, one row a sample and one column "
-                f"a joint{hint}",
+                f"its shape is {array.shape}; {(len(time), joints)} is expected, one row per sample and one column "
+                f"per joint{hint}",
                 argument=name,
             )
         _check_absent(name, array)
@@ -56,7 +56,7 @@ def _matrix(name: str, values: npt.ArrayLike) -> FloatArray:
         raise InputError("an array of numbers is expected", argument=name) from None
     if array.ndim != 2 or not 0 < array.shape[1] <= _MOST:
         raise InputError(
-            f"its shape is {array.shape}; one row a sample and one column a joint are expected",
+            f"its shape is {array.shape}; one row per sample and one column per joint are expected",
             argument=name,
         )
     if array is values and array.dtype == np.float64 and _frozen(array):
