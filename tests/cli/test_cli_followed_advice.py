@@ -39,7 +39,7 @@ def test_only_identify_is_named_for_all_joints(
 def test_all_joints_need_a_ratio_each(capsys: pytest.CaptureFixture[str]) -> None:
     assert "one ratio for each, comma-separated" in answer(["identify", str(JOINTS)], capsys)[1]
     assert main(["identify", str(JOINTS), "--joints", "1,2", "--quiet"]) == 2
-    assert "angle of the joint; one for each joint, comma-separated)" in capsys.readouterr().out
+    assert "joint angle; one for each joint, comma-separated)" in capsys.readouterr().out
 
 
 def test_a_joint_file_is_no_joint_of_a_file(capsys: pytest.CaptureFixture[str]) -> None:

@@ -181,8 +181,8 @@ def test_the_path_is_named() -> None:
     [
         (("free", 0), '"coulomb"', "there twice"),
         (("free", 0), '"current"', "this is not a parameter"),
-        (("settings", "terms", 0), '"ripple_cos_2"', "no term with a value"),
-        (("settings", "terms", 0), '"friction"', "no term with a value"),
+        (("settings", "terms", 0), '"ripple_cos_2"', "not a term with a value"),
+        (("settings", "terms", 0), '"friction"', "not a term with a value"),
         (("parameters", "coulomb", "name"), '"static"', "not the name"),
         (("covariance",), "[[1.0]]", "4 rows of 4"),
         (("covariance", 1), "[1.0]", "4 rows of 4"),

@@ -148,7 +148,7 @@ def driven(path: Path) -> ElmoDrive:
         (
             "identifier = 0x1C0",
             "identifier = 0xFFFFFF",
-            r"\[session.torque\]: identifier: 0xFFFFFF is no identifier",
+            r"\[session.torque\]: identifier: 0xFFFFFF is not a valid identifier",
         ),
         (
             "coulomb = 25.0",

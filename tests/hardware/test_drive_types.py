@@ -107,7 +107,7 @@ def test_an_installed_type_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
         (
             (("wheel", "math:pi"),),
             "wheel",
-            "math:pi of an unknown package is no DriveType but a float",
+            "math:pi of an unknown package is not a DriveType but a float",
         ),
         ((), ["elmo"], "drive type is ['elmo']: a text is expected"),
         ((("wheel", "a:X"), ("wheel", "b:X")), "wheel", "by several packages: a:X, b:X"),
@@ -212,7 +212,7 @@ def test_the_address_of_a_drive_is_shown_before_a_joint_moves(
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
     assert main(["run", str(path), "--force"]) == 3
     asked = capsys.readouterr().err
-    assert "will move between -1.4 and 1.4 rad with up to 160 N·m" in asked
+    assert "will move between -1.4 and 1.4 rad with up to 160 N·m, about " in asked
     assert "over virtual can0, node 127." in asked
 
 

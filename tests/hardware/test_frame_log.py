@@ -23,9 +23,9 @@ _SOUND = "(1700000000.000000) can0 080#\n"
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
-        ("(nan) can0 181#00\n", "frame 2 has a stamp that is no number"),
-        ("(inf) can0 181#00\n", "frame 2 has a stamp that is no number"),
-        ("(1e400) can0 181#00\n", "frame 2 has a stamp that is no number"),
+        ("(nan) can0 181#00\n", "frame 2 has a stamp that is not a number"),
+        ("(inf) can0 181#00\n", "frame 2 has a stamp that is not a number"),
+        ("(1e400) can0 181#00\n", "frame 2 has a stamp that is not a number"),
         ("(1.0) can0 801#00\n", "frame 2 has the identifier 801h, above 7FFh"),
         ("(1.0) can0 FFF#00\n", "frame 2 has the identifier FFFh"),
         (f"(1.0) can0 181#{'00' * 65}\n", "frame 2 has 65 bytes, more than 64"),
@@ -88,7 +88,7 @@ def test_a_small_blf_file_that_holds_much_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.blf"
     path.write_bytes(seed_of("blf")[1][:144] + container + packed)
     tracemalloc.start()
-    with pytest.raises(jid.InputError, match=r"^unpacked file is larger than 64 MB"):
+    with pytest.raises(jid.InputError, match=r"^the unpacked file is larger than 64 MB"):
         list(logged_frames(path))
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()

@@ -96,7 +96,7 @@ def test_a_motor_side_signal_needs_a_joint() -> None:
     assert [str(each) for each in error.remedy] == [joint]
     error = refused(jid.Recording(**MOTION, motor_torque=np.cos(7.0 * TIME)))
     ratio, joint = map(str, error.remedy)
-    assert ratio == "load with gear_ratio=... (the motor's angle per angle of the joint)"
+    assert ratio == "load with gear_ratio=... (motor angle per joint angle)"
     assert joint == "identify with joint=... (with gear_ratio, which converts it)"
     commanded = {"commanded_torque": "target_moment_{joint}"}
     error = refused(jid.Recording(**MOTION, current=np.cos(7.0 * TIME), metadata=commanded))

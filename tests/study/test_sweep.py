@@ -368,7 +368,7 @@ def test_what_cannot_be_used_here_is_refused_there_only(
         ({"grid": {"windows": 100}}, "grid: windows is 100: a list of values is expected"),
         ({"grid": {"windows": []}}, r"grid: windows is \[\]: at least one value"),
         ({"grid": {"windows": [100, 100]}}, r"windows is \[100, 100\]: a value is given twice"),
-        ({"grid": {"windows": {(1, 2): 100}}}, r"grid: windows: \(1, 2\) is no label"),
+        ({"grid": {"windows": {(1, 2): 100}}}, r"grid: windows: \(1, 2\) is not a label"),
         ({"grid": {"ga": [jid.GaOptions()]}}, "which a table cannot show; give a mapping"),
         ({"grid": {"ga.population": [1]}}, "population is 1: must be 4 to 1000000"),
         ({"grid": {"ga.population": ["many"]}}, "grid: ga.population is 'many': a whole number"),

@@ -253,7 +253,7 @@ def _agreed(bench: Bench) -> bool:
     low, high = bench.limits.position
     print(
         f"'{bench.joint.name}' will move between {low:.3g} and {high:.3g} rad with up to "
-        f"{bench.limits.torque:.4g} N·m, over {bench.address}.",
+        f"{bench.limits.torque:.4g} N·m, about {bench.trajectory.duration:.3g} s per run, over {bench.address}.",
         file=sys.stderr,
     )
     if not sys.stdin.isatty():

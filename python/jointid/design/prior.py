@@ -89,7 +89,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     for name in stated:
         if name not in names:
             raise InputError(
-                f"it is no free parameter; {suggestion(str(name), list(names))}",
+                f"it is not a free parameter; {suggestion(str(name), list(names))}",
                 argument=str(name),
                 place="prior",
             )

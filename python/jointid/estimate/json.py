@@ -143,7 +143,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for i, key in enumerate(d["settings"]["terms"]):
         term = _term(key)
         if term is None or not {term.name, *term.shapes} <= values:
-            yield f"settings.terms[{i}]", "this is no term with a value among the parameters"
+            yield f"settings.terms[{i}]", "this is not a term with a value among the parameters"
 
 
 def empty_calls(findings: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:

@@ -74,7 +74,7 @@ def new_joint_text(joint: Joint, notes: Sequence[str] = ()) -> str:
     kind = "revolute"
     <BLANKLINE>
     [drive]
-    gear_ratio = 50.0  # motor's angle per angle of the joint, negative if they turn opposite ways
+    gear_ratio = 50.0  # motor angle per joint angle, negative if they turn in opposite directions
     # torque_constant = 0.2  # N·m/A of the motor; needed where only the current is recorded
     ...
     """

@@ -175,7 +175,7 @@ def _check_magnitudes(run: Recording, place: str) -> None:
 def _conversions(recording: Recording, signal: str) -> tuple[Action, ...]:
     """Return the calls that give the torque at the output without a joint."""
     if signal == "motor_torque":
-        text = "the motor's angle per angle of the joint"
+        text = "motor angle per joint angle"
         return (Action("call", {"gear_ratio": ...}, text, "load"),)
     header = recording.metadata.get("commanded_torque")
     if not isinstance(header, str):

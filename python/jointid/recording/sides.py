@@ -24,8 +24,8 @@ def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
     """
     if not is_finite(gear_ratio) or gear_ratio == 0:
         raise InputError(
-            "the motor's angle per angle of the joint is expected: a number other than 0, negative if they turn in "
-            "opposite directions",
+            "motor angle per joint angle is expected: a number other than 0, negative if they turn in opposite "
+            "directions",
             argument=argument,
             value=gear_ratio,
         )

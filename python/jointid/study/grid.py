@@ -81,7 +81,7 @@ def _labelled(name: str, values: Any) -> list[tuple[Label, Any]]:
     for label in labels:
         if not isinstance(label, str | int | float | bool | None):
             raise InputError(
-                f"{shown(label)} is no label; a text or a number is expected",
+                f"{shown(label)} is not a label; a text or a number is expected",
                 argument=name,
                 place="grid",
             )

@@ -232,8 +232,7 @@ def _loaded(name: str, entry: EntryPoint) -> DriveType:
     if not isinstance(adapter, DriveType):
         raise _refused(
             name,
-            f"the entry point {entry.value} of {_origin(entry)} is no DriveType but "
-            f"a {type(adapter).__name__}",
+            f"the entry point {entry.value} of {_origin(entry)} is not a DriveType but a {type(adapter).__name__}",
         )
     return adapter
 

@@ -107,7 +107,7 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
 def _problem(message: can.Message) -> str:
     """What no frame has; python-can's readers do not look."""
     if not math.isfinite(message.timestamp):
-        return "has a stamp that is no number"
+        return "has a stamp that is not a number"
     highest = _HIGHEST_EXTENDED if message.is_extended_id else _HIGHEST
     if not 0 <= message.arbitration_id <= highest:
         return f"has the identifier {message.arbitration_id:X}h, above {highest:X}h"

@@ -119,7 +119,8 @@ class ElmoOptions:
         for name, identifier in used.items():
             if not 0x81 <= identifier <= 0x7FF:
                 raise InputError(
-                    f"0x{identifier:X} is no identifier; 0x081 to 0x7FF is expected", argument=name
+                    f"0x{identifier:X} is not a valid identifier; 0x081 to 0x7FF is expected",
+                    argument=name,
                 )
         for name, identifier in used.items():
             others = [

@@ -80,7 +80,7 @@ class SyncedConverter:
     def __post_init__(self) -> None:
         if not 0x81 <= self.identifier <= 0x7FF:
             raise InputError(
-                f"0x{self.identifier:X} is no identifier; 0x081 to 0x7FF is expected",
+                f"0x{self.identifier:X} is not a valid identifier; 0x081 to 0x7FF is expected",
                 argument="identifier",
             )
         if not 1 <= self.conversions <= 2**16:

@@ -17,7 +17,7 @@ MOTOR_SIDE = FindingType(
     advice="give the gear ratio; nothing, if the motor's side is meant or the motor has no gear",
 )
 _CLOSE = 0.03  # of the gear ratio
-_RATIO = "the motor's angle per angle of the joint"
+_RATIO = "motor angle per joint angle"
 
 
 def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:

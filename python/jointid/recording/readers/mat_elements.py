@@ -168,7 +168,7 @@ def _struct(
 
 def _matrix(element: tuple[int, memoryview], order: str) -> Variable:
     if element[0] != _MATRIX:
-        raise DamageError("a field of a struct is no array")
+        raise DamageError("a field of a struct is not an array")
     return _variable(element[1], order, nested=True)
 
 
