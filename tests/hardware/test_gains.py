@@ -84,7 +84,7 @@ def test_gains_that_are_too_high_are_named_with_those_that_fit(tmp_path: Path) -
     (remark,) = (
         each
         for each in jid.hardware.check_bench(bench, emulate=True).remarks
-        if each.startswith("gains")
+        if each.startswith("the gains")
     )
     assert proposed in remark
     pasted = remark.rpartition(": ")[2].replace(", ", "\n")

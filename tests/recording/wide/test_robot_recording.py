@@ -71,7 +71,7 @@ def test_a_joint_without_a_signal() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"position": ARRAY.T}, "exchanged"),
+        ({"position": ARRAY.T}, "swapped"),
         ({"position": ARRAY[:, 0]}, "one row per sample"),
         ({"torque": ARRAY[:, :2]}, "torque"),
         ({"names": ["a", "a", "b"]}, "two joints"),
