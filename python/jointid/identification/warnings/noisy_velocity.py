@@ -16,14 +16,15 @@ from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="noise in the velocity moves a parameter by more than 2 % and its standard error, or is large against "
-    "the velocity's change over every admissible window. The estimated inertia is then too small",
+    meaning="noise in the velocity moves a parameter by more than 2 % and half its standard error, or is large "
+    "against the velocity's change over every admissible window. The estimated inertia is then too small",
     advice="record the position with a finer resolution, or record longer. Leave out a velocity column that is noisier "
     "than the position's rate",
 )
 _MOVED = 0.02  # of the value: two of them are what `undetermined` calls wide
 _OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
 _MANY = 10.0  # of the value: a larger share is no size
+_OF_ERROR = 0.5  # of the standard error: less adds at most an eighth to it
 _QUIETER = 0.5  # of the recorded velocity's noise
 _JITTER = 0.02  # sample periods between position and stamps
 _FINER = Action("record", text="the position with a finer resolution, or for longer")
@@ -39,7 +40,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     moved = {
         name: share
         for name, share in moved_by_noise(evidence).items()
-        if _size_of(evidence, name) >= (evidence.parameters[name].stderr or 0.0)
+        if _size_of(evidence, name) >= _OF_ERROR * (evidence.parameters[name].stderr or 0.0)
     }
     # Running integrals have no edges whose noise would count.
     limited = evidence.penalty.noise_limited and not evidence.penalty.cumulative
