@@ -24,13 +24,36 @@ void bind_servo(py::module_& m);
 namespace pybind11::detail {
 
 template <>
-struct type_caster<jointid::model::Decay> : jointid::bind::ChoiceCaster<jointid::model::Decay> {};
+struct type_caster<jointid::model::SpeedBasis>
+    : jointid::bind::ChoiceCaster<jointid::model::SpeedBasis> {};
 template <>
 struct type_caster<jointid::simulate::VelocityEstimate>
     : jointid::bind::ChoiceCaster<jointid::simulate::VelocityEstimate> {};
 template <>
 struct type_caster<jointid::simulate::FrictionVelocity>
     : jointid::bind::ChoiceCaster<jointid::simulate::FrictionVelocity> {};
+
+template <>
+struct type_caster<jointid::model::Friction> {
+  PYBIND11_TYPE_CASTER(jointid::model::Friction,
+                       const_name("tuple[str, float, float, Sequence[float]]"));
+
+  bool load(handle given, bool) {
+    if (!isinstance<tuple>(given) || len(given) != 4) return false;
+    const auto four = reinterpret_borrow<tuple>(given);
+    value = {four[0].cast<jointid::model::SpeedBasis>(), four[1].cast<double>(),
+             four[2].cast<double>()};
+    const auto shapes = four[3].cast<std::vector<double>>();
+    if (shapes.size() > value.shapes.size()) return false;
+    value.shapes.fill(1.0);  // what a basis does not have is valid
+    std::copy(shapes.begin(), shapes.end(), value.shapes.begin());
+    return true;
+  }
+  static handle cast(const jointid::model::Friction& friction, return_value_policy, handle) {
+    return pybind11::make_tuple(friction.basis, friction.positive, friction.negative, friction.shapes)
+        .release();
+  }
+};
 
 template <>
 struct type_caster<jointid::model::Weight> {

@@ -27,9 +27,31 @@ void bind_terms(py::module_& m) {
       .def_property_readonly("needs_load", &identify::needs_load,
                              "Whether it is friction that depends on the drive's torque, too.")
       .def_property_readonly(
-          "decay", [](const Term& t) { return std::string(base::word(identify::decay_of(t))); },
-
-          "How its friction fades with speed: the simulated joint's field of that name.")
+          "basis",
+          [](const Term& t) -> py::object {
+            if (!identify::is_friction(t)) return py::none();
+            return py::cast(identify::needs_load(t) ? "load" : std::string(base::word(t.basis)));
+          },
+          "What friction multiplies: \"constant\", \"linear\", \"load\" or a basis of the core's.")
+      .def_property_readonly(
+          "expression", &identify::expression_of,
+          "The friction's basis as a product: `speed`, `load_size`, shapes by name; empty: 1.")
+      .def_property_readonly(
+          "at_rest",
+          [](const Term& t) {
+            return identify::needs_load(t) ? 1.0 : model::facts_of(t.basis).at_rest;
+          },
+          "The friction's basis at a vanishing speed.")
+      .def_property_readonly(
+          "side", [](const Term& t) { return identify::side_of(t); },
+          "1 or -1: friction of this direction of motion alone; 0: of both.")
+      .def_property_readonly(
+          "above_zero", [](const Term& t) { return model::facts_of(t.basis).shape_above; },
+          "Whether its shape parameters must be above 0.")
+      .def_property_readonly(
+          "behind_gear",
+          [](const Term& t) { return t.integral == identify::Integral::link_friction; },
+          "Whether it is friction that grows with the torque behind the gear.")
       .def_property_readonly(
           "family",
           [](const Term& t) {
@@ -58,7 +80,8 @@ void bind_terms(py::module_& m) {
 
                     "Default bounds are shares of the peak speed to this power; 0: lower, upper.")
       .def_readonly("lower", &Shape::lower, "Default bound where speed_power is 0.")
-      .def_readonly("upper", &Shape::upper, "Default bound where speed_power is 0.");
+      .def_readonly("upper", &Shape::upper, "Default bound where speed_power is 0.")
+      .def_readonly("typical", &Shape::typical, "A usual value where speed_power is 0.");
   py::class_<Model>(m, "Model", "A friction model by name, as the keys of its terms.")
       .def_readonly("name", &Model::name)
       .def_readonly("equation", &Model::equation)

@@ -10,18 +10,17 @@ namespace jointid::design {
 
 namespace {
 
-/// How fast static friction changes [N·m/s].
-double fading_rate(const model::Joint& joint, double velocity, double acceleration) {
+/// How fast friction changes that varies with the speed [N·m/s].
+double varying_rate(const model::Joint& joint, double velocity, double acceleration) {
   const double speed = std::fabs(velocity);
-  if (joint.decay == model::Decay::none || speed == 0.0) return 0.0;
-  const double excess = velocity > 0.0 ? joint.static_positive : joint.static_negative;
-  const double faded = excess * model::fading(joint, speed);
-  if (joint.decay == model::Decay::gaussian) {
-    return -2.0 * joint.stribeck * speed * acceleration * faded;
+  if (speed == 0.0) return 0.0;
+  double sum = 0.0;
+  for (const auto& term : joint.friction) {
+    if (term.basis == model::SpeedBasis::linear) continue;  // integrated without an error
+    const double coefficient = velocity > 0.0 ? term.positive : term.negative;
+    sum += coefficient * model::basis_rate(term.basis, speed, term.shapes.data());
   }
-  const double ratio = speed / joint.stribeck_velocity;
-  return -joint.stribeck_exponent * base::pow(ratio, joint.stribeck_exponent) / speed *
-         acceleration * faded;
+  return sum * acceleration;
 }
 
 /// Adds the windows of one run.
@@ -65,7 +64,7 @@ class Windows {
     const double variance = torque_ * count + ends_ + (reverses(first, last) ? reversal_ : 0.0);
     sum_.selfadjointView<Eigen::Lower>().rankUpdate(row_, 1.0 / variance);
     if (quadrature_ > 0.0) {  // the rule's first error term, by Euler and Maclaurin
-      misled_ += row_ * (-quadrature_ * (fading(last) - fading(first)) / variance);
+      misled_ += row_ * (-quadrature_ * (rate(last) - rate(first)) / variance);
     }
   }
   [[nodiscard]] Told total() const { return {sum_.selfadjointView<Eigen::Lower>(), misled_}; }
@@ -79,10 +78,10 @@ class Windows {
     return false;
   }
 
-  /// Static friction acts against the motion, and so does its change: the rule's error has the
-  /// sign of the velocity twice.
-  [[nodiscard]] double fading(std::size_t k) const {
-    return fading_rate(joint_, signals_.true_velocity[k], signals_.true_acceleration[k]);
+  /// Friction acts against the motion, and so does its change: the rule's error has the sign of
+  /// the velocity twice.
+  [[nodiscard]] double rate(std::size_t k) const {
+    return varying_rate(joint_, signals_.true_velocity[k], signals_.true_acceleration[k]);
   }
 
   const simulate::Signals& signals_;

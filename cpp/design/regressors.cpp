@@ -43,16 +43,16 @@ JOINTID_CLONES void gaussian(double shape, const double* velocity, std::size_t c
 void friction(const Column& column, const std::vector<double>& velocity, double* result) {
   if (column.shape < 0 && column.term.direction == model::Direction::both) {
     switch (column.term.basis) {  // what every joint has, without a choice at each sample
-      case model::SpeedBasis::one:
+      case model::SpeedBasis::constant:
         std::transform(velocity.begin(), velocity.end(), result, sign_of);
         return;
-      case model::SpeedBasis::speed:
+      case model::SpeedBasis::linear:
         std::copy(velocity.begin(), velocity.end(), result);
         return;
-      case model::SpeedBasis::stribeck:
+      case model::SpeedBasis::gaussian:
         gaussian(column.shapes[0], velocity.data(), velocity.size(), result);
         return;
-      case model::SpeedBasis::stribeck_general:
+      default:
         break;
     }
   }
@@ -85,7 +85,7 @@ void by_load(const std::vector<double>& velocity, const std::vector<double>& loa
 /// Whether `value` is the coefficient's column of the term whose shape `slope` is.
 bool is_value_of(const Column& value, const Column& slope) {
   return value.shape < 0 && slope.shape == 0 && value.term.key == slope.term.key &&
-         slope.term.basis == model::SpeedBasis::stribeck;
+         slope.term.basis == model::SpeedBasis::gaussian;
 }
 
 void fill(const Column& column, const simulate::Signals& signals, double* result) {

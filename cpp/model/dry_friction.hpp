@@ -1,44 +1,52 @@
 #pragma once
-// Friction of one direction of motion: the dry level that fades with speed, and what viscosity
-// adds.
+// Friction of one direction of motion: what is dry, what varies with the speed otherwise, and what
+// viscosity adds.
 
 #include "base/lanes.hpp"
 #include "model/joint.hpp"
 
 namespace jointid::model {
 
-/// Coefficients in the direction of motion.
+/// Sums over the terms, in the direction of motion.
 template <class Number>
 struct DirectedFriction {
-  Number coulomb;  ///< with the share that grows with the load
-  Number excess;   ///< static friction over Coulomb's
-  Number viscous;
+  Number dry;      ///< constant, with the share that grows with the load
+  Number at_rest;  ///< what the varying terms are just off rest
+  Number viscous;  ///< per speed
 
-  [[nodiscard]] Number breakaway() const { return coulomb + excess; }
-  /// The dry level where `fading` of the excess is left.
-  [[nodiscard]] Number level(const Number& fading) const { return coulomb + excess * fading; }
+  [[nodiscard]] Number breakaway() const { return dry + at_rest; }
+  /// All but viscosity, where the varying terms are `varying`.
+  [[nodiscard]] Number level(const Number& varying) const { return dry + varying; }
 };
 
 template <class Number, class Mask>
 DirectedFriction<Number> directed(const JointOf<Number>& joint, const Mask& forward,
                                   const Number& load) {
-  return {base::select(forward, joint.coulomb_positive, joint.coulomb_negative) + load,
-          base::select(forward, joint.static_positive, joint.static_negative),
-          base::select(forward, joint.viscous_positive, joint.viscous_negative)};
+  DirectedFriction<Number> sum{0.0, 0.0, 0.0};
+  for (const auto& term : joint.friction) {
+    const Number coefficient = base::select(forward, term.positive, term.negative);
+    if (term.basis == SpeedBasis::constant) {
+      sum.dry = sum.dry + coefficient;
+    } else if (term.basis == SpeedBasis::linear) {
+      sum.viscous = sum.viscous + coefficient;
+    } else {
+      sum.at_rest = sum.at_rest + coefficient * Number(facts_of(term.basis).at_rest);
+    }
+  }
+  sum.dry = sum.dry + load;
+  return sum;
 }
 
-/// The share of the static excess that is left at a speed of at least 0: 1 at rest.
-template <class Number>
-Number fading(const JointOf<Number>& joint, const Number& speed) {
-  switch (joint.decay) {
-    case Decay::none:
-      return 0.0;
-    case Decay::gaussian:
-      return base::exp(-(joint.stribeck * speed * speed));
-    case Decay::general:
-      return base::exp(-base::pow(speed / joint.stribeck_velocity, joint.stribeck_exponent));
+/// The sum of the terms that are neither constant nor linear, at a speed of at least 0.
+template <class Number, class Mask>
+Number varying(const JointOf<Number>& joint, const Mask& forward, const Number& speed) {
+  Number sum = 0.0;
+  for (const auto& term : joint.friction) {
+    if (term.basis == SpeedBasis::constant || term.basis == SpeedBasis::linear) continue;
+    sum = sum + base::select(forward, term.positive, term.negative) *
+                    basis_value(term.basis, speed, term.shapes.data());
   }
-  return 0.0;
+  return sum;
 }
 
 }  // namespace jointid::model

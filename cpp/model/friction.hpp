@@ -2,40 +2,58 @@
 // Static friction maps as sums of linear coefficients times basis functions of the speed:
 // f(v) = sgn v * sum c_i h_i(|v|). (2-1) Coulomb + viscous, (2-3) Stribeck with exponent and (4-1)
 // Coulomb + static excess with Gaussian decay + viscous are such sums; only the decay has shape
-// parameters. A basis owns value, slope and unit; a new one is a case in each function here, and a
-// row in identify/balance/terms.cpp.
+// parameters. A basis owns value, slopes, unit and how exports write it; a new one is a row and a
+// case in each function here, and a row in identify/balance/terms.cpp. Fits, simulation, design,
+// exports and pages follow.
 
+#include <array>
+#include <cstddef>
 #include <limits>
+#include <string_view>
 
+#include "base/choices.hpp"
 #include "base/elementary.hpp"
+#include "base/lanes.hpp"
 
 namespace jointid::model {
 
 enum class SpeedBasis {
-  one,               ///< 1: Coulomb friction
-  speed,             ///< |v|: viscous friction of one direction
-  stribeck,          ///< exp(-s v^2), s [s^2/rad^2]: the static excess of (4-1)
-  stribeck_general,  ///< exp(-|v/v_s|^d), v_s [rad/s] and d [1]: the static excess of (2-3)
+  constant,  ///< 1: Coulomb friction
+  linear,    ///< |v|: viscous friction
+  gaussian,  ///< exp(-s v^2), s [s^2/rad^2]: the static excess of (4-1)
+  general,   ///< exp(-|v/v_s|^d), v_s [rad/s] and d [1]: the static excess of (2-3)
 };
+
+constexpr std::size_t kMostShapes = 2;  ///< parameters of a basis
 
 /// The direction of motion in which a term acts.
 enum class Direction { both, positive, negative };
 
-/// Units of a coefficient: torque over the basis's unit.
-struct BasisUnit {
-  const char* revolute;
-  const char* prismatic;
+/// What does not depend on a speed.
+struct BasisFacts {
+  const char* unit;  ///< of a coefficient: torque over the basis's unit
+  const char* unit_prismatic;
+  double at_rest;            ///< h(0)
+  bool shape_above = false;  ///< whether its shape parameters must be above 0, not 0
+  /// h as a product, in the notation of C: `speed`, {0} and {1} are speed and shapes. Empty: 1.
+  const char* expression = "";
 };
-inline BasisUnit basis_unit(SpeedBasis basis) {
-  switch (basis) {
-    case SpeedBasis::speed:
-      return {"N·m·s/rad", "N·s/m"};
-    case SpeedBasis::one:
-    case SpeedBasis::stribeck:
-    case SpeedBasis::stribeck_general:
-      break;
-  }
-  return {"N·m", "N"};
+inline const BasisFacts& facts_of(SpeedBasis basis) {
+  static constexpr std::array<BasisFacts, 4> kFacts{{
+      {.unit = "N·m", .unit_prismatic = "N", .at_rest = 1.0},
+      {.unit = "N·m·s/rad", .unit_prismatic = "N·s/m", .at_rest = 0.0, .expression = "speed"},
+      {.unit = "N·m",
+       .unit_prismatic = "N",
+       .at_rest = 1.0,
+       .expression = "exp(-({0} * speed * speed))"},
+      // A power as exponential and logarithm, which every language has.
+      {.unit = "N·m",
+       .unit_prismatic = "N",
+       .at_rest = 1.0,
+       .shape_above = true,
+       .expression = "exp(-exp({1} * log(speed / {0})))"},
+  }};
+  return kFacts.at(static_cast<std::size_t>(basis));
 }
 
 /// log |v|; for a joint at rest a number so low that any power of the speed is 0.
@@ -61,17 +79,18 @@ inline GeneralDecay general_decay(double scaled, double velocity, double exponen
   return {value, slope * exponent / velocity, -slope * scaled};
 }
 
-/// h(|v|) for one speed; `shapes` holds as many values as the basis has.
-inline double basis_value(SpeedBasis basis, double speed, const double* shapes) {
+/// h(|v|) for one speed or several lanes; `shapes` holds as many values as the basis has.
+template <class Number>
+Number basis_value(SpeedBasis basis, const Number& speed, const Number* shapes) {
   switch (basis) {
-    case SpeedBasis::one:
+    case SpeedBasis::constant:
       return 1.0;
-    case SpeedBasis::speed:
+    case SpeedBasis::linear:
       return speed;
-    case SpeedBasis::stribeck:
-      return base::exp(-shapes[0] * speed * speed);
-    case SpeedBasis::stribeck_general:
-      return general_decay(log_speed(speed) - base::log(shapes[0]), shapes[0], shapes[1]).value;
+    case SpeedBasis::gaussian:
+      return base::exp(-(shapes[0] * speed * speed));
+    case SpeedBasis::general:
+      return base::exp(-base::pow(speed / shapes[0], shapes[1]));
   }
   return 0.0;
 }
@@ -79,12 +98,12 @@ inline double basis_value(SpeedBasis basis, double speed, const double* shapes) 
 /// Derivative of h by its shape number `which`.
 inline double basis_slope(SpeedBasis basis, double speed, const double* shapes, int which) {
   switch (basis) {
-    case SpeedBasis::one:
-    case SpeedBasis::speed:
+    case SpeedBasis::constant:
+    case SpeedBasis::linear:
       return 0.0;
-    case SpeedBasis::stribeck:
-      return -speed * speed * base::exp(-shapes[0] * speed * speed);
-    case SpeedBasis::stribeck_general: {
+    case SpeedBasis::gaussian:
+      return -speed * speed * basis_value(basis, speed, shapes);
+    case SpeedBasis::general: {
       const double scaled = log_speed(speed) - base::log(shapes[0]);
       const auto decay = general_decay(scaled, shapes[0], shapes[1]);
       return which == 0 ? decay.by_velocity : decay.by_exponent;
@@ -93,4 +112,26 @@ inline double basis_slope(SpeedBasis basis, double speed, const double* shapes, 
   return 0.0;
 }
 
+/// Derivative of h by the speed, which is above 0.
+inline double basis_rate(SpeedBasis basis, double speed, const double* shapes) {
+  switch (basis) {
+    case SpeedBasis::constant:
+      return 0.0;
+    case SpeedBasis::linear:
+      return 1.0;
+    case SpeedBasis::gaussian:
+      return -2.0 * shapes[0] * speed * basis_value(basis, speed, shapes);
+    case SpeedBasis::general:
+      return -shapes[1] * base::pow(speed / shapes[0], shapes[1]) / speed *
+             basis_value(basis, speed, shapes);
+  }
+  return 0.0;
+}
+
 }  // namespace jointid::model
+
+template <>
+struct jointid::base::Words<jointid::model::SpeedBasis> {
+  static constexpr std::string_view field = "basis";
+  static constexpr std::array<std::string_view, 4> all{"constant", "linear", "gaussian", "general"};
+};

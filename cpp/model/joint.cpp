@@ -1,6 +1,7 @@
 #include "model/joint.hpp"
 
 #include "base/require.hpp"
+#include "model/dry_friction.hpp"
 
 namespace jointid::model {
 
@@ -12,21 +13,22 @@ void Joint::validate() const {
   require.finite("load", load);
   require.finite("torque_offset", torque_offset);
   require.above_zero("torque_limit", torque_limit);
-  require.at_least_zero("coulomb_positive", coulomb_positive);
-  require.at_least_zero("coulomb_negative", coulomb_negative);
-  require.at_least_zero("static_positive", static_positive);
-  require.at_least_zero("static_negative", static_negative);
-  require.at_least_zero("viscous_positive", viscous_positive);
-  require.at_least_zero("viscous_negative", viscous_negative);
-  require.at_least_zero("stribeck", stribeck);
-  require.above_zero("stribeck_velocity", stribeck_velocity);
-  require.above_zero("stribeck_exponent", stribeck_exponent);
+  for (const auto& term : friction) {
+    require.at_least_zero("friction.positive", term.positive);
+    require.at_least_zero("friction.negative", term.negative);
+    const bool above = facts_of(term.basis).shape_above;
+    for (const double shape : term.shapes) {
+      above ? require.above_zero("friction.shapes", shape)
+            : require.at_least_zero("friction.shapes", shape);
+    }
+  }
   require.at_least_zero("load_friction", load_friction);
   if (bristles) {
     require.above_zero("bristle_stiffness", bristle_stiffness);
     require.at_least_zero("bristle_damping", bristle_damping);
-    require.above_zero("coulomb_positive (with bristles)", coulomb_positive);
-    require.above_zero("coulomb_negative (with bristles)", coulomb_negative);
+    for (const bool forward : {true, false}) {
+      require.above_zero("constant friction (with bristles)", directed(*this, forward, 0.0).dry);
+    }
   }
   for (const auto& weight : weights) {
     require.finite("weights.torque", weight.torque);
@@ -40,8 +42,11 @@ void Joint::validate() const {
 }
 
 bool same_structure(const Joint& a, const Joint& b) {
-  bool same = a.decay == b.decay && a.bristles == b.bristles &&
+  bool same = a.friction.size() == b.friction.size() && a.bristles == b.bristles &&
               a.weights.size() == b.weights.size() && a.harmonics.size() == b.harmonics.size();
+  for (std::size_t i = 0; same && i < a.friction.size(); ++i) {
+    same = a.friction[i].basis == b.friction[i].basis;
+  }
   for (std::size_t i = 0; same && i < a.harmonics.size(); ++i) {
     same = a.harmonics[i].order == b.harmonics[i].order;
   }

@@ -1,20 +1,22 @@
 #pragma once
-// A joint as it is simulated: the drive's inertia, dry and viscous friction, what hangs on it. For
-// one number or for several lanes: the structure (decay, bristles, harmonics) is common to all
+// A joint as it is simulated: the drive's inertia, its friction, what hangs on it. For one number
+// or for several lanes: the structure (bases of friction, bristles, harmonics) is common to all
 // lanes, the numbers are not.
 
 #include <array>
 #include <vector>
 
-#include "base/choices.hpp"
+#include "model/friction.hpp"
 
 namespace jointid::model {
 
-/// How the static excess over Coulomb friction fades with speed.
-enum class Decay {
-  none,      ///< no static excess
-  gaussian,  ///< (4-1): exp(-stribeck v^2)
-  general,   ///< (2-3): exp(-|v / stribeck_velocity|^stribeck_exponent)
+/// One term of the friction: coefficients for each direction, and the basis with its shapes.
+template <class Number>
+struct FrictionOf {
+  SpeedBasis basis = SpeedBasis::constant;
+  Number positive = 0.0;
+  Number negative = 0.0;
+  std::array<Number, kMostShapes> shapes{};
 };
 
 /// Torque over an angle: cosine and sine part [N·m] of an order [1] of the joint's angle.
@@ -32,7 +34,7 @@ struct WeightOf {
   Number angle = 0.0;   ///< [rad]
 };
 
-/// Output side of the gear, SI; coefficients of friction for each direction.
+/// Output side of the gear, SI.
 template <class Number>
 struct JointOf {
   Number inertia = 1.0;       ///< of the drive
@@ -41,16 +43,7 @@ struct JointOf {
   Number torque_offset = 0.0;
   Number torque_limit = 1e300;  ///< of the drive, on the magnitude
 
-  Decay decay = Decay::gaussian;
-  Number coulomb_positive = 0.0;
-  Number coulomb_negative = 0.0;
-  Number static_positive = 0.0;
-  Number static_negative = 0.0;
-  Number viscous_positive = 0.0;
-  Number viscous_negative = 0.0;
-  Number stribeck = 0.0;
-  Number stribeck_velocity = 1.0;
-  Number stribeck_exponent = 1.0;
+  std::vector<FrictionOf<Number>> friction{};
   Number load_friction = 0.0;  ///< dry friction per torque of the drive
 
   bool bristles = false;  ///< Dahl and LuGre: friction behind a spring
@@ -64,6 +57,7 @@ struct JointOf {
 };
 
 using Joint = JointOf<double>;
+using Friction = FrictionOf<double>;
 using Weight = WeightOf<double>;
 using Harmonic = HarmonicOf<double>;
 
@@ -75,18 +69,15 @@ void each_number(A& a, B& b, Visit visit) {
   visit(a.load, b.load);
   visit(a.torque_offset, b.torque_offset);
   visit(a.torque_limit, b.torque_limit);
-  visit(a.coulomb_positive, b.coulomb_positive);
-  visit(a.coulomb_negative, b.coulomb_negative);
-  visit(a.static_positive, b.static_positive);
-  visit(a.static_negative, b.static_negative);
-  visit(a.viscous_positive, b.viscous_positive);
-  visit(a.viscous_negative, b.viscous_negative);
-  visit(a.stribeck, b.stribeck);
-  visit(a.stribeck_velocity, b.stribeck_velocity);
-  visit(a.stribeck_exponent, b.stribeck_exponent);
   visit(a.load_friction, b.load_friction);
   visit(a.bristle_stiffness, b.bristle_stiffness);
   visit(a.bristle_damping, b.bristle_damping);
+  for (std::size_t i = 0; i < a.friction.size(); ++i) {
+    visit(a.friction[i].positive, b.friction[i].positive);
+    visit(a.friction[i].negative, b.friction[i].negative);
+    for (std::size_t s = 0; s < kMostShapes; ++s)
+      visit(a.friction[i].shapes[s], b.friction[i].shapes[s]);
+  }
   for (std::size_t i = 0; i < a.weights.size(); ++i) {
     visit(a.weights[i].torque, b.weights[i].torque);
     visit(a.weights[i].angle, b.weights[i].angle);
@@ -101,9 +92,3 @@ void each_number(A& a, B& b, Visit visit) {
 bool same_structure(const Joint& a, const Joint& b);
 
 }  // namespace jointid::model
-
-template <>
-struct jointid::base::Words<jointid::model::Decay> {
-  static constexpr std::string_view field = "decay";
-  static constexpr std::array<std::string_view, 3> all{"none", "gaussian", "general"};
-};

@@ -18,7 +18,8 @@ template <class Number>
 struct MotionOf {
   Number position = 0.0;
   Number velocity = 0.0;
-  Number fading = 1.0;  ///< share of the static excess in the last step; a first guess for the next
+  Number varying =
+      0.0;  ///< friction that varies with the speed, in the last step: a first guess for the next
   Number bristle = 0.0;  ///< mean deflection [rad] (Dahl, LuGre)
 };
 
@@ -74,8 +75,9 @@ void advance_bristles(const JointOf<Number>& joint, MotionOf<Number>& motion, co
   Number mean = 1.0;
   for (int pass = 0; pass < 3; ++pass) {
     const Number speed = base::absolute(used);
-    const auto friction = model::directed(joint, !(used < Number(0.0)), dry_load);
-    rate = joint.bristle_stiffness * speed / friction.level(model::fading(joint, speed));
+    const auto forward = !(used < Number(0.0));
+    const auto friction = model::directed(joint, forward, dry_load);
+    rate = joint.bristle_stiffness * speed / friction.level(model::varying(joint, forward, speed));
     const Number x = rate * h;
     // (1 - e^-x) / x and (1 - that) / x, by series where the differences would cancel.
     const auto small = x < Number(0.05);
@@ -118,23 +120,23 @@ void advance_pushed(const JointOf<Number>& joint, MotionOf<Number>& motion, cons
   const Number speed = sign * velocity;
   const Number guess =
       speed + half *
-                  (ahead - friction.level(base::select(resting, Number(1.0), motion.fading)) -
+                  (ahead - friction.level(base::select(resting, friction.at_rest, motion.varying)) -
                    friction.viscous * speed) /
                   mass;
-  const Number fading = model::fading(joint, base::at_least(guess, 0.0));
+  const Number varying = model::varying(joint, forward, base::at_least(guess, 0.0));
   const Number viscous = half * friction.viscous;
   const Number after =
-      (speed * (mass - viscous) + h * (ahead - friction.level(fading))) / (mass + viscous);
+      (speed * (mass - viscous) + h * (ahead - friction.level(varying))) / (mass + viscous);
   const auto reversing = (!resting) & (after < zero);
   const auto stuck = resting & (!(friction.breakaway() < ahead));
 
   Number velocity_after = base::select(stuck, zero, sign * after + zero);
   Number position_after =
       base::select(stuck, motion.position, motion.position + half * (velocity + velocity_after));
-  motion.fading = fading;
+  motion.varying = varying;
   if (base::any(reversing)) {
     // Until the stop friction is that of the mean velocity, half the one at the start.
-    const Number braking = friction.level(fading) + 0.5 * friction.viscous * speed - ahead;
+    const Number braking = friction.level(varying) + 0.5 * friction.viscous * speed - ahead;
     const Number before = speed * mass / base::select(reversing, braking, Number(1.0));
     const Number rest = h - before;
     const auto onward = zero < push;
@@ -142,15 +144,15 @@ void advance_pushed(const JointOf<Number>& joint, MotionOf<Number>& motion, cons
     const Number spare = base::absolute(push) - other.breakaway();
     const auto goes = zero < spare;
     const Number middle = 0.5 * rest * base::select(goes, spare, zero) / mass;
-    const Number faded = model::fading(joint, middle);
+    const Number next = model::varying(joint, onward, middle);
     const Number gained =
-        rest * (base::absolute(push) - other.level(faded)) / (mass + 0.5 * rest * other.viscous);
+        rest * (base::absolute(push) - other.level(next)) / (mass + 0.5 * rest * other.viscous);
     const Number left =
         base::select(goes, base::select(onward, Number(1.0), Number(-1.0)) * gained, zero);
     velocity_after = base::select(reversing, left, velocity_after);
     position_after = base::select(
         reversing, motion.position + 0.5 * (before * velocity + rest * left), position_after);
-    motion.fading = base::select(reversing, faded, motion.fading);
+    motion.varying = base::select(reversing, next, motion.varying);
   }
   motion.velocity = velocity_after;
   motion.position = position_after;
@@ -179,7 +181,7 @@ Dynamics<Number> dynamics(const JointOf<Number>& joint, const MotionOf<Number>& 
   const Number speed = base::absolute(velocity);
   const auto directed =
       model::directed(joint, forward, joint.load_friction * base::absolute(torque));
-  const Number level = directed.level(model::fading(joint, speed));
+  const Number level = directed.level(model::varying(joint, forward, speed));
   Number friction;
   if (joint.bristles) {
     const Number slip = velocity - joint.bristle_stiffness * speed / level * motion.bristle;

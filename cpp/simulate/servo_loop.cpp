@@ -40,11 +40,10 @@ class DelayedDuty {
 class Servo {
  public:
   explicit Servo(const ServoLoop& loop) : loop_(loop), driven_(loop.joint), free_(loop.joint) {
-    driven_.viscous_positive += loop.back_emf;
-    driven_.viscous_negative += loop.back_emf;
+    driven_.friction.push_back({model::SpeedBasis::linear, loop.back_emf, loop.back_emf});
     motion.position = loop.position;
     motion.velocity = loop.velocity;
-    motion.fading = model::fading(loop.joint, std::fabs(loop.velocity));
+    motion.varying = model::varying(loop.joint, !(loop.velocity < 0.0), std::fabs(loop.velocity));
   }
 
   MotionOf<double> motion;

@@ -26,7 +26,10 @@ template <class Number>
 JointOf<Number> joined(std::span<const Setup> setups) {
   const model::Joint& first = setups.front().joint;
   JointOf<Number> joint;
-  joint.decay = first.decay;
+  joint.friction.resize(first.friction.size());
+  for (std::size_t i = 0; i < first.friction.size(); ++i) {
+    joint.friction[i].basis = first.friction[i].basis;
+  }
   joint.bristles = first.bristles;
   joint.weights.resize(first.weights.size());
   joint.harmonics.resize(first.harmonics.size());
@@ -130,7 +133,8 @@ void run(const Scenario& scenario, const Wanted& reference, std::span<const Setu
     base::set_lane(motion.velocity, i, setup.velocity);
     if (i < setups.size()) loops.emplace_back(scenario, setup, outcomes[i], kept);
   }
-  motion.fading = model::fading(joint, base::absolute(motion.velocity));
+  motion.varying =
+      model::varying(joint, !(motion.velocity < Number(0.0)), base::absolute(motion.velocity));
   const int substeps = scenario.substeps();
   const double step = scenario.control_period / substeps;
   const auto every = static_cast<std::size_t>(scenario.sample_every);

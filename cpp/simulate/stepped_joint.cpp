@@ -25,7 +25,7 @@ SteppedJoint::SteppedJoint(const SteppedSetup& setup)
                setup.sensor_gain, "finite and not 0");
   motion_.position = setup.position;
   motion_.velocity = setup.velocity;
-  motion_.fading = model::fading(joint_, std::fabs(motion_.velocity));
+  motion_.varying = model::varying(joint_, !(motion_.velocity < 0.0), std::fabs(motion_.velocity));
 }
 
 void SteppedJoint::advance(double torque, double duration) {

@@ -50,7 +50,7 @@ Excitation excitation() {
   std::vector<design::Drawn> joints;
   for (int i = 0; i < 3; ++i) {
     simulate::Setup setup = thesis_setup();
-    setup.joint.viscous_positive = setup.joint.viscous_negative = 18.0 + i;
+    setup.joint.friction[2].positive = setup.joint.friction[2].negative = 18.0 + i;
     joints.push_back({setup,
                       columns,
                       {0.5, 0.0, 0.0, 0.01, 0.0},
@@ -117,7 +117,8 @@ CHECK_CASE("design: what the trapezoidal rule misses of fading friction counts a
   const model::Joint joint = thesis_setup().joint;
   const auto excess = [&](double time) {
     const double velocity = 0.05 + acceleration * time;
-    return joint.static_positive * base::exp(-joint.stribeck * velocity * velocity);
+    const auto& fading = joint.friction[1];
+    return fading.positive * base::exp(-fading.shapes[0] * velocity * velocity);
   };
   simulate::Signals signals;
   double rule = 0.0;

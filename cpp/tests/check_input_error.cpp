@@ -39,9 +39,10 @@ CHECK_CASE("input error: a requirement says which number, what it is, and its li
 }
 
 CHECK_CASE("input error: an unknown word lists the known ones") {
-  const auto error = refused([] { base::chosen<model::Decay>("linear"); });
-  CHECK(std::string(error.what()) == "decay is 'linear': known are none, gaussian, general");
-  CHECK(std::get<std::string>(error.value()) == "linear");
+  const auto error = refused([] { base::chosen<model::SpeedBasis>("square"); });
+  CHECK(std::string(error.what()) ==
+        "basis is 'square': known are constant, linear, gaussian, general");
+  CHECK(std::get<std::string>(error.value()) == "square");
 }
 
 CHECK_CASE("input error: a sentence without argument or value is the reason") {

@@ -15,6 +15,7 @@ namespace jointid::tests {
 namespace {
 
 using model::Joint;
+using model::SpeedBasis;
 using simulate::MotionOf;
 using Motion = MotionOf<double>;
 
@@ -73,8 +74,8 @@ CHECK_CASE("motion: a joint that coasts stops, once, and stays") {
 CHECK_CASE("motion: asymmetric joints break away where their direction says") {
   Joint joint = thesis();
   joint.weights.clear();
-  joint.coulomb_negative = 5.0;
-  joint.static_negative = 1.0;
+  joint.friction[0].negative = 5.0;
+  joint.friction[1].negative = 1.0;
   joint.load_friction = 0.5;
   Motion motion;
   simulate::advance(joint, motion, 89.0, 1e-3);  // 45 + half the torque
@@ -91,17 +92,20 @@ CHECK_CASE("motion: friction takes energy only, whatever the joint and the step"
     const auto up_to = [&](double most) { return most * random.uniform(); };
     Joint joint;
     joint.inertia = 0.01 + up_to(3.0);
-    joint.coulomb_positive = up_to(50.0);
-    joint.coulomb_negative = up_to(50.0);
-    joint.static_positive = up_to(40.0);
-    joint.static_negative = up_to(40.0);
-    joint.viscous_positive = up_to(40.0);
-    joint.viscous_negative = up_to(40.0);
-    joint.stribeck = up_to(1000.0);
+    const auto term = [&](SpeedBasis basis, double most) {
+      const double positive = up_to(most);
+      joint.friction.push_back({basis, positive, up_to(most)});
+    };
+    term(SpeedBasis::constant, 50.0);
+    term(seed % 3 == 0 ? SpeedBasis::general : SpeedBasis::gaussian, 40.0);
+    auto& shapes = joint.friction.back().shapes;
+    if (seed % 3 == 0) {
+      shapes = {0.001 + up_to(1.0), 0.3 + up_to(2.0)};
+    } else {
+      shapes = {up_to(1000.0)};
+    }
+    term(SpeedBasis::linear, 40.0);
     joint.load_friction = up_to(0.3);
-    joint.decay = seed % 3 == 0 ? model::Decay::general : model::Decay::gaussian;
-    joint.stribeck_velocity = 0.001 + up_to(1.0);
-    joint.stribeck_exponent = 0.3 + up_to(2.0);
     joint.bristles = seed % 4 == 0;
     joint.bristle_stiffness = 1.0 + up_to(1e6);
     const double h = 1e-5 + up_to(5e-3);
@@ -153,8 +157,7 @@ CHECK_CASE("motion: where a joint stops within a step is known") {
   // Dry and viscous friction alone: it stops after m/c ln(1 + c v/F).
   Joint joint;
   joint.inertia = 2.0;
-  joint.coulomb_positive = joint.coulomb_negative = 10.0;
-  joint.viscous_positive = joint.viscous_negative = 4.0;
+  joint.friction = {{SpeedBasis::constant, 10.0, 10.0}, {SpeedBasis::linear, 4.0, 4.0}};
   const double speed = 0.25;  // c v / F is a tenth
   const double share = 0.1;
   const double whole = joint.inertia * speed * speed / 10.0;
@@ -187,7 +190,7 @@ CHECK_CASE("motion: bristles that a step resolves keep their energy") {
   joint.inertia = 2.0;
   joint.bristles = true;
   joint.bristle_stiffness = 2e4;  // without damping: it swings at 100 rad/s
-  joint.coulomb_positive = joint.coulomb_negative = 1e6;
+  joint.friction = {{SpeedBasis::constant, 1e6, 1e6}};
   Motion motion;
   motion.velocity = 1e-3;
   const double period = 4.0 * kHalfPi / 100.0;

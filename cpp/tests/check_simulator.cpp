@@ -31,7 +31,7 @@ std::vector<Setup> candidates(int count) {
     Setup setup = thesis_setup();
     setup.seed = static_cast<std::uint64_t>(i);
     std::get<AdaptiveRobust>(setup.controller).coulomb = 10.0 + i;
-    setup.joint.viscous_positive = 15.0 + i;
+    setup.joint.friction[2].positive = 15.0 + i;
     setup.joint.harmonics = {{3.0, 0.1 * i, 1.0}};
     setup.joint.bristles = i % 7 == 6;
     setup.joint.bristle_stiffness = 1e5;
@@ -147,7 +147,8 @@ CHECK_CASE("simulator: what cannot be simulated is refused by name") {
   CHECK_REFUSED(tried([](auto& s, auto&) { s.duration = 1e-5; }), "duration");
   CHECK_REFUSED(tried([](auto& s, auto&) { s.sensors.filter_order = 3; }), "filter_order");
   CHECK_REFUSED(tried([](auto&, auto& s) { s.joint.inertia = 0.0; }), "inertia");
-  CHECK_REFUSED(tried([](auto&, auto& s) { s.joint.coulomb_negative = -1.0; }), "coulomb_negative");
+  CHECK_REFUSED(tried([](auto&, auto& s) { s.joint.friction[0].negative = -1.0; }),
+                "friction.negative");
   CHECK_REFUSED(tried([](auto&, auto& s) { s.sensor_gain = 0.0; }), "sensor_gain");
   CHECK_REFUSED(tried([](auto&, auto& s) { s.controller = simulate::Pd{-1.0, 0.0}; }),
                 "Pd.stiffness");

@@ -23,16 +23,16 @@ CHECK_CASE("terms: the general decay's derivatives are its differences") {
       above[which] += 1e-6;
       below[which] -= 1e-6;
       const auto value = [&](const double* s) {
-        return model::basis_value(SpeedBasis::stribeck_general, v, s);
+        return model::basis_value(SpeedBasis::general, v, s);
       };
-      CHECK_CLOSE(model::basis_slope(SpeedBasis::stribeck_general, v, shapes, which),
+      CHECK_CLOSE(model::basis_slope(SpeedBasis::general, v, shapes, which),
                   (value(above) - value(below)) / 2e-6, 1e-8);
     }
   }
   const double gaussian[] = {0.1, 2.0};
   const double shape = 100.0;  // 1 / 0.1^2: exponent 2 is (4-1)
-  CHECK_CLOSE(model::basis_value(SpeedBasis::stribeck_general, 0.07, gaussian),
-              model::basis_value(SpeedBasis::stribeck, 0.07, &shape), 1e-15);
+  CHECK_CLOSE(model::basis_value(SpeedBasis::general, 0.07, gaussian),
+              model::basis_value(SpeedBasis::gaussian, 0.07, &shape), 1e-15);
 }
 
 CHECK_CASE("terms: the general decay and its derivatives are those of long double") {
@@ -45,10 +45,10 @@ CHECK_CASE("terms: the general decay and its derivatives are those of long doubl
       const long double value = std::exp(-power);
       const double shapes[] = {velocity, d};
       const auto slope = [&](int which) {
-        return model::basis_slope(SpeedBasis::stribeck_general, speed, shapes, which);
+        return model::basis_slope(SpeedBasis::general, speed, shapes, which);
       };
       // Of 1, which the samples at rest have.
-      CHECK_CLOSE(model::basis_value(SpeedBasis::stribeck_general, speed, shapes),
+      CHECK_CLOSE(model::basis_value(SpeedBasis::general, speed, shapes),
                   static_cast<double>(value), 2e-15 * std::max(1.0, 0.5 * d));
       CHECK_CLOSE(slope(0), static_cast<double>(value * power * d / velocity),
                   1e-14 * std::max(1.0, d) * d / velocity);
@@ -57,13 +57,13 @@ CHECK_CASE("terms: the general decay and its derivatives are those of long doubl
   }
   const double shapes[] = {0.037, 0.5};
   for (const double speed : {0.0, 1e-320}) {
-    CHECK(model::basis_value(SpeedBasis::stribeck_general, speed, shapes) == 1.0);
-    CHECK_CLOSE(model::basis_slope(SpeedBasis::stribeck_general, speed, shapes, 0), 0.0, 1e-200);
-    CHECK_CLOSE(model::basis_slope(SpeedBasis::stribeck_general, speed, shapes, 1), 0.0, 1e-200);
+    CHECK(model::basis_value(SpeedBasis::general, speed, shapes) == 1.0);
+    CHECK_CLOSE(model::basis_slope(SpeedBasis::general, speed, shapes, 0), 0.0, 1e-200);
+    CHECK_CLOSE(model::basis_slope(SpeedBasis::general, speed, shapes, 1), 0.0, 1e-200);
   }
   const double sudden[] = {1e-6, 4.0};  // the power is beyond all numbers
-  CHECK_CLOSE(model::basis_value(SpeedBasis::stribeck_general, 1e6, sudden), 0.0, 1e-200);
-  CHECK_CLOSE(model::basis_slope(SpeedBasis::stribeck_general, 1e6, sudden, 1), 0.0, 1e-200);
+  CHECK_CLOSE(model::basis_value(SpeedBasis::general, 1e6, sudden), 0.0, 1e-200);
+  CHECK_CLOSE(model::basis_slope(SpeedBasis::general, 1e6, sudden, 1), 0.0, 1e-200);
 }
 
 // The rows below are read from the table, so that a new row is checked without a line here.

@@ -13,10 +13,9 @@ inline simulate::Setup thesis_setup(double angle = -kHalfPi) {
   joint.inertia = 2.472e-4 * 101.0 * 101.0;
   joint.link_inertia = 0.25;
   joint.weights = {{3.0 * 9.817 * 0.25, angle}};
-  joint.coulomb_positive = joint.coulomb_negative = 25.0;
-  joint.static_positive = joint.static_negative = 20.0;
-  joint.viscous_positive = joint.viscous_negative = 20.0;
-  joint.stribeck = 100.0;
+  joint.friction = {{model::SpeedBasis::constant, 25.0, 25.0},
+                    {model::SpeedBasis::gaussian, 20.0, 20.0, {100.0}},
+                    {model::SpeedBasis::linear, 20.0, 20.0}};
   joint.torque_limit = 160.0;
   setup.gear_ratio = 101.0;
   setup.sensor_gain = 2.4;

@@ -25,14 +25,14 @@ JOINTID_CLONES void log_speeds(const double* speed, std::size_t count, double* l
 JOINTID_CLONES void stribeck_values(double shape, const double* speed, const double* weight,
                                     std::size_t count, double* value) {
   for (std::size_t i = 0; i < count; ++i) {
-    value[i] = weight[i] * model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
+    value[i] = weight[i] * model::basis_value(model::SpeedBasis::gaussian, speed[i], &shape);
   }
 }
 
 JOINTID_CLONES void stribeck_slopes(double shape, const double* speed, const double* weight,
                                     std::size_t count, double* value, double* slope) {
   for (std::size_t i = 0; i < count; ++i) {
-    const double decay = model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
+    const double decay = model::basis_value(model::SpeedBasis::gaussian, speed[i], &shape);
     value[i] = weight[i] * decay;
     slope[i] = weight[i] * (-speed[i] * speed[i] * decay);
   }
@@ -121,7 +121,7 @@ JOINTID_CLONES void signed_decays(const double* velocity, std::size_t count, dou
 
 /// A general decay whose exponent is 2 is a Gaussian one.
 bool is_gaussian(const Term& term, const double* shapes) {
-  return term.basis == model::SpeedBasis::stribeck_general && shapes[1] == 2.0;
+  return term.basis == model::SpeedBasis::general && shapes[1] == 2.0;
 }
 
 double gaussian_rate(const double* shapes) {
@@ -142,7 +142,7 @@ Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity
   }
   if (term.integral == Integral::displacement) return velocity;
   const bool gaussian = is_gaussian(term, shapes.data());
-  if ((gaussian || term.basis == model::SpeedBasis::stribeck) && !needs_load(term)) {
+  if ((gaussian || term.basis == model::SpeedBasis::gaussian) && !needs_load(term)) {
     const double rate = gaussian ? gaussian_rate(shapes.data()) : shapes[0];
     Eigen::VectorXd result(velocity.size());
     signed_decays(velocity.data(), static_cast<std::size_t>(velocity.size()), rate, term.direction,
@@ -170,7 +170,7 @@ void FrictionNodes::take_logarithms() {
 void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
                         const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
   const bool gaussian = is_gaussian(term, shapes);
-  const bool general = !gaussian && term.basis == model::SpeedBasis::stribeck_general;
+  const bool general = !gaussian && term.basis == model::SpeedBasis::general;
   const GeneralShapes both =
       general ? GeneralShapes{shapes[0], shapes[1], base::log(shapes[0])} : GeneralShapes{};
   std::array<double, kNodesAtOnce> made;
@@ -178,7 +178,7 @@ void integrate_friction(const Term& term, const FrictionNodes& nodes, const doub
     const double* speed = nodes.speed.data() + begin;
     const double* weight = nodes.weight.data() + begin;
     double* values = value[0].data();
-    if (term.basis == model::SpeedBasis::stribeck) {
+    if (term.basis == model::SpeedBasis::gaussian) {
       stribeck_values(shapes[0], speed, weight, count, values);
     } else if (gaussian) {
       stribeck_values(gaussian_rate(shapes), speed, weight, count, values);
@@ -196,11 +196,25 @@ void integrate_slopes(const Term& term, const FrictionNodes& nodes, const double
                       const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns) {
   const double* speed = nodes.speed.data();
   const double* weight = nodes.weight.data();
-  if (term.basis == model::SpeedBasis::stribeck) {
+  if (term.basis == model::SpeedBasis::gaussian) {
     sum_nodes<2>(nodes, cancel, columns, [&](std::size_t begin, std::size_t count, auto& value) {
       stribeck_slopes(shapes[0], speed + begin, weight + begin, count, value[0].data(),
                       value[1].data());
     });
+    return;
+  }
+  if (term.basis != model::SpeedBasis::general) {
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+      const auto at = [&](double v) {
+        return c == 0 ? model::basis_value(term.basis, v, shapes)
+                      : model::basis_slope(term.basis, v, shapes, static_cast<int>(c) - 1);
+      };
+      sum_nodes<1>(nodes, cancel, columns.col(c),
+                   [&](std::size_t begin, std::size_t count, auto& value) {
+                     for (std::size_t i = 0; i < count; ++i)
+                       value[0][i] = weight[begin + i] * at(speed[begin + i]);
+                   });
+    }
     return;
   }
   const GeneralShapes both{shapes[0], shapes[1], base::log(shapes[0])};

@@ -89,33 +89,40 @@ JOINTID_CLONES void hold(const double* torque, const double* time, std::size_t c
   for (std::size_t i = 0; i < count; ++i) result[i] = torque[i] * (time[i + 1] - time[i]);
 }
 
-/// Adds a friction at the samples; beside it, what all of them are just off rest.
+/// Adds a friction at the samples, and to `at_rest` what it is just off rest.
 void add_friction(const KnownTerm& known, const double* velocity, std::size_t count, double* sum,
                   Sides& at_rest) {
   const auto [forward, backward] = sides_of(known);
   const double* shapes = known.shapes.data();
   switch (known.term.basis) {
-    case model::SpeedBasis::speed:
+    case model::SpeedBasis::linear:
       for (std::size_t i = 0; i < count; ++i) {
         sum[i] += std::fabs(velocity[i]) * (velocity[i] > 0.0 ? forward : backward);
       }
-      return;
-    case model::SpeedBasis::one:
+      break;
+    case model::SpeedBasis::constant:
       add_signs(velocity, count, forward, backward, sum);
       break;
-    case model::SpeedBasis::stribeck:
+    case model::SpeedBasis::gaussian:
       for (std::size_t i = 0; i < count; i += kTogether) {
         const std::size_t some = std::min(kTogether, count - i);
         if (has_vanished(shapes[0], velocity + i, some)) continue;
         add_decays(velocity + i, some, shapes[0], forward, backward, sum + i);
       }
       break;
-    case model::SpeedBasis::stribeck_general:
+    case model::SpeedBasis::general:
       add_general(velocity, count, shapes, base::log(shapes[0]), forward, backward, sum);
       break;
+    default:
+      for (std::size_t i = 0; i < count; ++i) {
+        const double v = velocity[i];
+        const double side = (v > 0.0 ? forward : 0.0) + (v < 0.0 ? backward : 0.0);
+        sum[i] += side * model::basis_value(known.term.basis, std::fabs(v), shapes);
+      }
   }
-  at_rest.forward += forward;
-  at_rest.backward += backward;
+  const double rest = model::facts_of(known.term.basis).at_rest;
+  at_rest.forward += rest * forward;
+  at_rest.backward += rest * backward;
 }
 
 /// Makes up for the trapezoids of friction where the joint reverses within an interval: there it

@@ -177,8 +177,8 @@ void integrate_sign(const Term& term, const RecordingView& r,
 
 /// The speed beyond which a term's decay is nothing beside 1; infinite without a decay.
 double vanished_beyond(const Term& term, const Eigen::VectorXd& shapes) {
-  if (term.basis == model::SpeedBasis::stribeck) return std::sqrt(vanishing_at(shapes[0]));
-  if (term.basis != model::SpeedBasis::stribeck_general) return HUGE_VAL;
+  if (term.basis == model::SpeedBasis::gaussian) return std::sqrt(vanishing_at(shapes[0]));
+  if (term.basis != model::SpeedBasis::general) return HUGE_VAL;
   const double power = vanishing_at(1.0);
   return shapes[0] * base::exp(base::log(power) / shapes[1]);
 }
@@ -231,7 +231,7 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
     case Integral::friction:
       break;
   }
-  if (term.basis == model::SpeedBasis::one) {
+  if (term.basis == model::SpeedBasis::constant) {
     integrate_sign(term, r, usable, windows, result);
     return;
   }

@@ -33,15 +33,15 @@ Term torque(std::string name, std::string option, Integral integral, std::string
 
 Term friction(std::string key, std::string name, SpeedBasis basis, std::vector<std::string> shapes,
               std::string meaning, std::string advice) {
-  const auto unit = model::basis_unit(basis);
+  const auto& facts = model::facts_of(basis);
   return {.key = std::move(key),
           .name = std::move(name),
           .integral = Integral::friction,
           .basis = basis,
           .shapes = std::move(shapes),
           .non_negative = true,
-          .unit = unit.revolute,
-          .unit_prismatic = unit.prismatic,
+          .unit = facts.unit,
+          .unit_prismatic = facts.unit_prismatic,
           .meaning = std::move(meaning),
           .advice = std::move(advice),
           .option = "name"};
@@ -98,7 +98,7 @@ std::vector<Term> base_rows() {
                 .advice = "harder acceleration"};
   };
   const auto viscous = [] {
-    Term term = friction("viscous", "viscous", SpeedBasis::speed, {}, "viscous friction",
+    Term term = friction("viscous", "viscous", SpeedBasis::linear, {}, "viscous friction",
                          "faster motion, at several speeds");
     term.integral = Integral::displacement;  // the same integral, without a sum over samples
     return term;
@@ -130,14 +130,14 @@ std::vector<Term> base_rows() {
   };
   return {
       simulated(inertia(), Control::compensated),
-      simulated(friction("coulomb", "coulomb", SpeedBasis::one, {}, "Coulomb friction",
+      simulated(friction("coulomb", "coulomb", SpeedBasis::constant, {}, "Coulomb friction",
                          "motion in both directions, at several speeds"),
                 Control::compensated),
-      simulated(friction("static", "static", SpeedBasis::stribeck, {"stribeck"},
+      simulated(friction("static", "static", SpeedBasis::gaussian, {"stribeck"},
                          "static (above Coulomb)", kSlow),
                 Control::compensated),
       simulated(
-          friction("static_general", "static", SpeedBasis::stribeck_general,
+          friction("static_general", "static", SpeedBasis::general,
                    {"stribeck_velocity", "stribeck_exponent"}, "static (above Coulomb)", kSlow),
           Control::refused),
       simulated(viscous(), Control::compensated),
@@ -254,7 +254,8 @@ const std::vector<Shape>& shape_table() {
        .meaning = "how abruptly static friction decays",
        .advice = kSlow,
        .lower = 0.5,
-       .upper = 4.0},
+       .upper = 4.0,
+       .typical = 2.0},
       // At 1 a joint locks by itself in one quadrant.
       {.name = "load_friction",
        .unit = "1",
@@ -296,9 +297,21 @@ bool needs_load(const Term& term) {
   return term.integral == Integral::load_friction || term.integral == Integral::link_friction;
 }
 
-model::Decay decay_of(const Term& term) {
-  if (term.basis == SpeedBasis::stribeck) return model::Decay::gaussian;
-  return term.basis == SpeedBasis::stribeck_general ? model::Decay::general : model::Decay::none;
+int side_of(const Term& term) {
+  if (term.direction == Direction::both) return 0;
+  return term.direction == Direction::positive ? 1 : -1;
+}
+
+std::string expression_of(const Term& term) {
+  if (needs_load(term)) return "load_size";
+  std::string text = model::facts_of(term.basis).expression;
+  for (std::size_t i = 0; i < term.shapes.size(); ++i) {
+    const std::string place = "{" + std::to_string(i) + "}";
+    if (const auto at = text.find(place); at != std::string::npos) {
+      text.replace(at, place.size(), term.shapes[i]);
+    }
+  }
+  return text;
 }
 
 Term find_term(std::string_view key) {

@@ -2,8 +2,8 @@
 // The regressor is a list of named terms: each is a coefficient times a basis, integrated over each
 // window, in the torque balance  integral(torque) = sum of terms.  A new term is one row of the
 // table in terms.cpp; a new function of the speed is a basis in model/friction.hpp, any other new
-// way to integrate a case in quadrature.cpp. Bounds, report, JSON, plots, advice and command line
-// follow from the row.
+// way to integrate a case in quadrature.cpp. Bounds, report, JSON, plots, advice, command line,
+// robots, servos, simulation, design and exports follow from the row.
 
 #include <Eigen/Core>
 #include <string>
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "model/friction.hpp"
-#include "model/joint.hpp"
 
 namespace jointid::identify {
 
@@ -46,9 +45,9 @@ struct Term {
   std::string key;   ///< unique: what a model lists
   std::string name;  ///< the parameter's name; two bases of the same quantity share it
   Integral integral;
-  model::SpeedBasis basis = model::SpeedBasis::one;     ///< for Integral::friction
-  model::Direction direction = model::Direction::both;  ///< for Integral::friction
-  std::vector<std::string> shapes{};                    ///< names of the basis's shape parameters
+  model::SpeedBasis basis = model::SpeedBasis::constant;  ///< for Integral::friction
+  model::Direction direction = model::Direction::both;    ///< for Integral::friction
+  std::vector<std::string> shapes{};                      ///< names of the basis's shape parameters
   Harmonic harmonic = Harmonic::none;
   double order = 1.0;         ///< of the harmonic
   bool non_negative = false;  ///< a negative value has no physical meaning
@@ -75,6 +74,7 @@ struct Shape {
   double speed_power = 0.0;
   double lower = 0.0;
   double upper = 0.0;
+  double typical = 0.0;  ///< where speed_power is 0
 };
 
 /// A friction model by name, as the keys of the terms it consists of.
@@ -94,8 +94,11 @@ bool is_own(const Term& term);
 bool is_friction(const Term& term);
 /// Whether the friction depends on the torque that the drive transmits, too.
 bool needs_load(const Term& term);
-/// How the simulated joint fades this friction with speed; `none` where it does not fade.
-model::Decay decay_of(const Term& term);
+/// 1 or -1 for friction of one direction of motion alone, else 0.
+int side_of(const Term& term);
+/// How an export writes the friction, as a product in the notation of C: `speed`, `load_size` and
+/// shape parameters by their names; empty: 1.
+std::string expression_of(const Term& term);
 
 /// The friction term's basis at each velocity: what its coefficient multiplies. 0 at rest. `load`
 /// is the torque that the drive transmits [N·m or N].

@@ -122,7 +122,7 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
   }
   const double low = domain.lower[p];
   const double high = domain.upper[p];
-  if (shaped.front().term.basis == model::SpeedBasis::stribeck) {
+  if (shaped.front().term.basis == model::SpeedBasis::gaussian) {
     const double even = std::max(speed * speed, 1e-300) / kKnee;
     if (!(1.0 + even * low > 0.0)) {
       reason = "the bounds of stribeck reach too far below 0";
@@ -130,6 +130,10 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
     }
     const ShapeAxis axis(low, high, 1.0, even, kPieces);
     return nodes_on(axis, count_for(axis.length(), density), 2.0, [](double rate) { return rate; });
+  }
+  if (shaped.front().term.basis != model::SpeedBasis::general) {
+    reason = "there is no table for " + shaped.front().term.key;
+    return std::nullopt;
   }
   const double exponent = domain.lower[p + 1];
   if (exponent < domain.upper[p + 1]) {

@@ -279,7 +279,7 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
     w = end;
   }
   const bool general = std::any_of(shaped_.begin(), shaped_.end(), [](const Shaped& shaped) {
-    return decay_of(shaped.term) == model::Decay::general;
+    return shaped.term.basis == model::SpeedBasis::general;
   });
   if (general) all.take_logarithms();
   bool both = false;

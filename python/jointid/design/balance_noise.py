@@ -75,16 +75,21 @@ def noise_of_balance(
 
 def _fading_speed(joint: _core.SimulatedJoint) -> float:
     """Return the speed at which static friction has faded; 0 without static friction."""
-    if joint.decay == "gaussian" and joint.stribeck > 0.0:
-        return 1.0 / math.sqrt(joint.stribeck)
-    return joint.stribeck_velocity if joint.decay == "general" else 0.0
+    powers = {
+        term.basis: [_core.shape(name).speed_power for name in term.shapes]
+        for term in _core.terms()
+        if term.friction
+    }
+    speeds = [
+        value ** (1.0 / power)
+        for basis, _, _, shapes in joint.friction
+        for value, power in zip(shapes, powers[basis], strict=False)
+        if power and value > 0.0
+    ]
+    return max(speeds, default=0.0)
 
 
 def _dry_step(joint: _core.SimulatedJoint) -> float:
     """Return by how much dry friction changes at a reversal [N·m]."""
-    return float(
-        joint.coulomb_positive
-        + joint.coulomb_negative
-        + joint.static_positive
-        + joint.static_negative
-    )
+    at_rest = {term.basis: term.at_rest for term in _core.terms() if term.friction}
+    return sum(at_rest[basis] * (one + other) for basis, one, other, _ in joint.friction)

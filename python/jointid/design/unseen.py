@@ -6,12 +6,11 @@ import math
 
 import numpy as np
 
+from jointid import _core
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import NORMAL
 from jointid.estimate.statistics import ParameterEstimate
 
-_SHAPES = ("stribeck", "stribeck_velocity", "stribeck_exponent")
-_STATIC = ("static", "static_positive", "static_negative")
 _EXCESS = 0.2  # of Coulomb friction: a static excess that is looked for
 _NEGLIGIBLE = 0.02  # of Coulomb friction: a smaller one is not
 _FADED = 1.0 / 30.0  # of the top speed: where it fades
@@ -27,13 +26,15 @@ def unseen_friction(estimate: Estimate) -> tuple[dict[str, float], set[str]]:
     there: it keeps its value.
     """
     found = estimate.parameters
-    static = [found[name] for name in _STATIC if name in found and found[name].vary]
-    shapes = [found[name] for name in _SHAPES if name in found and found[name].vary]
+    terms = [_core.term(key) for key in estimate.settings["terms"]]
+    fading = [term for term in terms if term.friction and term.shapes and found[term.name].vary]
+    dry = {term.side: term.name for term in terms if term.basis == "constant"}
+    shapes = {name: found[name] for term in fading for name in term.shapes if found[name].vary}
     assumed: dict[str, float] = {}
     absent: set[str] = set()
-    for p in static:
-        coulomb = found.get(p.name.replace("static", "coulomb"))
-        level = 0.0 if coulomb is None else abs(coulomb.value)
+    for term in fading:
+        p = found[term.name]
+        level = abs(found[dry[term.side]].value) if term.side in dry else 0.0
         if not _is_lost(p):
             continue
         largest = math.inf if p.at_bound else p.value + NORMAL * interval_error(p)
@@ -41,15 +42,16 @@ def unseen_friction(estimate: Estimate) -> tuple[dict[str, float], set[str]]:
             absent.add(p.name)
         else:
             assumed[p.name] = _inside(estimate, p.name, min(largest, _EXCESS * level))
-    lost = static and len(absent) + len(assumed) == len(static)
+    lost = fading and len(absent) + len(assumed) == len(fading)
     speed = float(np.max(np.abs(estimate.windows.velocity), initial=0.0))
-    fading = _FADED * speed if speed > 0.0 else 1.0
-    typical = {"stribeck": fading**-2.0, "stribeck_velocity": fading, "stribeck_exponent": 2.0}
-    for p in shapes:
-        if len(absent) == len(static):
-            absent.add(p.name)
+    slow = _FADED * speed if speed > 0.0 else 1.0
+    for name, p in shapes.items():
+        shape = _core.shape(name)
+        if len(absent) == len(fading):
+            absent.add(name)
         elif lost or p.at_bound:
-            assumed[p.name] = _inside(estimate, p.name, typical[p.name])
+            typical = slow**shape.speed_power if shape.speed_power else shape.typical
+            assumed[name] = _inside(estimate, name, typical)
     return assumed, absent
 
 

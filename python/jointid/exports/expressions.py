@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -39,32 +40,26 @@ class Language:
 
 def fading(law: Law, side: int, language: Language) -> list[str]:
     """Return the summands of one direction's friction that do not vanish with the speed; `speed`, `load_size`."""
-    return [_summand(each, language) for each in _of_side(law, side) if each.basis != "linear"]
+    return [_summand(each, language) for each in _of_side(law, side) if not each.vanishes]
 
 
 def growing(law: Law, side: int, language: Language) -> list[str]:
     """Return the summands of one direction's friction that vanish with the speed."""
-    return [_summand(each, language) for each in _of_side(law, side) if each.basis == "linear"]
+    return [_summand(each, language) for each in _of_side(law, side) if each.vanishes]
 
 
 def _of_side(law: Law, side: int) -> list[FrictionTerm]:
-    return [each for each in law.friction if each.side in (0, side)]
+    return [each for each in law.friction if each.term.side in (0, side)]
 
 
 def _summand(term: FrictionTerm, language: Language) -> str:
-    value = language.name(term.name)
-    shapes = [language.name(name) for name in term.shapes]
-    if term.basis == "linear":
-        return f"({value} * speed)"
-    if term.basis == "load":
-        return f"({value} * load_size)"
-    if term.basis == "gaussian":
-        return f"({value} * {language.exp}(-({shapes[0]} * speed * speed)))"
-    if term.basis == "general":
-        # speed is above 0 here; a power as exponential and logarithm, which every language has.
-        power = f"{language.exp}({shapes[1]} * {language.log}(speed / {shapes[0]}))"
-        return f"({value} * {language.exp}(-{power}))"
-    return value
+    value = language.name(term.term.name)
+    if not term.term.expression:
+        return value
+    words = {"exp": language.exp, "log": language.log}
+    words |= {name: language.name(name) for name in term.shapes}
+    basis = re.sub(r"[a-z_]\w*", lambda word: words.get(word[0], word[0]), term.term.expression)
+    return f"({value} * {basis})"
 
 
 def periodic(law: Law, kind: Over, angle: str, language: Language) -> list[str]:
@@ -112,7 +107,7 @@ def constants(law: Law) -> dict[str, float]:
     """Return the law's numbers by the parameters' names, each once."""
     values: dict[str, float] = {}
     for term in law.friction:
-        values |= {term.name: term.value, **term.shapes}
+        values |= {term.term.name: term.value, **term.shapes}
     for each in law.harmonics:
         cos, sin = harmonic_names(each)
         values |= {cos: each.cos, sin: each.sin}

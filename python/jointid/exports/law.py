@@ -16,36 +16,32 @@ from jointid.joint.joint import Joint
 from jointid.joint.own_terms import CENTRED, POSITION
 
 Array = NDArray[np.float64]
-Basis = Literal["constant", "linear", "gaussian", "general", "load"]
 Over = Literal["gravity", "harmonics", "ripple"]
 Function = Literal["torque", "inertia"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrictionTerm:
-    """One term of the friction: a coefficient times a function of the speed, in one direction or both.
+    """One term of the friction: a coefficient times the core's basis.
 
     Attributes
     ----------
-    key : str
-        Of the core's term.
-    name : str
-        Of the coefficient's parameter.
-    basis : str
-        What the coefficient multiplies: 1, the speed, exp(-s v²), exp(-(v / v_s)^d), or the load's magnitude.
-    side : int
-        1 or -1: of this direction alone; 0: of both.
+    term : Term
+        Of the core.
     value : float
+        Of the coefficient.
     shapes : mapping of str to float
         Shape parameters by name, in the order of the core.
     """
 
-    key: str
-    name: str
-    basis: Basis
-    side: int
+    term: _core.Term
     value: float
     shapes: Mapping[str, float]
+
+    @property
+    def vanishes(self) -> bool:
+        """Whether the friction vanishes with the speed."""
+        return self.term.at_rest == 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,10 +137,10 @@ class Law:
     @property
     def loaded_by(self) -> str:
         """Which torque load friction grows with, in words; "" without load friction."""
-        keys = [each.key for each in self.friction if each.basis == "load"]
-        if not keys:
+        loads = [each.term for each in self.friction if each.term.needs_load]
+        if not loads:
             return ""
-        return "behind the gear" if "load_friction_link" in keys else "of the drive"
+        return "behind the gear" if any(term.behind_gear for term in loads) else "of the drive"
 
     def over(self, kind: Over) -> tuple[Harmonic, ...]:
         """Return the harmonics of one kind."""
@@ -166,10 +162,10 @@ class Law:
         velocities = np.atleast_1d(np.asarray(velocity, dtype=np.float64))
         fade = np.tanh(np.abs(velocities) / width) if width > 0.0 else np.ones_like(velocities)
         total = np.zeros_like(velocities)
-        for term in self.friction:
-            shapes = np.array([*term.shapes.values()], dtype=np.float64)
-            torque = term.value * _core.friction_basis(term.key, velocities, shapes, load)
-            total += torque if term.basis == "linear" else torque * fade
+        for each in self.friction:
+            shapes = np.array([*each.shapes.values()], dtype=np.float64)
+            torque = each.value * _core.friction_basis(each.term.key, velocities, shapes, load)
+            total += torque if each.vanishes else torque * fade
         return total
 
     def position_torque(self, position: ArrayLike, *kinds: Over) -> Array:
@@ -275,26 +271,4 @@ def _harmonic(over: str, order: float, parts: Sequence[float]) -> Harmonic:
 def _friction(key: str, values: Mapping[str, float]) -> FrictionTerm:
     term = _core.term(key)
     shapes = {name: values[name] for name in term.shapes}
-    parts = np.array([*shapes.values()], dtype=np.float64)
-    # What the term is, asked from the core itself: a basis that is new there is refused, not mistaken.
-    at = _core.friction_basis(key, np.array([-2.0, -1.0, 1.0, 2.0]), parts, 3.0)
-    if not (np.any(at[:2]) or np.any(at[2:])):  # it has decayed at these speeds
-        at = _core.friction_basis(key, np.array([-2e-9, -1e-9, 1e-9, 2e-9]), parts, 3.0)
-    side = 0 if at[1] and at[2] else 1 if at[2] else -1
-    one, two = (at[2], at[3]) if side >= 0 else (-at[1], -at[0])
-    basis: Basis
-    if term.needs_load:
-        basis = "load"
-    elif term.decay == "gaussian":
-        basis = "gaussian"
-    elif term.decay == "general":
-        basis = "general"
-    elif one == two == 1.0:
-        basis = "constant"
-    elif two == 2.0 * one == 2.0:
-        basis = "linear"
-    else:
-        raise InputError("no export has this term of the model", argument="model", value=key)
-    return FrictionTerm(
-        key=key, name=term.name, basis=basis, side=side, value=values[term.name], shapes=shapes
-    )
+    return FrictionTerm(term=term, value=values[term.name], shapes=shapes)

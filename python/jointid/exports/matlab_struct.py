@@ -32,7 +32,7 @@ def _write(subject: Subject, order: Order) -> bytes:
         "friction.velocity has no 0: between its two middle rows a lookup is a steep line through 0",
         "NaN stands for what is not known",
     ]
-    if any(each.basis == "load" for each in subject.law.friction):
+    if subject.law.loaded_by:
         notes.append("lookup tables are without load; load_friction is per load")
     if subject.speed is None:
         notes.append("the range of the tables is chosen: no range of speeds is known")

@@ -46,16 +46,22 @@ def lost_terms(subject: Subject) -> tuple[str, ...]:
     """Return what Coulomb and viscous friction cannot express of a law, in words."""
     law, unit = subject.law, subject.torque_unit
     lost = []
-    excess = [each for each in law.friction if each.basis in ("gaussian", "general")]
+    excess = [each for each in law.friction if each.shapes and not each.vanishes]
     if excess:
         sizes = " and ".join(f"{each.value:.4g}" for each in excess)
         lost.append(f"Stribeck friction ({sizes} {unit} above Coulomb at rest)")
-    if any(each.side for each in law.friction):
+    revolute = subject.joint.kind == "revolute"
+    lost += [
+        f"{each.term.meaning} ({each.value:.4g} {each.term.unit if revolute else each.term.unit_prismatic})"
+        for each in law.friction
+        if each.term.basis not in ("constant", "linear", "load") and each not in excess
+    ]
+    if any(each.term.side for each in law.friction):
         lost.append("the difference between the two directions")
     lost += [
         f"load friction ({each.value:.4g} {unit} per {unit} of load)"
         for each in law.friction
-        if each.basis == "load" and each.value != 0.0
+        if each.term.needs_load and each.value != 0.0
     ]
     for over, angle in (("ripple", "motor"), ("harmonics", "joint")):
         found = [each for each in law.harmonics if each.over == over]
@@ -101,7 +107,7 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
         if each.value < 0.0:  # a simulator refuses it, or gains energy
             raise InputError(
                 f"{target} has no negative friction",
-                argument=f"parameters.{each.name}",
+                argument=f"parameters.{each.term.name}",
                 value=each.value,
             )
     if lost and not approximate:
@@ -116,8 +122,8 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
         )
     if not friction:  # it is Coulomb and viscous friction
         return Nearest(
-            constant=sum(each.value for each in law.friction if each.basis == "constant"),
-            slope=sum(each.value for each in law.friction if each.basis == "linear"),
+            constant=sum(each.value for each in law.friction if each.term.basis == "constant"),
+            slope=sum(each.value for each in law.friction if each.term.basis == "linear"),
             lost=own,
         )
     if subject.speed is None:

@@ -324,7 +324,8 @@ def _terms_of(joint: Joint) -> tuple[str, ...]:
     wanted |= set(_GRAVITY) if model.gravity != "none" else set()
     wanted |= set(_SENSOR) if joint.sensor else set()
     if model.load_friction:
-        wanted.add("load_friction_link" if model.load_friction == "link" else "load_friction")
+        behind = model.load_friction == "link"
+        wanted |= {t.key for t in _core.terms() if t.needs_load and t.behind_gear == behind}
     offset = joint.parameters.get("torque_offset")
     wanted |= {"torque_offset"} if offset is not None and offset.value is not None else set()
     orders = {"ripple": model.ripple, "harmonics": model.harmonics}

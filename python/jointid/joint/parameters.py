@@ -96,9 +96,8 @@ class Parameter:
 
 @functools.cache
 def _above_zero() -> frozenset[str]:
-    """Return the shapes of a decay that is a power of the speed: else friction does not decay."""
-    rows = (row for row in _core.terms() if row.decay == "general")
-    return frozenset(shape for row in rows for shape in row.shapes)
+    """Return the shapes that are no shapes at 0."""
+    return frozenset(shape for row in _core.terms() if row.above_zero for shape in row.shapes)
 
 
 def parameter_table(

@@ -84,10 +84,20 @@ class Values:
             return 0.0, 0.0
         return self.need(sides[0]), self.need(sides[1])
 
-    @property
-    def decay(self) -> str:
-        """How the model's static friction fades with speed, in the core's words."""
-        return next((term.decay for term in self.terms if term.decay != "none"), "none")
+    def friction(self) -> list[tuple[str, float, float, tuple[float, ...]]]:
+        """Return the friction that depends on the speed alone: basis, coefficients of both directions, shapes."""
+        found: dict[tuple[str, tuple[float, ...]], list[float]] = {}
+        for term in self.terms:
+            if term.basis is None or term.needs_load:
+                continue
+            shapes = tuple(self.need(name) for name in term.shapes)
+            sides = found.setdefault((term.basis, shapes), [0.0, 0.0])
+            value = self.need(term.name)
+            if term.side >= 0:
+                sides[0] += value
+            if term.side <= 0:
+                sides[1] += value
+        return [(basis, *sides, shapes) for (basis, shapes), sides in found.items()]
 
 
 def simulated_joint(
@@ -102,8 +112,6 @@ def simulated_joint(
         simulated.
     """
     require_simulated(joint, values.terms)
-    decay = values.decay
-    coulomb, viscous, static = (values.both(name) for name in ("coulomb", "viscous", "static"))
     revolute = joint.kind == "revolute"
     inertia, link_inertia = _inertias(joint, values)
     weights = []
@@ -146,16 +154,7 @@ def simulated_joint(
         load=load,
         torque_offset=values.get("torque_offset") or 0.0,
         torque_limit=1e300 if limit is None else limit,
-        decay=decay,
-        coulomb_positive=coulomb[0],
-        coulomb_negative=coulomb[1],
-        static_positive=static[0],
-        static_negative=static[1],
-        viscous_positive=viscous[0],
-        viscous_negative=viscous[1],
-        stribeck=values.need("stribeck") if decay == "gaussian" else 0.0,
-        stribeck_velocity=values.need("stribeck_velocity") if decay == "general" else 1.0,
-        stribeck_exponent=values.need("stribeck_exponent") if decay == "general" else 1.0,
+        friction=values.friction(),
         load_friction=values.need("load_friction") if joint.model.resolved.load_friction else 0.0,
         bristles=bristle is not None,
         bristle_stiffness=0.0 if bristle is None else bristle.stiffness,
@@ -216,7 +215,8 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     for name in ("coulomb", "static", "viscous"):
         estimates[name] = sum(values.both(name)) / 2.0
     # 0 is written out: a controller must not keep a value from before.
-    estimates["stribeck"] = values.need("stribeck") if values.decay == "gaussian" else 0.0
+    fades = any("stribeck" in term.shapes for term in values.terms)
+    estimates["stribeck"] = values.need("stribeck") if fades else 0.0
     for name in ("sensor_gain", "sensor_offset"):
         estimates[name] = values.need(name) if joint.sensor else 0.0
     require_used(

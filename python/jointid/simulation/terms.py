@@ -32,10 +32,7 @@ def terms_of(joint: Joint) -> tuple[_core.Term, ...]:
     return tuple(
         term
         for term in _core.terms()
-        if not (
-            term.needs_load
-            and (term.key == "load_friction_link") != (model.load_friction == "link")
-        )
+        if not (term.needs_load and term.behind_gear != (model.load_friction == "link"))
         and (
             term.key in friction
             if term.option == "name"
