@@ -28,9 +28,9 @@ void bind_terms(py::module_& m) {
                              "Whether it is friction that depends on the drive's torque, too.")
       .def_property_readonly(
           "basis",
-          [](const Term& t) -> py::object {
-            if (!identify::is_friction(t)) return py::none();
-            return py::cast(identify::needs_load(t) ? "load" : std::string(base::word(t.basis)));
+          [](const Term& t) {
+            if (!identify::is_friction(t)) return std::string();
+            return std::string(identify::needs_load(t) ? "load" : base::word(t.basis));
           },
           "What friction multiplies: \"constant\", \"linear\", \"load\" or a basis of the core's.")
       .def_property_readonly(

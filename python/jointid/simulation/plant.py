@@ -88,7 +88,7 @@ class Values:
         """Return the friction that depends on the speed alone: basis, coefficients of both directions, shapes."""
         found: dict[tuple[str, tuple[float, ...]], list[float]] = {}
         for term in self.terms:
-            if term.basis is None or term.needs_load:
+            if not term.friction or term.needs_load:
                 continue
             shapes = tuple(self.need(name) for name in term.shapes)
             sides = found.setdefault((term.basis, shapes), [0.0, 0.0])
