@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 
+from every_model import MODELS, joint_of
 from example_recordings import WELL_EXCITED
 
 import jointid as jid
@@ -65,6 +66,7 @@ SLIDING = jid.Joint(
 ).with_parameters({"coulomb": 14.0, "viscous": 90.0, "torque_offset": 3.0})
 
 JOINTS = {"thesis": THESIS, "loaded": LOADED, "everything": EVERYTHING, "sliding": SLIDING}
+JOINTS |= {name: joint_of(name) for name in MODELS}
 
 
 @functools.cache

@@ -43,7 +43,7 @@ def drag(**changes: Any) -> Any:
         "option": "name",
         "shapes": [],
         "family": False,
-        "decay": "none",
+        "friction": False,
         "simulated": False,
         "control": _core.Control.refused,
     }

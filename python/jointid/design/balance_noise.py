@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from jointid import _core
+from jointid.design.simulated_friction import faded_speed, step_at_reversal
 from jointid.joint.joint import Joint
 
 _OWN = 3e-3  # of the torque limit: a sensor's noise where none is stated
@@ -61,35 +62,13 @@ def noise_of_balance(
         position = 2.0 * math.pi / turn / math.sqrt(12.0)
     # Of a straight line through so many of the recording's positions, however long the steps of the judge are.
     derived = position * math.sqrt(12.0 / _SMOOTHED**3) / sampled
-    slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * _fading_speed(setup.joint))
+    slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * faded_speed(setup.joint))
     return _core.BalanceNoise(
         # White in the recording's samples; fewer of them are as good as their means.
         torque=math.sqrt(variance * sampled / period),
         position=position,
         velocity=derived,
         slowest=min(slowest, 0.05 * velocity),
-        reversal=_REVERSAL * sampled * _dry_step(setup.joint),
+        reversal=_REVERSAL * sampled * step_at_reversal(setup.joint),
         sampled=sampled,
     )
-
-
-def _fading_speed(joint: _core.SimulatedJoint) -> float:
-    """Return the speed at which static friction has faded; 0 without static friction."""
-    powers = {
-        term.basis: [_core.shape(name).speed_power for name in term.shapes]
-        for term in _core.terms()
-        if term.friction
-    }
-    speeds = [
-        value ** (1.0 / power)
-        for basis, _, _, shapes in joint.friction
-        for value, power in zip(shapes, powers[basis], strict=False)
-        if power and value > 0.0
-    ]
-    return max(speeds, default=0.0)
-
-
-def _dry_step(joint: _core.SimulatedJoint) -> float:
-    """Return by how much dry friction changes at a reversal [N·m]."""
-    at_rest = {term.basis: term.at_rest for term in _core.terms() if term.friction}
-    return sum(at_rest[basis] * (one + other) for basis, one, other, _ in joint.friction)

@@ -16,6 +16,7 @@ from jointid.design.asked import Asked
 from jointid.design.balance_noise import noise_of_balance
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Ranges
+from jointid.design.simulated_friction import largest_other, largest_viscous
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.batch import setup_of
@@ -144,7 +145,7 @@ class Situation:
             # What was told of given joints is in `known`; a range tells that much.
             known=self.known + own if believed and not self.ranges.drawn else self.known,
             inertia=inertia,
-            viscous=max(setup.joint.viscous_positive, setup.joint.viscous_negative),
+            viscous=largest_viscous(setup.joint),
         )
 
     @property
@@ -215,13 +216,10 @@ class Situation:
         for each in values:
             made = self.setup(each, scenario).joint
             inertia = max(inertia, made.inertia + made.link_inertia)
-            viscous = max(viscous, made.viscous_positive, made.viscous_negative)
+            viscous = max(viscous, largest_viscous(made))
             load = sum(abs(torque) for torque, _ in made.weights)
             load += sum(math.hypot(cos, sin) for _, cos, sin in made.harmonics)
-            friction = max(
-                made.coulomb_positive + made.static_positive,
-                made.coulomb_negative + made.static_negative,
-            )
+            friction = largest_other(made, self.limits.velocity)
             dry = max(dry, friction + load + abs(made.torque_offset) + abs(made.load))
         return inertia, viscous, dry
 

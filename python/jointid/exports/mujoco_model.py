@@ -46,6 +46,7 @@ def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
         return []
     unit = subject.torque_unit
     notes = [f"lost: {each}" for each in nearest.lost]
+    load = " without load" if subject.law.loaded_by else ""
     if nearest.speed is None:  # the friction itself is exact
         return notes
     return [
@@ -53,7 +54,7 @@ def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
         f"friction here is {nearest.constant!r} {unit} + {nearest.slope!r} {unit}*s/{subject.position_unit} * speed, "
         f"the least-squares fit over speeds up to {nearest.speed!r} {subject.position_unit}/s, equally weighted",
         f"largest difference of the torque over this range: {nearest.worst:.4g} {unit}"
-        f"{' without load' if subject.law.loaded_by else ''}; of the friction, root mean square: {nearest.rms:.4g} {unit}",
+        f"{load}; of the friction, root mean square: {nearest.rms:.4g} {unit}",
     ]
 
 
