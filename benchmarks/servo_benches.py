@@ -66,12 +66,7 @@ def bench_table(seeds: Sequence[int]) -> Iterator[str]:
     yield f"Benches with a finding other than a value on its bound: {warned} of {len(tally.codes)}."
 
 
-_STRIBECK = {
-    "decay": "gaussian",
-    "static_positive": 1.8 * COULOMB,
-    "static_negative": 1.8 * COULOMB,
-    "stribeck": 1.0 / 0.3**2,
-}
+_STRIBECK = ("gaussian", 1.8 * COULOMB, 1.8 * COULOMB, (1.0 / 0.3**2,))
 BROKEN: dict[str, tuple[Bench, dict[str, Any]]] = {
     "nothing": (Bench(), {}),
     "the supply sags by .75 Ω, and is logged": (Bench(sag=0.75), {}),
@@ -79,7 +74,10 @@ BROKEN: dict[str, tuple[Bench, dict[str, Any]]] = {
     "the supply sags by .75 Ω, but 7.4 V are stated": (Bench(sag=0.75), {"supply": 7.4}),
     "the duty is read 4.5 ms after the position": (Bench(row=0.0045), {}),
     "the loop answers 5 ms late, which is not stated": (Bench(delay=0.005), {}),
-    "static friction 1.8 times Coulomb, Stribeck velocity .3 rad/s": (Bench(plant=_STRIBECK), {}),
+    "static friction 1.8 times Coulomb, Stribeck velocity .3 rad/s": (
+        Bench(friction=(_STRIBECK,)),
+        {},
+    ),
     "play of .5° between load and sensor": (Bench(play=float(np.radians(0.5))), {}),
     "the mass is 5 % more than stated": (Bench(mass=1.05 * MASS), {}),
 }

@@ -4,8 +4,7 @@ The plant is the core's at a tenth of a millisecond, with a supply that sags und
 is read from it one value after the other, rounded, and with a velocity that lags.
 """
 
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,7 +57,8 @@ class Bench:
     )
     mass: float = MASS
     delay: float = 0.0  # s, of the position loop
-    plant: dict[str, Any] = field(default_factory=dict)  # further fields of the core's joint
+    friction: tuple[tuple[str, float, float, tuple[float, ...]], ...] = ()
+    """Of the core's joint, beyond the truth's: basis, both directions' coefficients, shapes."""
 
 
 def servo_joint(*, supply: float | None = None, resistance: float | None = None) -> jid.Joint:
@@ -167,15 +167,11 @@ def _sensed(
 
 
 def _loop(truth: Truth, gain: float, bench: Bench) -> _core.ServoLoop:
-    fields: dict[str, Any] = {"decay": "none"} | bench.plant
+    sides = [("constant", truth.coulomb), ("linear", truth.viscous)]
     plant = _core.SimulatedJoint(
         inertia=truth.inertia + bench.mass * LENGTH**2,
-        coulomb_positive=truth.coulomb,
-        coulomb_negative=truth.coulomb,
-        viscous_positive=truth.viscous,
-        viscous_negative=truth.viscous,
+        friction=[*((basis, value, value, ()) for basis, value in sides), *bench.friction],
         weights=[(bench.mass * 9.80665 * LENGTH, -np.pi / 2)],
-        **fields,
     )
     k_t = truth.torque_constant
     return _core.ServoLoop(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import jointid as jid
 from jointid import _core
-from jointid.servo.rolling_out import servo_loop
+from jointid.servo.rolling_out import servo_loop, servo_plant
 from jointid.servo.signals import ServoSignals, signals_of
 
 Array = NDArray[np.float64]
@@ -47,13 +47,7 @@ def cost_of(joint: jid.Joint, runs: Sequence[ServoSignals]) -> Callable[[Array],
     def costs(points: Array) -> Array:
         tried = []
         for k_t, resistance, viscous, coulomb, load, inertia in points:
-            plant = loops[0].joint.replace(
-                inertia=inertia + joint.link_inertia,
-                coulomb_positive=coulomb,
-                coulomb_negative=coulomb,
-                viscous_positive=viscous,
-                viscous_negative=viscous,
-            )
+            plant = servo_plant(joint, inertia, {"viscous": viscous, "coulomb": coulomb})
             motor = {"torque_per_voltage": k_t / resistance, "back_emf": k_t * k_t / resistance}
             tried += [loop.replace(joint=plant, load_friction=load, **motor) for loop in loops]
         motions = _core.roll_out_servos(tried, logs * len(points), step=1e-3)

@@ -62,7 +62,6 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("coulomb", "python/jointid/cli/", "a controller with friction estimates; the demo's values"),
     ("viscous", "python/jointid/cli/", "the demo's values"),
     ("*", "python/jointid/robot/", "a whole robot's balance has columns of its own"),
-    ("*", "python/jointid/servo/", "a servo's balance has columns of its own"),
     ("load_friction", "cpp/bind/simulate_servo.cpp", "a servo's friction, by its name"),
     ("load_friction", "cpp/simulate/servo_loop.cpp", "a servo's friction, by its name"),
     ("*", "python/jointid/exports/robot_urdf.py", "a URDF has friction and damping"),

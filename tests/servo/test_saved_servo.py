@@ -1,5 +1,6 @@
 """A servo's estimate is read back as it was saved."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,14 @@ def test_all_but_the_draws_is_read_back(tmp_path: Path, model: str) -> None:
     assert again.to_json() == found.to_json()
     assert np.array_equal(again.values, found.values)
     assert jid.rollout(again, runs).median == jid.rollout(found, runs).median
+
+
+def test_a_file_from_before_there_were_models_is_read() -> None:
+    found = jid.identify_servo(bench_runs(Truth(), seed=4, runs=8), servo_joint(), draws=0)
+    document = json.loads(found.to_json())
+    del document["settings"]["model"]
+    again = jid.ServoEstimate.from_json(json.dumps(document))
+    assert again.to_json() == found.to_json()
 
 
 def test_what_does_not_fit_together_is_refused(tmp_path: Path) -> None:

@@ -16,10 +16,12 @@ from simulated_servo import (
 
 import jointid as jid
 from jointid.servo.findings import findings_of
+from jointid.servo.layout import LAYOUTS
 from jointid.servo.solving import Sought
 
 TRUTH = Truth()
 DIVIDED = Sought(
+    layout=LAYOUTS["coulomb_viscous"],
     separable=True,
     load_friction=True,
     held=False,

@@ -92,8 +92,8 @@ def _findings_of(path: Path) -> tuple[str, dict[str, Sequence[Finding]]]:
     from jointid.joints.reading import load_estimate
     from jointid.robot.document import KIND as ROBOT
     from jointid.robot.result import RobotEstimate
-    from jointid.servo.document import KIND as SERVO
     from jointid.servo.estimate import ServoEstimate
+    from jointid.servo.reading_back import KIND as SERVO
 
     try:
         document = json.loads(read_text(path))

@@ -11,13 +11,14 @@ from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.estimate.answers import findings, purposes, values
 from jointid.servo.estimate import ServoEstimate
+from jointid.servo.layout import MOTOR
 
 if TYPE_CHECKING:
     from jointid.servo.rolling_out import Rollout
 
 _FINDINGS = 1
-_FIRST = ("torque_constant", "resistance", "inertia", "viscous", "coulomb", "load_friction")
-"""What a simulator needs, before what it follows from."""
+# What a simulator needs, before what it follows from.
+_FIRST, _LAST = (*MOTOR, "inertia"), ("torque_per_voltage", "back_emf")
 
 
 def answer(
@@ -41,11 +42,11 @@ def answer(
     count = len(estimate.runs)
     verdict, runs = estimate.verdict, f"{count} run{'s' * (count != 1)}"
     parameters = estimate.parameters
-    ordered = {name: parameters[name] for name in _FIRST if name in parameters}
+    ordered = dict.fromkeys([*_FIRST, *(n for n in parameters if n not in _LAST), *_LAST])
     lines = [
         f"{estimate.joint.name or 'servo'}, {runs}: {verdict.level}",
         *purposes(verdict),
-        *values(list({**ordered, **parameters}.values())),
+        *values([parameters[name] for name in ordered]),
     ]
     if rolled is not None:
         lines.append(f"rollout: {np.degrees(rolled.median):.2f}° from the log, median of {runs}")

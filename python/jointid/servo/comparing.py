@@ -19,15 +19,13 @@ from jointid.joint.model import Model
 from jointid.recording.recording import Recording
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.identifying import identify_servo
+from jointid.servo.layout import DEFAULT_MODEL
 from jointid.servo.rolling_out import rollout
 from jointid.servo.signals import signals_of
 
 Array = NDArray[np.float64]
 
-MODELS = (
-    Model("coulomb_viscous", load_friction=False),
-    Model("coulomb_viscous", load_friction=True),
-)
+MODELS = tuple(Model.parse(DEFAULT_MODEL).replace(load_friction=load) for load in (False, True))
 """What is compared by default."""
 
 

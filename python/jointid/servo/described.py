@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
+from jointid.servo.layout import LAYOUTS, LOAD_FRICTION
 
 if TYPE_CHECKING:
     from jointid.servo.estimate import ServoEstimate
-
-_FRICTION = ("viscous", "coulomb", "load_friction")
 
 
 def identified_joint(estimate: ServoEstimate) -> Joint:
@@ -22,13 +21,13 @@ def identified_joint(estimate: ServoEstimate) -> Joint:
     estimate : ServoEstimate
     """
     joint = estimate.joint
-    values = {n: estimate[n] for n in _FRICTION if n in estimate.parameters}
+    names = [t.name for t in (*LAYOUTS[estimate.model].friction, LOAD_FRICTION)]
+    values = {name: estimate[name] for name in names if name in estimate.parameters}
     joint = joint.replace(
         torque_offset=False,
-        model=Model(
-            "coulomb_viscous",
+        model=Model.parse(estimate.model).replace(
             gravity="none" if joint.link is None else "known",
-            load_friction="load_friction" in values,
+            load_friction=LOAD_FRICTION.name in values,
         ),
     )
     inertia = estimate["inertia"]

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.joint.joint import Joint
+from jointid.servo.layout import LOAD_FRICTION, Layout
+from jointid.servo.rolling_out import servo_plant
 from jointid.servo.signals import ServoSignals
 
 Array = NDArray[np.float64]
@@ -23,7 +25,7 @@ _SHARES = np.linspace(0.0, 1.0, 21)
 _STEP = 5e-3  # s
 
 
-def share_of(joint: Joint, runs: Sequence[ServoSignals], values: Array) -> float:
+def share_of(joint: Joint, runs: Sequence[ServoSignals], layout: Layout, solution: Array) -> float:
     """Return the share of back-EMF whose free swing is nearest to those of all others; a half without gravity.
 
     Parameters
@@ -32,8 +34,10 @@ def share_of(joint: Joint, runs: Sequence[ServoSignals], values: Array) -> float
         Its link is the load.
     runs : sequence of ServoSignals
         The load is let go where it pulls hardest in them, for as long as the longest of them.
-    values : ndarray
-        A solution: of its back-EMF and viscous friction only the sum is used.
+    layout : Layout
+        With friction in proportion to the speed.
+    solution : ndarray
+        Of its back-EMF and its friction in proportion to the speed only the sum is used.
     """
     if joint.link is None:
         return 0.5
@@ -41,26 +45,15 @@ def share_of(joint: Joint, runs: Sequence[ServoSignals], values: Array) -> float
     positions = np.concatenate([run.position for run in runs])
     pull = np.abs(weight.cos * np.cos(positions) + weight.sin * np.sin(positions))
     start = float(positions[int(np.argmax(pull))])
-    _, back_emf, viscous, coulomb, load, inertia = values[:6]
-    total = float(back_emf + viscous)
+    values, linear = layout.by_name(solution), layout.linear
+    inertia, load = values["inertia"], values[LOAD_FRICTION.name]
+    total = values["back_emf"] + values[linear]
     if pull.max() == 0.0 or total <= 0.0 or inertia + joint.link_inertia <= 0.0:
         return 0.5
-    link = joint.link
     loops = []
     for share in _SHARES:
-        own = (1.0 - share) * total
-        plant = _core.SimulatedJoint(
-            inertia=float(inertia) + joint.link_inertia,
-            decay="none",
-            coulomb_positive=float(coulomb),
-            coulomb_negative=float(coulomb),
-            viscous_positive=own,
-            viscous_negative=own,
-            weights=[(link.mass * link.gravity * link.centre_of_mass, link.angle)],
-        )
-        loops.append(
-            _core.ServoLoop(joint=plant, load_friction=float(load), closed=False, position=start)
-        )
+        plant = servo_plant(joint, inertia, {**values, linear: (1.0 - share) * total})
+        loops.append(_core.ServoLoop(joint=plant, load_friction=load, closed=False, position=start))
     time = np.arange(0.0, max(float(run.time[-1] - run.time[0]) for run in runs), _STEP)
     log = (time, np.zeros(len(time)), np.zeros(len(time)), np.zeros(len(time)))
     motions = _core.roll_out_servos(loops, [log] * len(loops), step=_STEP)

@@ -12,9 +12,7 @@ from jointid.base.files import write_whole
 from jointid.estimate.json import documents_of, plain
 from jointid.joint.joint_file import joint_document
 from jointid.servo.estimate import ServoEstimate
-
-SCHEMA = 1
-KIND = "jointid servo"
+from jointid.servo.reading_back import KIND, SCHEMA, SETTINGS
 
 
 def document_of(estimate: ServoEstimate) -> dict[str, Any]:
@@ -29,16 +27,7 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
         "rms": estimate.rms,
         "relative_residual": estimate.relative_residual,
         "settings": {
-            "window": estimate.window,
-            "slowest": estimate.slowest,
-            "windows": estimate.windows,
-            "lead": estimate.lead,
-            "lead_found": estimate.lead_found,
-            "command_lag": estimate.command_lag,
-            "load_friction": estimate.load_friction,
-            "separable": estimate.separable,
-            "runs": list(estimate.runs),
-            "moving": list(estimate.moving),
+            name: plain(getattr(estimate, name)) for name in (*SETTINGS.optional, *SETTINGS.fields)
         },
         "seconds": estimate.seconds,
     }

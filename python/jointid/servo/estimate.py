@@ -35,13 +35,15 @@ class ServoEstimate(Shown):
     joint : Joint
         As given.
     parameters : mapping of str to ParameterEstimate
-        "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), "viscous", "coulomb", "load_friction" (dry friction per
-        torque through the gear: load plus motor), "inertia" (of the drive, at the output), and what follows:
-        "torque_constant" (k_t at the output) and "resistance".
+        "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), the coefficients of the friction model ("viscous",
+        "coulomb"), "load_friction" (dry friction per torque through the gear: load plus motor), "inertia" (of the
+        drive, at the output), and what follows: "torque_constant" (k_t at the output) and "resistance".
     findings : tuple of Finding
-    values : ndarray, shape (6,)
-        The first six parameters.
-    draws : ndarray, shape (draws, 6)
+    model : str
+        Name of the friction model.
+    values : ndarray, shape (n,)
+        The parameters up to the inertia; 0 for friction of the load that the model does not have.
+    draws : ndarray, shape (draws, n)
         The same of runs drawn anew.
     load_friction : bool
         Whether the model has friction of the load.
@@ -73,6 +75,7 @@ class ServoEstimate(Shown):
     joint: Joint
     parameters: Mapping[str, ParameterEstimate]
     findings: tuple[Finding, ...]
+    model: str
     values: Array = field(repr=False)
     draws: Array = field(repr=False)
     load_friction: bool

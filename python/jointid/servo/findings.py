@@ -11,10 +11,10 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.finding_types import TYPES
+from jointid.servo.layout import LAYOUTS, MOTOR
 from jointid.servo.solving import Sought
 
 _VAGUE = 0.25  # half of an interval, of the value
-_MOTOR = ("back_emf", "viscous", "torque_constant", "resistance")
 _POOR = 0.35  # of the load's torque
 _OTHER_RUNS = Action("record", text="more runs, with other gains and motions")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
@@ -41,15 +41,16 @@ def findings_of(estimate: ServoEstimate, sought: Sought) -> tuple[Finding, ...]:
 def _inseparable(estimate: ServoEstimate, sought: Sought) -> Iterator[Finding]:
     if sought.divided:
         return
-    total = estimate["back_emf"] + estimate["viscous"]
+    linear = estimate.parameters[sought.layout.linear]
+    total = estimate["back_emf"] + linear.value
     yield TYPES["inseparable_back_emf"].finding(
-        f"only the sum of back-EMF and viscous friction is known, {total:.3g} N·m·s/rad",
+        f"only the sum of back-EMF and {linear.meaning} is known, {total:.3g} {linear.unit}",
         Action("record", text="runs in which the torque is switched off while the load swings"),
         Action("inspect", text="the winding's resistance, and state it in the joint's drive"),
         details="the motor is driven throughout, so both brake alike; k_t and R are not identifiable, only k_t / R; "
         f"{percent(sought.share)} of the sum is taken as back-EMF, {_chosen(estimate)}",
-        parameters=_MOTOR,
-        evidence={"sum": Measured(total, "N·m·s/rad")},
+        parameters=("back_emf", linear.name, *MOTOR),
+        evidence={"sum": Measured(total, linear.unit)},
     )
 
 
@@ -71,7 +72,7 @@ def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
 
 def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
     for name, p in estimate.parameters.items():
-        if p.at_bound is None or name in ("torque_constant", "resistance"):
+        if p.at_bound is None or name in MOTOR:
             continue
         top = p.interval[1] if p.interval is not None else np.nan
         upto = (
@@ -91,6 +92,7 @@ def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
 
 
 def _vague(estimate: ServoEstimate) -> Iterator[Finding]:
+    linear = LAYOUTS[estimate.model].linear
     for name, p in estimate.parameters.items():
         if p.stderr is None or np.isinf(p.stderr) or p.interval is None:
             continue
@@ -102,7 +104,7 @@ def _vague(estimate: ServoEstimate) -> Iterator[Finding]:
         yield TYPES["undetermined"].finding(
             f"{name.replace('_', ' ')} is uncertain: {shown} (95 %)",
             _OTHER_RUNS,
-            severity="info" if name == "viscous" else "warning",
+            severity="info" if name == linear else "warning",
             parameters=(name,),
             evidence={"stderr": Measured(p.stderr, p.unit), "size": Measured(size, p.unit)},
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -14,17 +14,18 @@ from numpy.typing import NDArray
 from jointid.base.errors import InputError
 from jointid.joint.checks import finite_number, positive_number
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model, ModelName
+from jointid.joint.model import AUTO, Model, ModelName
 from jointid.recording.recording import Recording
 from jointid.servo.dividing import share_of
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.findings import findings_of
+from jointid.servo.layout import DEFAULT_MODEL, HELD, KNOWN, LAYOUTS, LOAD_FRICTION, Layout
 from jointid.servo.resampling import drawn, units_of
 from jointid.servo.row_lead import lead_of
 from jointid.servo.signals import ServoSignals, signals_of
-from jointid.servo.solving import HELD, NAMES, SIZE, Sought, fixed_point, weights
+from jointid.servo.solving import Sought, fixed_point, weights
 from jointid.servo.tables import parameters_of
-from jointid.servo.windows import KNOWN, SLOWEST, WINDOW, ServoGrid, grid_of
+from jointid.servo.windows import SLOWEST, WINDOW, ServoGrid, grid_of
 
 Array = NDArray[np.float64]
 
@@ -59,8 +60,8 @@ def identify_servo(
         With `voltage`, and with the known load as its `link`. A given `inertia`, `torque_constant` or resistance, and
         parameters with ``vary=False``, are facts.
     model : Model, str or mapping, optional
-        "coulomb_viscous", with or without `load_friction`. Default: the joint's; with friction of the load where
-        neither says.
+        One without shape parameters such as "coulomb_viscous", with or without `load_friction`. Default: the joint's;
+        with friction of the load where neither says.
     window : float
         Duration of a window [s]. Default 0.05.
     slowest : float
@@ -94,7 +95,7 @@ def identify_servo(
     """
     started = time.perf_counter()
     runs = signals_of(recordings, joint)
-    load_friction = _load_friction(Model.of(model).over(joint.model))
+    layout, load_friction = _terms(Model.of(model).over(joint.model))
     window = positive_number("", "window", window)
     slowest = positive_number("", "slowest", slowest)
     if isinstance(draws, bool) or not isinstance(draws, int) or draws < 0:
@@ -103,23 +104,23 @@ def identify_servo(
     shift = (found_lead or 0.0) if lead is None else finite_number("", "lead", lead)
 
     def grid_with(window: float) -> ServoGrid:
-        grid = grid_of(runs, joint, window=window, slowest=slowest, lead=shift)
+        grid = grid_of(runs, joint, layout.friction, window=window, slowest=slowest, lead=shift)
         return _usable(grid, window, slowest)
 
     grid = grid_with(window)
-    sought = _sought(joint, grid, load_friction=load_friction)
+    sought = _sought(joint, grid, layout, load_friction=load_friction)
     values = _fitted(grid, sought)
     if not sought.divided:
-        sought, values = _divided(grid, sought, values, lambda v: share_of(joint, runs, v))
+        sought, values = _divided(joint, runs, grid, sought, values)
     moved: dict[str, Array] = {}
-    filled = grid.with_load(_side(grid, values))
+    filled = grid.with_load(grid.side(values))
     if sought.held and not _shown(_products_of_units(grid, filled), sought, values, seed):
         moved["command"] = values
         sought = replace(sought, held=False)
-        values = _fitted(grid, sought, values * (np.arange(SIZE) != HELD))
-        filled = grid.with_load(_side(grid, values))
+        values = _fitted(grid, sought, np.append(values[:HELD], 0.0))
+        filled = grid.with_load(grid.side(values))
     each = _products_of_units(grid, filled)
-    others = drawn(each, sought, values, draws, seed) if draws else np.empty((0, SIZE))
+    others = drawn(each, sought, values, draws, seed) if draws else np.empty((0, len(values)))
     if draws:
         # What runs drawn anew cannot show, because all of them have it: the windows' length, and the rows' lead.
         moved["windows"] = _fitted(grid_with(2.0 * window), sought, values)
@@ -130,8 +131,9 @@ def identify_servo(
     estimate = ServoEstimate(
         joint=joint,
         parameters=parameters_of(values, others, sought, len(each), moved),
-        draws=others[:, : len(NAMES)],
-        values=values[: len(NAMES)],
+        model=layout.model,
+        draws=others[:, :HELD],
+        values=values[:HELD],
         load_friction=load_friction,
         separable=sought.separable,
         lead=shift,
@@ -166,21 +168,21 @@ def _usable(grid: ServoGrid, window: float, slowest: float) -> ServoGrid:
 
 
 def _fitted(grid: ServoGrid, sought: Sought, start: Array | None = None) -> Array:
-    """Return the parameters, shape (SIZE,), from a solution of nearly the same if there is one."""
+    """Return the parameters, shape (size,), from a solution of nearly the same if there is one."""
 
     def products_of(side: Array | None) -> Array:
         filled = grid.columns if side is None else grid.with_load(side)
         return filled.T @ filled
 
-    return fixed_point(lambda values: _side(grid, values), products_of, sought, start)
+    return fixed_point(grid.side, products_of, sought, start)
 
 
 def _divided(
-    grid: ServoGrid, sought: Sought, values: Array, share_of: Callable[[Array], float]
+    joint: Joint, runs: Sequence[ServoSignals], grid: ServoGrid, sought: Sought, values: Array
 ) -> tuple[Sought, Array]:
     """Return what is sought with the share of back-EMF, and the parameters with it."""
     for _ in range(_DIVISIONS):
-        share = share_of(values)
+        share = share_of(joint, runs, sought.layout, values)
         if share == sought.share:
             break
         sought = replace(sought, share=share)
@@ -194,12 +196,8 @@ def _shown(products: Array, sought: Sought, values: Array, seed: int) -> bool:
     return bool(np.quantile(held, _DOUBT) > 0.0)
 
 
-def _side(grid: ServoGrid, values: Array) -> Array:
-    return grid.side(float(values[0]), float(values[1]), float(values[HELD]))
-
-
 def _products_of_units(grid: ServoGrid, filled: Array) -> Array:
-    """Return the products of a table's columns for each unit of resampling, shape (units, COLUMNS, COLUMNS)."""
+    """Return the products of a table's columns for each unit of resampling, shape (units, columns, columns)."""
     units = units_of(grid)
     order = np.argsort(units, kind="stable")
     bounds = np.searchsorted(units[order], np.arange(int(units.max()) + 2)).tolist()
@@ -212,20 +210,21 @@ def _row(runs: Sequence[ServoSignals]) -> float:
     return float(np.median([np.median(np.diff(run.time)) for run in runs]))
 
 
-def _sought(joint: Joint, grid: ServoGrid, *, load_friction: bool) -> Sought:
+def _sought(joint: Joint, grid: ServoGrid, layout: Layout, *, load_friction: bool) -> Sought:
     driven = grid.driven[grid.start]
     fixed = {
         name: float(parameter.value)
         for name, parameter in joint.parameters.items()
-        if name in NAMES and parameter.vary is False and parameter.value is not None
+        if name in layout.names and parameter.vary is False and parameter.value is not None
     }
     if joint.reflected_inertia is not None:
         fixed["inertia"] = joint.reflected_inertia
     k_t = joint.torque_constant
     assert joint.voltage is not None
     return Sought(
+        layout=layout,
         separable=bool(0.0 < driven.mean() < 1.0),
-        load_friction=load_friction and "load_friction" not in fixed,
+        load_friction=load_friction and LOAD_FRICTION.name not in fixed,
         held=bool(grid.late.any()),
         torque_constant=None if k_t is None else abs(k_t * joint.gear_ratio),
         resistance=joint.voltage.resistance,
@@ -233,15 +232,16 @@ def _sought(joint: Joint, grid: ServoGrid, *, load_friction: bool) -> Sought:
     )
 
 
-def _load_friction(model: Model) -> bool:
-    """Return whether friction grows with the gear's torque; refuse what a servo's model cannot have."""
+def _terms(model: Model) -> tuple[Layout, bool]:
+    """Return the layout, and whether friction grows with the gear's torque; refuse what a servo cannot have."""
     stated = dict(model.stated())
-    name = stated.pop("name", "coulomb_viscous")
+    name = stated.pop("name", AUTO)
+    name = DEFAULT_MODEL if name == AUTO else name
     load = stated.pop("load_friction", True)
     gravity = stated.pop("gravity", "known")
-    if name not in ("coulomb_viscous", "auto"):
+    if name not in LAYOUTS:
         raise InputError(
-            "a servo without a torque signal is identified with coulomb_viscous, and friction of the load",
+            f"a servo without a torque signal is identified with {' or '.join(LAYOUTS)}, and friction of the load",
             argument="model",
             value=name,
         )
@@ -254,7 +254,7 @@ def _load_friction(model: Model) -> bool:
             raise InputError(
                 "a servo without a torque signal has no such term", argument=key, value=value
             )
-    return bool(load)
+    return LAYOUTS[name], bool(load)
 
 
 def _moving(grid: ServoGrid, runs: Sequence[ServoSignals]) -> tuple[float, ...]:

@@ -22,11 +22,12 @@ from jointid.base.schema import (
 from jointid.estimate.json import empty_calls, finding_of, parameter_of
 from jointid.estimate.json_schema import FINDING, PARAMETER
 from jointid.joint.joint_file import joint_from_document
-from jointid.servo.document import KIND, SCHEMA
 from jointid.servo.estimate import ServoEstimate
-from jointid.servo.solving import NAMES
+from jointid.servo.layout import DEFAULT_MODEL, LAYOUTS, LOAD_FRICTION, MOTOR
 
-_MOTOR = ("torque_constant", "resistance")
+SCHEMA = 1
+KIND = "jointid servo"
+
 _MOST = 1_000_000  # runs
 _ANY = Number(infinite=True, undefined=True)
 _TIME = Number(low=-1e9, high=1e9)
@@ -40,7 +41,7 @@ _PARAMETER = Record(
         "systematic": Record({}, optional=dict.fromkeys(_PARTS, _ANY)),
     }
 )
-_SETTINGS = Record(
+SETTINGS = Record(
     {
         "window": _DURATION,
         "slowest": _SIZE,
@@ -52,7 +53,8 @@ _SETTINGS = Record(
         "separable": Flag(),
         "runs": ListOf(Text(), 1, _MOST),
         "moving": ListOf(Number(low=0.0, high=2.0), 1, _MOST),
-    }
+    },
+    {"model": Text(known=tuple(LAYOUTS))},
 )
 _ESTIMATE = Record(
     {
@@ -63,7 +65,7 @@ _ESTIMATE = Record(
         "findings": ListOf(FINDING),
         "rms": _SIZE,
         "relative_residual": _SIZE,
-        "settings": _SETTINGS,
+        "settings": SETTINGS,
         "seconds": _SIZE,
     },
     # A verdict follows from the findings.
@@ -83,18 +85,20 @@ def read_servo_estimate(text: str) -> ServoEstimate:
             remedy="save one with identify_servo",
         )
     d = _ESTIMATE.read(document, "")
+    d["settings"].setdefault("model", DEFAULT_MODEL)  # older files do not have it
     for place, reason in _contradictions(d):
         raise InputError(reason, place=place)
     joint = joint_from_document(d["joint"], "joint")
     if joint.voltage is None:
         raise InputError("a servo's input is a voltage", place="joint.drive.input")
     settings, parameters = d["settings"], d["parameters"]
+    names = LAYOUTS[settings["model"]].names
     return ServoEstimate(
         joint=joint,
         parameters={name: parameter_of(entry) for name, entry in parameters.items()},
         findings=tuple(finding_of(each) for each in d["findings"]),
-        values=np.array([parameters[n]["value"] if n in parameters else 0.0 for n in NAMES]),
-        draws=np.empty((0, len(NAMES))),
+        values=np.array([parameters[n]["value"] if n in parameters else 0.0 for n in names]),
+        draws=np.empty((0, len(names))),
         rms=d["rms"],
         relative_residual=d["relative_residual"],
         seconds=d["seconds"],
@@ -105,7 +109,7 @@ def read_servo_estimate(text: str) -> ServoEstimate:
 def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Places where fields, each right by itself, do not fit together."""
     names = d["parameters"]
-    needed = {*NAMES, *_MOTOR} - ({"load_friction"} - set(names))
+    needed = {*LAYOUTS[d["settings"]["model"]].names, *MOTOR} - ({LOAD_FRICTION.name} - set(names))
     if set(names) != needed:
         yield "parameters", f"these are expected: {', '.join(sorted(needed))}"
     for name, entry in names.items():

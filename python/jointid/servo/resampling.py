@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.servo.layout import DRIVEN, LINEAR_COLUMN
 from jointid.servo.solving import Sought, solved
-from jointid.servo.windows import DRIVEN, TURNED, ServoGrid
+from jointid.servo.windows import ServoGrid
 
 Array = NDArray[np.float64]
 
@@ -26,22 +27,22 @@ def units_of(grid: ServoGrid) -> NDArray[np.int64]:
 
 
 def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int) -> Array:
-    """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, SIZE).
+    """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, size).
 
     Parameters
     ----------
-    products : ndarray, shape (units, COLUMNS, COLUMNS)
+    products : ndarray, shape (units, columns, columns)
     sought : Sought
-    values : ndarray, shape (SIZE,)
+    values : ndarray, shape (size,)
         The solution of all units, from which each set starts.
     draws, seed : int
     """
     count = len(products)
     generator = np.random.default_rng(seed)
     times = generator.multinomial(count, np.full(count, 1.0 / count), size=draws).astype(float)
-    if sought.separable and sought.torque_constant is None and sought.resistance is None:
+    if sought.separable and sought.layout.linear and not sought.motor_known:
         # Without a unit that turns freely, or without one that is driven, a set divides nothing.
-        driven, turned = products[:, DRIVEN, DRIVEN], products[:, TURNED, TURNED]
+        driven, turned = (products[:, each, each] for each in (DRIVEN, LINEAR_COLUMN))
         free = turned - driven > _SOME * turned
         times = times[
             (times[:, free].sum(axis=1) > 0.0) & (times[:, driven > 0.0].sum(axis=1) > 0.0)

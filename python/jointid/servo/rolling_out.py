@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from typing import Any
 
@@ -19,6 +19,7 @@ from jointid.joint.checks import positive_number
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.servo.estimate import ServoEstimate
+from jointid.servo.layout import LOAD_FRICTION, SPEED_FRICTION
 from jointid.servo.signals import ServoSignals, signals_of
 
 Array = NDArray[np.float64]
@@ -204,36 +205,44 @@ def servo_loop(joint: Joint, run: ServoSignals) -> _core.ServoLoop:
     k_t = abs(_needed(joint, "torque_constant", joint.torque_constant) * joint.gear_ratio)
     resistance = _needed(joint, "resistance", voltage.resistance)
     inertia = _needed(joint, "inertia", joint.reflected_inertia)
-    friction = {
-        name: 0.0 if name not in joint.parameters else joint.parameters[name].value or 0.0
-        for name in ("viscous", "coulomb", "load_friction")
-    }
-    weights = []
-    if joint.link is not None:
-        link = joint.link
-        weights = [(link.mass * link.gravity * link.centre_of_mass, link.angle)]
-    plant = _core.SimulatedJoint(
-        inertia=inertia + joint.link_inertia,
-        decay="none",
-        coulomb_positive=friction["coulomb"],
-        coulomb_negative=friction["coulomb"],
-        viscous_positive=friction["viscous"],
-        viscous_negative=friction["viscous"],
-        weights=weights,
-    )
+    values = {name: p.value for name, p in joint.parameters.items() if p.value is not None}
+    plant = servo_plant(joint, inertia, values)
     loop = voltage.position_loop
     position, velocity = initial_state(run)
     return _core.ServoLoop(
         joint=plant,
         torque_per_voltage=k_t / resistance,
         back_emf=k_t * k_t / resistance,
-        load_friction=friction["load_friction"],
+        load_friction=values.get(LOAD_FRICTION.name, 0.0),
         closed=run.closed,
         gain=run.gain if run.closed else 1.0,
         saturation=1.0 if loop is None else loop.saturation,
         delay=0.0 if loop is None else loop.delay,
         position=position,
         velocity=velocity,
+    )
+
+
+def servo_plant(joint: Joint, inertia: float, values: Mapping[str, float]) -> _core.SimulatedJoint:
+    """Return what the motor moves: drive and link, with the friction of the speed.
+
+    Parameters
+    ----------
+    joint : Joint
+    inertia : float
+        Of the drive, at the output [kg·m²].
+    values : mapping of str to float
+        Coefficients of the friction by name; without those that are not there.
+    """
+    weights = []
+    if joint.link is not None:
+        link = joint.link
+        weights = [(link.mass * link.gravity * link.centre_of_mass, link.angle)]
+    found = [(term.basis, values.get(term.name)) for term in SPEED_FRICTION]
+    return _core.SimulatedJoint(
+        inertia=inertia + joint.link_inertia,
+        friction=[(basis, value, value, ()) for basis, value in found if value is not None],
+        weights=weights,
     )
 
 

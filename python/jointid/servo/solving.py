@@ -9,31 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
+from jointid.servo.layout import BACK_EMF, HELD, LINEAR, LOAD_FRICTION, TORQUE, Layout, balance
 from jointid.servo.pivoting import not_negative
-from jointid.servo.windows import (
-    CHANGE,
-    COLUMNS,
-    DRIVEN,
-    KNOWN,
-    LATE,
-    LOAD,
-    LOAD_DRIVEN,
-    LOAD_LATE,
-    LOAD_VOLTAGE,
-    SIGN,
-    TURNED,
-    VOLTAGE,
-)
 
 Array = NDArray[np.float64]
-
-NAMES = ("torque_per_voltage", "back_emf", "viscous", "coulomb", "load_friction", "inertia")
-"""What is sought, in the order of a solution."""
-
-HELD = len(NAMES)
-"""Behind them: how far the command is held from row to row, from 0 (it moves evenly) to 1."""
-
-SIZE = HELD + 1
 
 _PASSES = 4
 _SETTLED = 1e-9  # relative change
@@ -45,8 +24,9 @@ class Sought:
 
     Attributes
     ----------
+    layout : Layout
     separable : bool
-        Whether some windows are driven and some are not, which divides back-EMF from viscous friction.
+        Whether some windows are driven and some are not, which divides back-EMF from friction in proportion to speed.
     load_friction : bool
         Whether friction grows with the gear's torque.
     held : bool
@@ -61,6 +41,7 @@ class Sought:
         Of the back-EMF in what brakes in proportion to speed, where nothing divides the two. Default: a half.
     """
 
+    layout: Layout
     separable: bool
     load_friction: bool
     held: bool
@@ -71,20 +52,31 @@ class Sought:
 
     @property
     def divided(self) -> bool:
-        """Whether anything divides back-EMF from viscous friction."""
-        facts = self.torque_constant is not None or self.resistance is not None
-        return self.separable or facts or "viscous" in self.fixed or "back_emf" in self.fixed
+        """Whether anything divides back-EMF from friction in proportion to speed."""
+        linear = self.layout.linear
+        fixed = linear in self.fixed or "back_emf" in self.fixed
+        return not linear or self.separable or self.motor_known or fixed
+
+    @property
+    def motor_known(self) -> bool:
+        """Whether torque constant or resistance is known."""
+        return self.torque_constant is not None or self.resistance is not None
+
+    @property
+    def loaded(self) -> bool:
+        """Whether friction of the load is sought or known."""
+        return self.load_friction or LOAD_FRICTION.name in self.fixed
 
 
 def solved(products: Array, sought: Sought, start: Array) -> Array:
-    """Return the parameters that minimise the squared residual, shape (m, SIZE).
+    """Return the parameters that minimise the squared residual, shape (m, size).
 
     Parameters
     ----------
-    products : ndarray, shape (m, COLUMNS, COLUMNS)
+    products : ndarray, shape (m, columns, columns)
         Of m tables' columns, with the signs of the gear's torque held.
     sought : Sought
-    start : ndarray, shape (m, SIZE)
+    start : ndarray, shape (m, size)
         Some columns are products of parameters: these are formed with the last solution.
     """
     found = start
@@ -101,7 +93,7 @@ def fixed_point(
     sought: Sought,
     start: Array | None = None,
 ) -> Array:
-    """Return the parameters, once the signs of the gear's torque have settled, shape (SIZE,).
+    """Return the parameters, once the signs of the gear's torque have settled, shape (size,).
 
     Parameters
     ----------
@@ -110,13 +102,13 @@ def fixed_point(
     products_of : callable
         Products of the columns for a side; without columns of the load's friction for None.
     sought : Sought
-    start : ndarray, shape (SIZE,), optional
+    start : ndarray, shape (size,), optional
         A solution of nearly the same. Default: the one without friction of the load.
     """
     if start is None:
         start = _without_load(products_of(None)[None], sought)
     found = start[None]
-    if not sought.load_friction and "load_friction" not in sought.fixed:
+    if not sought.loaded:
         return np.asarray(solved(products_of(None)[None], sought, found)[0])
     last = None
     for _ in range(_PASSES):
@@ -130,69 +122,55 @@ def fixed_point(
 
 def _without_load(products: Array, sought: Sought) -> Array:
     """Return the parameters without friction of the load, whose column needs the motor's torque."""
-    fixed = {name: value for name, value in sought.fixed.items() if name != "load_friction"}
+    fixed = {name: value for name, value in sought.fixed.items() if name != LOAD_FRICTION.name}
     plain = replace(sought, load_friction=False, held=False, fixed=fixed)
-    return np.asarray(solved(products, plain, np.zeros((1, SIZE)))[0])
+    return np.asarray(solved(products, plain, np.zeros((1, len(sought.layout.names) + 1)))[0])
 
 
 def weights(values: Array) -> Array:
-    """Return the factors by which a table's columns make up the balance, shape (COLUMNS,): what is left is their sum.
+    """Return the factors by which a table's columns make up the balance, shape (columns,): what is left is their sum.
 
     Parameters
     ----------
-    values : ndarray, shape (SIZE,)
+    values : ndarray, shape (size,)
     """
-    k, b, viscous, coulomb, load, inertia, held = values
-    found = np.zeros(COLUMNS)
-    found[[VOLTAGE, LATE, DRIVEN, TURNED]] = k, k * held, -b, -viscous
-    found[[SIGN, CHANGE, KNOWN]] = -coulomb, -inertia, -1.0
-    found[[LOAD, LOAD_VOLTAGE, LOAD_LATE, LOAD_DRIVEN]] = -load * np.array([1.0, k, k * held, -b])
-    return found
+    columns, target = balance(values[None])
+    return np.asarray(columns[0] @ values - target[0])
 
 
 def _turns(sought: Sought) -> bool:
     """Whether a column depends on what is sought."""
-    load = sought.load_friction or "load_friction" in sought.fixed
-    return load or sought.held or sought.resistance is not None
+    return sought.loaded or sought.held or sought.resistance is not None
 
 
 def _linear(products: Array, sought: Sought, last: Array) -> Array:
     """One solution of each, with the columns that depend on the parameters formed with the last ones."""
-    count = len(products)
-    columns = np.zeros((count, COLUMNS, SIZE))
-    columns[:, VOLTAGE, 0] = 1.0
-    for column, index in ((DRIVEN, 1), (TURNED, 2), (SIGN, 3), (CHANGE, 5), (LOAD, 4)):
-        columns[:, column, index] = -1.0
-    columns[:, LOAD_VOLTAGE, 4], columns[:, LOAD_DRIVEN, 4] = -last[:, 0], last[:, 1]
-    columns[:, LOAD_LATE, 4] = -last[:, 0] * last[:, HELD]
-    columns[:, LATE, HELD] = last[:, 0]
-    target = np.zeros((count, COLUMNS))
-    target[:, KNOWN] = 1.0
+    names, found = sought.layout.names, np.zeros(last.shape)
+    columns, target = balance(last)
     fixed = dict(sought.fixed)
     if not sought.load_friction:
-        fixed.setdefault("load_friction", 0.0)
+        fixed.setdefault(LOAD_FRICTION.name, 0.0)
     k_t, resistance = sought.torque_constant, sought.resistance
     if k_t is not None and resistance is not None:
         fixed |= {"torque_per_voltage": k_t / resistance, "back_emf": k_t * k_t / resistance}
-    free = [index for index, name in enumerate(NAMES) if name not in fixed]
+    free = [index for index, name in enumerate(names) if name not in fixed]
     tied = None  # back-EMF per k_t / R
     if resistance is not None and k_t is None:
-        tied = last[:, 0] * resistance
+        tied = last[:, TORQUE] * resistance
     elif k_t is not None and resistance is None:
-        tied = np.full(count, k_t)
+        tied = np.full(len(last), k_t)
     if tied is not None:
-        columns[:, :, 0] += tied[:, None] * columns[:, :, 1]
-        free.remove(1)
+        columns[:, :, TORQUE] += tied[:, None] * columns[:, :, BACK_EMF]
+        free.remove(BACK_EMF)
     elif not sought.divided:
-        free.remove(1)  # one column for both; divided below
+        free.remove(BACK_EMF)  # one column for both; divided below
     for name, value in fixed.items():
-        target -= value * columns[:, :, NAMES.index(name)]
+        target -= value * columns[:, :, names.index(name)]
     if sought.held:
         free.append(HELD)
-    found = np.zeros((count, SIZE))
     found[:, free] = _chosen(products, columns[:, :, free], target)
     for name, value in fixed.items():
-        found[:, NAMES.index(name)] = value
+        found[:, names.index(name)] = value
     beyond = found[:, HELD] > 1.0
     if beyond.any():
         free.remove(HELD)
@@ -203,10 +181,11 @@ def _linear(products: Array, sought: Sought, last: Array) -> Array:
         )
         found[beyond, HELD] = 1.0
     if tied is not None:
-        found[:, 1] = found[:, 0] * (tied if resistance is None else found[:, 0] * resistance)
+        torque = found[:, TORQUE]
+        found[:, BACK_EMF] = torque * (tied if resistance is None else torque * resistance)
     elif not sought.divided:
-        found[:, 1] = sought.share * found[:, 2]
-        found[:, 2] -= found[:, 1]
+        found[:, BACK_EMF] = sought.share * found[:, LINEAR]
+        found[:, LINEAR] -= found[:, BACK_EMF]
     return found
 
 

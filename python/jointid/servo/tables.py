@@ -16,19 +16,17 @@ from jointid.base.text_table import aligned
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
 from jointid.servo.estimate import ServoEstimate
-from jointid.servo.solving import NAMES, Sought
+from jointid.servo.layout import BACK_EMF, HELD, LOAD_FRICTION, MOTOR, TERMS, TORQUE
+from jointid.servo.solving import Sought
 
 Array = NDArray[np.float64]
 
 _MEANING = {
     "torque_per_voltage": ("torque of the motor per voltage, k_t / R", "N·m/V"),
     "back_emf": ("braking by back-EMF while driven, k_t² / R", "N·m·s/rad"),
-    "viscous": ("viscous friction", "N·m·s/rad"),
-    "coulomb": ("Coulomb friction", "N·m"),
-    "load_friction": ("dry friction per torque through the gear", ""),
-    "inertia": ("inertia of the drive at the output", "kg·m²"),
     "torque_constant": ("torque constant k_t at the output", "N·m/A"),
     "resistance": ("resistance of the winding", "Ω"),
+    **{term.name: (term.meaning, "" if term.unit == "1" else term.unit) for term in TERMS},
 }
 
 
@@ -43,61 +41,44 @@ def parameters_of(
 
     Parameters
     ----------
-    values : ndarray, shape (6,)
-    draws : ndarray, shape (draws, 6)
+    values : ndarray, shape (size,)
+    draws : ndarray, shape (draws, size)
     sought : Sought
     units : int
         Units of resampling.
-    moved : mapping of str to ndarray, each of shape (6,)
+    moved : mapping of str to ndarray, each of shape (size,)
         The parameters by other windows and another lead.
     """
-
-    def systematic(name: str) -> dict[str, float]:
-        own = _named(values, name)
-        return {part: abs(_named(other, name) - own) for part, other in moved.items()}
-
-    known = set(sought.fixed)
+    facts = zip(MOTOR, (sought.torque_constant, sought.resistance), strict=True)
+    given = {name: fact for name, fact in facts if fact is not None}
+    known = {*sought.fixed, *given}
+    if len(given) == len(MOTOR):
+        known |= {"torque_per_voltage", "back_emf"}
+    undivided = () if sought.divided else ("back_emf", sought.layout.linear, *MOTOR)
     # Few units: the spread of the draws is short by this, and the quantile is Student's.
     short = math.sqrt(units / max(units - 1.0, 1.0))
     quantile = float(_core.student_quantile(0.975, float(max(units - 1, 1))))
-    if sought.torque_constant is not None and sought.resistance is not None:
-        known |= {"torque_per_voltage", "back_emf"}
-    shown = [n for n in NAMES if n != "load_friction" or sought.load_friction or n in known]
-    found = {
-        name: _parameter(
-            name, values[k], draws[:, k], name not in known, short, quantile, systematic(name)
-        )
-        for k, name in enumerate(NAMES)
-        if name in shown
-    }
-    for name, given in (
-        ("torque_constant", sought.torque_constant),
-        ("resistance", sought.resistance),
-    ):
-        value = given if given is not None else float(_motor(values[None, :], name)[0])
-        found[name] = _parameter(
-            name, value, _motor(draws, name), given is None, short, quantile, systematic(name)
-        )
-    if not sought.divided:
-        for name in ("back_emf", "viscous", "torque_constant", "resistance"):
-            p = found[name]
-            if p.vary:
-                found[name] = _undetermined(p)
+    own, sets = _with_motor(values[None])[0], _with_motor(draws)
+    others = {part: _with_motor(other[None])[0] for part, other in moved.items()}
+    found = {}
+    for k, name in enumerate((*sought.layout.names, *MOTOR)):
+        if name == LOAD_FRICTION.name and not sought.loaded:
+            continue
+        value = given.get(name, own[k])
+        systematic = {part: abs(float(other[k]) - float(own[k])) for part, other in others.items()}
+        p = _parameter(name, value, sets[:, k], name not in known, short, quantile, systematic)
+        if p.vary and name in undivided:
+            p = replace(p, stderr=np.inf, interval=(0.0, np.inf))
+        found[name] = p
     return found
 
 
-def _named(values: Array, name: str) -> float:
-    """Return a parameter of a solution, or what follows from it."""
-    found = values[NAMES.index(name)] if name in NAMES else _motor(values[None, :], name)[0]
-    return float(found)
-
-
-def _motor(values: Array, name: str) -> Array:
-    """k_t = (k_t²/R) / (k_t/R), and R = k_t / (k_t/R)."""
+def _with_motor(values: Array) -> Array:
+    """Return solutions with k_t = (k_t²/R) / (k_t/R) and R = k_t / (k_t/R) instead of `HELD`."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        k_t = values[:, 1] / values[:, 0]
-        found = k_t if name == "torque_constant" else k_t / values[:, 0]
-    return np.asarray(np.where(np.isfinite(found), found, np.inf))
+        k_t = values[:, BACK_EMF] / values[:, TORQUE]
+        found = np.column_stack((values[:, :HELD], k_t, k_t / values[:, TORQUE]))
+    return np.where(np.isfinite(found), found, np.inf)
 
 
 def _parameter(
@@ -133,10 +114,6 @@ def _parameter(
         shift_doubled=None,
         systematic=systematic if free else {},
     )
-
-
-def _undetermined(p: ParameterEstimate) -> ParameterEstimate:
-    return replace(p, stderr=np.inf, interval=(0.0, np.inf))
 
 
 def head() -> list[str]:

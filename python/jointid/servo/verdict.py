@@ -8,8 +8,9 @@ from dataclasses import replace
 from jointid.estimate.objections import EXPLAINED, Objection, explained_text
 from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
 from jointid.servo.estimate import ServoEstimate
+from jointid.servo.layout import LOAD_FRICTION, SPEED_FRICTION
 
-_COMPENSATED = frozenset(("torque_per_voltage", "viscous", "coulomb", "load_friction"))
+_COMPENSATED = {"torque_per_voltage", *(term.name for term in (*SPEED_FRICTION, LOAD_FRICTION))}
 
 
 def judged_servo(estimate: ServoEstimate) -> Verdict:

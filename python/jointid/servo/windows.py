@@ -3,11 +3,12 @@
 Over a window, with the load's inertia and gravity known, without any acceleration:
 
     J_load dω + ∫ gravity = (k_t/R) ∫ u - (k_t²/R) ∫ ω_driven
-                            - viscous ∫ ω - coulomb ∫ sgn ω - load ∫ sgn ω |gear| - J dω
+                            - Σ friction_i ∫ sgn ω h_i(|ω|) - load ∫ sgn ω |gear| - J dω
 
-where u is the voltage and gear = gravity + motor torque is what presses the teeth: motor and load pull from the two
-sides. With the sign of gear held, its integral is linear in k_t/R and k_t²/R, too. How the command moves between rows
-is not logged: u = even + held · late, where late is what a command that is held until the next row adds.
+where h_i is the basis of a term in the core's table, u is the voltage, and gear = gravity + motor torque is what
+presses the teeth: motor and load pull from the two sides. With the sign of gear held, its integral is linear in k_t/R
+and k_t²/R, too. How the command moves between rows is not logged: u = even + held · late, where late is what a command
+that is held until the next row adds.
 """
 
 from __future__ import annotations
@@ -18,9 +19,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.values import dataclass
 from jointid.joint.joint import Joint
 from jointid.servo.between_rows import voltages
+from jointid.servo.layout import BACK_EMF, CHANGE, HELD, KNOWN, LOAD, TORQUE
 from jointid.servo.motion import local_quadratic, smoothed
 from jointid.servo.signals import ServoSignals
 
@@ -40,11 +43,6 @@ _FEWEST = 5  # samples in that span, at least
 
 _REACH = int(0.5 * _SPAN * _PIECES)  # grid steps in half of that span
 
-# Columns of the table.
-VOLTAGE, LATE, DRIVEN, TURNED, SIGN, CHANGE, KNOWN = range(7)
-LOAD, LOAD_VOLTAGE, LOAD_LATE, LOAD_DRIVEN = range(7, 11)
-COLUMNS = 11
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ServoGrid:
@@ -54,6 +52,8 @@ class ServoGrid:
     ----------
     velocity, voltage, late, gravity, driven, sign : ndarray, shape (n,)
         [rad/s], [V], [V] that a held command adds, [N·m], 0 or 1, sign of the velocity.
+    friction : ndarray, shape (terms, n)
+        Of the speed, for a coefficient of 1.
     instants : tuple of ndarray
         Of each run [s].
     step : ndarray, shape (n,)
@@ -65,7 +65,7 @@ class ServoGrid:
         Of a window's start in its run [s].
     load_inertia : float
         [kg·m²]
-    columns : ndarray, shape (windows, COLUMNS)
+    columns : ndarray, shape (windows, columns)
         The table, with zeros for the load's friction.
     """
 
@@ -75,6 +75,7 @@ class ServoGrid:
     gravity: Array
     driven: Array
     sign: Array
+    friction: Array
     instants: tuple[Array, ...]
     step: Array
     start: Counts
@@ -94,27 +95,25 @@ class ServoGrid:
 
     def with_columns(self) -> ServoGrid:
         """Return the grid with its table as its signals give it."""
-        columns = np.zeros((len(self.start), COLUMNS))
-        signals = (
-            *(self.voltage, self.late, self.velocity * self.driven, self.velocity, self.sign),
-            self.gravity,
-        )
-        columns[:, [VOLTAGE, LATE, DRIVEN, TURNED, SIGN, KNOWN]] = self.integrals(*signals)
+        driven = self.velocity * self.driven
+        found = self.integrals(self.voltage, self.late, driven, *self.friction, self.gravity)
+        columns = np.zeros((len(self.start), found.shape[1] + 5))
+        columns[:, :CHANGE] = found[:, :-1]
         columns[:, CHANGE] = self.velocity[self.end] - self.velocity[self.start]
-        columns[:, KNOWN] += self.load_inertia * columns[:, CHANGE]
+        columns[:, KNOWN] = found[:, -1] + self.load_inertia * columns[:, CHANGE]
         return replace(self, columns=columns)
 
-    def side(self, torque_per_voltage: float, back_emf: float, held: float) -> Array:
-        """Return on which side of the motion the gear's torque is, for these values: -1, 0 or 1."""
-        volts = self.voltage + held * self.late
-        motor = torque_per_voltage * volts - back_emf * self.velocity * self.driven
+    def side(self, values: Array) -> Array:
+        """Return on which side of the motion the gear's torque is, for a solution: -1, 0 or 1."""
+        volts = self.voltage + values[HELD] * self.late
+        motor = values[TORQUE] * volts - values[BACK_EMF] * self.velocity * self.driven
         return np.asarray(self.sign * np.sign(self.gravity + motor))
 
     def with_load(self, side: Array) -> Array:
         """Return the table with the load's friction, for a gear's torque on these sides."""
         filled = self.columns.copy()
         signals = (self.gravity, self.voltage, self.late, self.velocity * self.driven)
-        filled[:, LOAD : LOAD_DRIVEN + 1] = self.integrals(*(side * each for each in signals))
+        filled[:, LOAD:] = self.integrals(*(side * each for each in signals))
         return filled
 
     def with_lead(self, runs: Sequence[ServoSignals], joint: Joint, lead: float) -> ServoGrid:
@@ -138,6 +137,7 @@ class ServoGrid:
 def grid_of(
     runs: Sequence[ServoSignals],
     joint: Joint,
+    friction: Sequence[_core.Term],
     *,
     window: float = WINDOW,
     slowest: float = SLOWEST,
@@ -153,6 +153,8 @@ def grid_of(
     runs : sequence of ServoSignals
     joint : Joint
         Its link is the known load.
+    friction : sequence of Term
+        Of the speed.
     window : float
         Duration [s]; longer where samples are rare. Default `WINDOW`.
     slowest : float
@@ -170,10 +172,12 @@ def grid_of(
         parts.append(part)
         instants.append(times)
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    velocity, none = joined["velocity"], np.empty(0)  # no shapes
     return ServoGrid(
+        friction=np.stack([_core.friction_basis(t.key, velocity, none) for t in friction]),
         load_inertia=joint.link_inertia,
         instants=tuple(instants),
-        columns=np.zeros((0, COLUMNS)),
+        columns=np.zeros((0, 0)),
         **joined,
     ).with_columns()
 
