@@ -237,7 +237,7 @@ def _terms(model: Model) -> tuple[Layout, bool]:
     stated = dict(model.stated())
     name = stated.pop("name", AUTO)
     name = DEFAULT_MODEL if name == AUTO else name
-    load = stated.pop("load_friction", True)
+    load = stated.pop(LOAD_FRICTION.option, True)
     gravity = stated.pop("gravity", "known")
     if name not in LAYOUTS:
         raise InputError(

@@ -49,7 +49,7 @@ SETTINGS = Record(
         "lead": _TIME,
         "lead_found": Flag(),
         "command_lag": OrNull(_TIME),
-        "load_friction": Flag(),
+        LOAD_FRICTION.option: Flag(),
         "separable": Flag(),
         "runs": ListOf(Text(), 1, _MOST),
         "moving": ListOf(Number(low=0.0, high=2.0), 1, _MOST),
