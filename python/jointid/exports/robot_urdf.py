@@ -8,7 +8,11 @@ from jointid.exports.robot_inertia import with_link_inertias
 from jointid.exports.urdf_model import is_joint, with_children
 from jointid.exports.xml_patch import elements, only, with_attributes, with_comment
 from jointid.joint.checks import suggestion
+from jointid.robot.models import terms_of
+from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS
 from jointid.robot.result import RobotEstimate, RobotJoint
+
+_WORDS = {"linear": "damping", "constant": "friction"}  # of the URDF, by the basis
 
 
 def robot_in_urdf(
@@ -24,7 +28,7 @@ def robot_in_urdf(
     place : str
         Its name, for errors.
     approximate : bool
-        Whether what URDF has not may be lost: static friction above Coulomb friction, friction that differs between
+        Whether what URDF has not may be lost: other friction than Coulomb and viscous, friction that differs between
         the directions, and friction of coupled motors.
     inertia : bool
         Whether the links get their identified inertia, too.
@@ -51,8 +55,8 @@ def _with_dynamics(content: bytes, place: str, joint: RobotJoint) -> bytes:
     found = elements(content, place)
     element = only(found, joint.name, is_joint, place, suggestion)
     children = [each for each in found if each.parent == found.index(element)]
-    p = joint.parameters
-    changes = {"damping": repr(p["viscous"].value), "friction": repr(p["coulomb"].value)}
+    changes = dict.fromkeys(_WORDS.values(), repr(0.0))
+    changes |= {word: repr(joint.parameters[name].value) for name, word in _written(joint).items()}
     dynamics = [each for each in children if each.tag == "dynamics"]
     if dynamics:
         content = with_attributes(content, dynamics[0], changes)
@@ -62,25 +66,34 @@ def _with_dynamics(content: bytes, place: str, joint: RobotJoint) -> bytes:
     return with_comment(content, element, _lines(joint))
 
 
+def _written(joint: RobotJoint) -> dict[str, str]:
+    """The URDF's words by names of the parameters that it has."""
+    terms = terms_of(joint.model)
+    return {term.name: _WORDS[term.basis] for term in terms if term.basis in _WORDS}
+
+
 def _lost(joint: RobotJoint) -> list[str]:
+    written = _written(joint)
     names = {
-        "static": "static friction",
-        "viscous_difference": "friction that differs between the directions",
-        "motor_coulomb": "friction of a coupled motor",
+        **{t.name: f"{t.name} friction" for t in terms_of(joint.model) if t.name not in written},
+        DIFFERENCE: "friction that differs between the directions",
+        **dict.fromkeys(MOTOR_TERMS, "friction of a coupled motor"),
     }
-    return [
+    lost = (
         text
         for name, text in names.items()
         if name in joint.parameters and joint.parameters[name].value != 0.0
-    ]
+    )
+    return list(dict.fromkeys(lost))
 
 
 def _lines(joint: RobotJoint) -> list[str]:
     lines = [f"{joint.name}, identified with all joints of the robot; values ± standard error"]
+    written = _written(joint)
     for p in joint.parameters.values():
         error = "" if p.stderr is None else f" ± {p.stderr:.3g}"
-        written = {"viscous": ", written as damping", "coulomb": ", written as friction"}
-        lines.append(f"{p.name}: {p.value!r}{error} {p.unit}{written.get(p.name, '')}".rstrip())
+        word = f", written as {written[p.name]}" if p.name in written else ""
+        lines.append(f"{p.name}: {p.value!r}{error} {p.unit}{word}".rstrip())
     lost = _lost(joint)
     if lost:
         lines.append(f"not in this file: {' and '.join(lost)}")

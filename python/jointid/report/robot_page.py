@@ -16,6 +16,7 @@ from jointid.report.joints_page import slug
 from jointid.report.rows import NamedRow, rows_panel
 from jointid.report.style import STYLE, WIDE
 from jointid.robot.comparison_result import RobotComparison
+from jointid.robot.friction import joint_friction
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.tables import base_rows, head, quality, rows
 
@@ -171,13 +172,7 @@ def _friction(estimate: RobotEstimate, joint: RobotJoint, number: int) -> Panel:
     peak = float(np.abs(windows.velocity).max(initial=0.0))
     for sign in (-1.0, 1.0):
         speeds = sign * np.linspace(1e-3, 1.0, 100) * peak
-        p = joint.parameters
-        values = sign * p["coulomb"].value + p["viscous"].value * speeds
-        if "static" in p:
-            decay = np.exp(-p["stribeck"].value * speeds**2)
-            values = values + sign * p["static"].value * decay
-        if "viscous_difference" in p:
-            values = values + p["viscous_difference"].value * np.abs(speeds)
+        values = joint_friction(joint, speeds)
         marks.append(Line(label="identified" if sign > 0.0 else "", across=speeds, up=values))
     slides = estimate.robot.tree.prismatic[number]
     return Panel(
@@ -191,7 +186,7 @@ def _windows(joint: RobotJoint) -> tuple[Panel, Panel]:
     windows = joint.windows
     centre = window_centres(windows)
     order = np.argsort(centre, kind="stable")
-    unit = joint.parameters["coulomb"].unit
+    unit = joint.parameters["torque_offset"].unit
     time, measured, fitted, residual = with_gaps(
         centre[order],
         *(

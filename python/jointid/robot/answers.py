@@ -9,9 +9,9 @@ from jointid.base.error_text import printable
 from jointid.estimate.answers import cut, findings, in_line, joint_lines, purposes
 from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
+from jointid.robot.parameters import LINEAR_FRICTION
 from jointid.robot.result import RobotEstimate
 
-_SHOWN = ("coulomb", "viscous")
 _FINDINGS = 1
 
 
@@ -62,12 +62,14 @@ def _joints(estimate: RobotEstimate, models: Mapping[str, str]) -> list[str]:
     joints = list(estimate.joints.values())
     if estimate.verdict.level == "not usable":
         joints.sort(key=lambda joint: -joint.relative_residual)
+    present = {name for joint in joints for name in joint.parameters}
+    shown = [name for name in LINEAR_FRICTION if name in present]
     return joint_lines(
         [
             [
                 joint.name,
                 *([models[joint.name]] if models else []),
-                *(in_line(joint.parameters.get(name)) for name in _SHOWN),
+                *(in_line(joint.parameters.get(name)) for name in shown),
                 f"residual {percent(joint.relative_residual)}",
             ]
             for joint in joints

@@ -10,10 +10,10 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.robot.attempt import Attempt
-from jointid.robot.columns import DIFFERENCE
 from jointid.robot.finding_types import TYPES, titled
 from jointid.robot.looked_rows import LookedRows
 from jointid.robot.models import AUTO, modelled
+from jointid.robot.parameters import DIFFERENCE, VISCOUS
 
 _SURE = 6.0  # standard errors
 _BETTER = 3.0  # standard errors by which held-out stretches fit better
@@ -33,8 +33,10 @@ def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
         left = float(rows.residual[mine] @ rows.residual[mine]) or 1.0
         explained = share.share * float(rows.residual @ rows.residual) / left
         value, error = float(share.values[0]), float(share.errors[0])
-        viscous, unit = found.parameters["viscous"].value, found.parameters["viscous"].unit
-        large = abs(value) > max(_SURE * error, _LARGE * viscous)
+        viscous = found.parameters.get(VISCOUS.name)
+        if viscous is None:
+            continue
+        unit, large = viscous.unit, abs(value) > max(_SURE * error, _LARGE * viscous.value)
         if not (np.isfinite(error) and large):
             continue
         if share.certainty > _BETTER and explained > _EXPLAINED:

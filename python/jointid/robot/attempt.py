@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,18 +13,17 @@ from jointid.base.errors import InputError
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.asked import duration_of
 from jointid.robot.balance import Balance, balance_of
-from jointid.robot.choice import certainty, with_static
-from jointid.robot.columns import DIFFERENCE
+from jointid.robot.choice import certainty, with_shapes
 from jointid.robot.conclusion import concluded
-from jointid.robot.decays import Decays, solved_with_decays
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import basis_of, inertia_columns
-from jointid.robot.models import AUTO, PLAIN, asymmetric, name_of
+from jointid.robot.models import AUTO, PLAIN, SHAPED, is_asymmetric, modelled, name_of
 from jointid.robot.motion import Motion, part_of
 from jointid.robot.products import Products
 from jointid.robot.resampling import RobotDraws
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
+from jointid.robot.shaped_terms import ShapedTerms, solved_with_shapes
 from jointid.robot.shifts import without_delay
 from jointid.robot.solving import Known, solved
 from jointid.robot.zeros import Zeros, zeros_of
@@ -177,14 +176,10 @@ def fitted(robot: Robot, balance: Balance, mode: str, models: Sequence[str]) -> 
     models : sequence of str
         One a joint.
     """
-    differs, models = asymmetric(models), [name_of(each) for each in models]
+    chosen = [joint for joint, model in enumerate(models) if name_of(model) == AUTO]
+    models = _renamed(models, chosen, SHAPED)
     columns = inertia_columns(robot, mode)
-    kept = [
-        place
-        for place, (joint, name) in enumerate(balance.labels)
-        if (name != "rotor_inertia" or joint not in columns.dropped)
-        and (name != DIFFERENCE or differs[joint])
-    ]
+    kept = balance.columns_of(models, columns.dropped)
     wanted = balance.rows.torque - columns.known(balance)
     inertial = columns.columns(balance)
     blocks = [
@@ -202,17 +197,25 @@ def fitted(robot: Robot, balance: Balance, mode: str, models: Sequence[str]) -> 
     known = columns.beforehand(len(kept))
     if known.wanted.size:
         _, known = certainty(products, solved(products, least, known), known)
-    stribeck = tuple(joint for joint in range(robot.n) if models[joint] != PLAIN)
-    decays = Decays(balance=balance, joints=stribeck)
-    found = solved_with_decays(decays, products, least, known)
-    if AUTO in models:
-        needed = with_static(found, products, decays.norms, stribeck, known)
-        left = tuple(joint for joint in stribeck if models[joint] != AUTO or joint in needed)
-        if left != stribeck:
-            start = [float(found.logs[stribeck.index(joint)]) for joint in left]
-            decays = Decays(balance=balance, joints=left)
-            found = solved_with_decays(decays, products, least, known, start)
-    return Fit.of(balance, columns, kept, products, decays, found), known
+    shaped = ShapedTerms.of(balance, models)
+    found = solved_with_shapes(shaped, products, least, known)
+    if chosen:
+        needed = with_shapes(found, products, shaped, known)
+        models = _renamed(models, [joint for joint in chosen if joint not in needed], PLAIN)
+        left = ShapedTerms.of(balance, models)
+        if left.joints != shaped.joints:
+            start = [float(found.logs[shaped.joints.index(joint)]) for joint in left.joints]
+            shaped = left
+            found = solved_with_shapes(shaped, products, least, known, start)
+    return Fit.of(balance, columns, models, products, shaped, found), known
+
+
+def _renamed(models: Sequence[str], joints: Collection[int], name: str) -> list[str]:
+    """Models with another name for some joints."""
+    return [
+        modelled(name, is_asymmetric(model)) if joint in joints else model
+        for joint, model in enumerate(models)
+    ]
 
 
 def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:

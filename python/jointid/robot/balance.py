@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from jointid.robot.columns import Column, Summing, linear_columns, rotor_values
 from jointid.robot.integrals import Windows, inertia_integrals, torque_integrals
+from jointid.robot.models import is_asymmetric, terms_of
 from jointid.robot.motion import Motion
+from jointid.robot.parameters import DIFFERENCE, LINEAR_TERMS
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
+_BY_MODEL = frozenset((*LINEAR_TERMS, DIFFERENCE))
 _LEAST = 0.2  # of a window that has to be usable
 
 
@@ -56,6 +59,8 @@ class Balance:
     rows : Rows
     labels : tuple of (int, str)
         Joint and name of each parameter of `matrix`.
+    keys : tuple of str
+        Of their terms in the core's table, or the names.
     least : ndarray
         Their lower bounds.
     matrix : ndarray, shape (rows, parameters)
@@ -77,6 +82,7 @@ class Balance:
 
     rows: Rows
     labels: tuple[tuple[int, str], ...]
+    keys: tuple[str, ...]
     least: Array
     matrix: Array
     inertia: Array
@@ -87,6 +93,18 @@ class Balance:
     velocity_noise: Array
     summings: tuple[Summing, ...]
     places: tuple[Whole, ...]
+
+    def columns_of(self, models: Sequence[str], dropped: Collection[int] = ()) -> list[int]:
+        """Return the places of the columns of joints with these models, without the inertia of some rotors."""
+        friction = [{term.key for term in terms_of(model)} for model in models]
+        for joint, model in enumerate(models):
+            friction[joint] |= {DIFFERENCE} if is_asymmetric(model) else set()
+        return [
+            place
+            for place, ((joint, name), key) in enumerate(zip(self.labels, self.keys, strict=True))
+            if (key not in _BY_MODEL or key in friction[joint])
+            and (name != "rotor_inertia" or joint not in dropped)
+        ]
 
     def windows_of(self, joint: int, piece: int) -> Whole:
         """Return the windows of a joint's rows in a piece, in their order."""
@@ -120,6 +138,7 @@ def balance_of(robot: Robot, motions: Iterable[Motion], duration: float, basis: 
     return Balance(
         rows=rows,
         labels=first.labels,
+        keys=first.keys,
         least=first.least,
         matrix=np.concatenate([part.matrix for part in parts]),
         inertia=np.concatenate([part.inertia for part in parts]),
@@ -189,6 +208,7 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Arr
             }
         ),
         labels=tuple((column.joint, column.name) for column in columns),
+        keys=tuple(column.key for column in columns),
         least=np.array([column.least for column in columns]),
         matrix=np.concatenate(matrices)[order],
         inertia=np.concatenate(inertias)[order],

@@ -1,12 +1,12 @@
-"""What held-out torque decides: which joints have static friction, and how much the URDF's inertias say."""
+"""What held-out torque decides: which joints have a shaped term, and how much the URDF's inertias say."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.robot.decays import DecaySolution
 from jointid.robot.products import FOLDS, Products, powers, weighted
+from jointid.robot.shaped_terms import ShapedSolution, ShapedTerms
 from jointid.robot.solving import Known, Solution
 
 Array = NDArray[np.float64]
@@ -15,29 +15,28 @@ _CERTAINTIES = (1.0, 3.0, 10.0, 30.0, 100.0)
 _CLEAR = 1.0  # standard errors by which the misfit falls
 
 
-def with_static(
-    found: DecaySolution, products: Products, norms: Array, joints: tuple[int, ...], known: Known
+def with_shapes(
+    found: ShapedSolution, products: Products, shaped: ShapedTerms, known: Known
 ) -> tuple[int, ...]:
-    """Return the joints that need static friction.
+    """Return the joints that need their shaped term, as static friction.
 
-    Each stretch of time is predicted from the others, with static friction of all joints and without that of one. It
-    is kept where it makes the joint's own prediction better by more than its scatter over the stretches. A decay at
-    the bound of its range, or no static friction above 0, is none.
+    Each stretch of time is predicted from the others, with the shaped terms of all joints and without that of one. It
+    is kept where it makes the joint's own prediction better by more than its scatter over the stretches. A shape at
+    the bound of its range, or a coefficient at 0, is no such term.
 
     Parameters
     ----------
-    found : DecaySolution
-        With the static friction of all `joints`.
+    found : ShapedSolution
+        With all `shaped`.
     products : Products
         Of the other columns.
-    norms : ndarray
-        Lengths of the columns of static friction.
-    joints : tuple of int
+    shaped : ShapedTerms
     known : Known
         Of the other columns' parameters beforehand.
     """
+    joints = shaped.joints
     every = np.arange(products.columns + len(joints))
-    lengths = np.concatenate([products.norms[:-1], norms, products.norms[-1:]])
+    lengths = np.concatenate([products.norms[:-1], shaped.norms, products.norms[-1:]])
     said = known.padded(len(joints)).scaled(lengths)
     scatter = found.solution.scatter
     whole = _misfits(found.sums, said, scatter, every)

@@ -8,42 +8,21 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.robot.integrals import Windows, direction_integrals
 from jointid.robot.motion import Motion
+from jointid.robot.parameters import (
+    CONSTANT,
+    DIFFERENCE,
+    LINEAR_TERMS,
+    MOTOR_TERMS,
+    VISCOUS,
+    least_of,
+)
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
-MEANINGS = {
-    "coulomb": "Coulomb friction",
-    "static": "static friction above Coulomb friction",
-    "stribeck": "decay of the static friction with the squared speed",
-    "viscous": "viscous friction: torque at the joint per speed of the joint, the other joints at rest",
-    "viscous_difference": "half of what viscous friction is more in the positive than in the negative direction",
-    "motor_coulomb": "Coulomb friction of the motor, on its own speed",
-    "motor_viscous": "viscous friction of the motor, on its own speed",
-    "torque_offset": "constant torque",
-    "rotor_inertia": "inertia of the motor and its gear, at the joint",
-    "inertia_scale": "factor on all inertial parameters of the link that the joint moves",
-}
-"""Parameters of a joint, in the order of tables."""
-DIFFERENCE = "viscous_difference"
-"""Of joints whose friction differs between the directions; Coulomb friction's half difference is in the offset."""
-_TORQUE, _DAMPING = ("N·m", "N"), ("N·m·s/rad", "N·s/m")
-UNITS = {
-    "coulomb": _TORQUE,
-    "static": _TORQUE,
-    "stribeck": ("s²/rad²", "s²/m²"),
-    "viscous": _DAMPING,
-    "viscous_difference": _DAMPING,
-    "motor_coulomb": _TORQUE,
-    "motor_viscous": _DAMPING,
-    "torque_offset": _TORQUE,
-    "rotor_inertia": ("kg·m²", "kg"),
-    "inertia_scale": ("", ""),
-}
-"""Of a hinge, and of a slide."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -55,6 +34,8 @@ class Column:
     joint : int
         Whose parameter it is.
     name : str
+    key : str
+        Of the term in the core's table, or the name.
     least : float
         The lower bound: 0 of what cannot be negative.
     values : mapping of int to ndarray, shape (windows,)
@@ -63,6 +44,7 @@ class Column:
 
     joint: int
     name: str
+    key: str
     values: Mapping[int, Array]
     least: float = field(default=-np.inf)
 
@@ -104,7 +86,7 @@ class Summing:
 
 
 def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Column]:
-    """Return the columns of Coulomb and viscous friction, offsets, and rotor inertias.
+    """Return the columns of friction without shape parameters, of offsets, and of rotor inertias.
 
     A joint's viscous coefficient is the torque at the joint per its own speed. What a coupled motor adds to it is in
     it; its own coefficient says what it does beyond that: the torque at one joint per speed of another.
@@ -116,35 +98,70 @@ def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Colum
             found += _of_motor(joint, robot, motion, summing)
         if robot.rotor_inertias[joint] is None:
             values = rotor_values(joint, robot, motion, summing)
-            found.append(Column(joint=joint, name="rotor_inertia", values=values, least=0.0))
+            found.append(_column(joint, "rotor_inertia", values, least=0.0))
     return found
 
 
+def _column(
+    joint: int, name: str, values: Mapping[int, Array], *, key: str = "", least: float = -np.inf
+) -> Column:
+    return Column(joint=joint, name=name, key=key or name, values=values, least=least)
+
+
 def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
-    direction = summing(joint, direction_integrals(motion.velocity[joint], summing.step))
-    travel = summing(joint, np.diff(motion.position[joint]))
-    distance = summing(joint, np.abs(np.diff(motion.position[joint])))
+    velocity, travel = motion.velocity[joint], np.diff(motion.position[joint])
+
+    def of(intervals: Array) -> dict[int, Array]:
+        return {joint: summing(joint, intervals)}
+
     return [
-        Column(joint=joint, name="coulomb", values={joint: direction}, least=0.0),
-        Column(joint=joint, name="viscous", values={joint: travel}, least=0.0),
-        Column(joint=joint, name=DIFFERENCE, values={joint: distance}),
-        Column(joint=joint, name="torque_offset", values={joint: summing(joint, summing.step)}),
+        *(
+            _column(
+                joint,
+                term.name,
+                of(_integrals(term, velocity, travel, summing.step)),
+                key=key,
+                least=least_of(term),
+            )
+            for key, term in LINEAR_TERMS.items()
+        ),
+        _column(joint, DIFFERENCE, of(np.abs(travel))),
+        _column(joint, "torque_offset", of(summing.step)),
     ]
 
 
 def _of_motor(motor: int, robot: Robot, motion: Motion, summing: Summing) -> list[Column]:
-    row = robot.couplings[motor]
-    direction = direction_integrals(motion.motor_velocity[motor], summing.step)
-    travel = np.diff(motion.motor_position[motor])
-    coulomb, viscous = {}, {}
-    for joint in map(int, np.flatnonzero(row)):
-        share, own = row[joint], np.diff(motion.position[joint])
-        coulomb[joint] = share * summing(joint, direction)
-        viscous[joint] = share * summing(joint, travel - share * own)
-    return [
-        Column(joint=motor, name="motor_coulomb", values=coulomb, least=0.0),
-        Column(joint=motor, name="motor_viscous", values=viscous, least=0.0),
-    ]
+    row, travel = robot.couplings[motor], np.diff(motion.motor_position[motor])
+    found = []
+    for name, term in MOTOR_TERMS.items():
+        whole = _integrals(term, motion.motor_velocity[motor], travel, summing.step)
+        values = {}
+        for joint in map(int, np.flatnonzero(row)):
+            own = (
+                row[joint] * np.diff(motion.position[joint]) if term.basis == VISCOUS.basis else 0.0
+            )
+            values[joint] = row[joint] * summing(joint, whole - own)
+        found.append(_column(motor, name, values, least=least_of(term)))
+    return found
+
+
+def _integrals(term: _core.Term, velocity: Array, travel: Array, step: Array) -> Array:
+    """Integrals of a term's basis over the intervals."""
+    if term.basis == CONSTANT.basis:
+        return direction_integrals(velocity, step)
+    if term.basis == VISCOUS.basis:
+        return travel
+    return interval_means(_core.friction_basis(term.key, velocity, ()), velocity) * step
+
+
+def interval_means(signal: Array, velocity: Array) -> Array:
+    """Means over the intervals; within a reversal by the share of time on each side, as `direction_integrals`."""
+    speed = np.abs(velocity)
+    before, after = signal[:-1], signal[1:]
+    total = speed[:-1] + speed[1:]
+    share = speed[:-1] / np.where(total > 0.0, total, 1.0)
+    turned = before * after < 0.0
+    return np.where(turned, share * before + (1.0 - share) * after, 0.5 * (before + after))
 
 
 def rotor_values(motor: int, robot: Robot, motion: Motion, summing: Summing) -> dict[int, Array]:

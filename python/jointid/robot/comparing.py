@@ -22,7 +22,7 @@ from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
 from jointid.robot.held_out import blocks_of, part_of_balance, told_by
 from jointid.robot.identifying import identify_robot
 from jointid.robot.inertia import MODES, Inertia
-from jointid.robot.models import PLAIN, STRIBECK, friction_models, name_of
+from jointid.robot.models import MODELS, PLAIN, SHAPED, friction_models, name_of
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import Shift, told_shift
 from jointid.robot.stamps import all_on_even_clocks
@@ -37,7 +37,7 @@ def compare_robot_models(
     recordings: RobotRecording | Sequence[RobotRecording],
     robot: Robot,
     *,
-    models: Sequence[Model | str] = (PLAIN, STRIBECK),
+    models: Sequence[Model | str] = (PLAIN, SHAPED),
     inertia: Inertia | Sequence[Inertia] = MODES,
     folds: int = 5,
     windows: float | None = None,
@@ -58,7 +58,7 @@ def compare_robot_models(
     recordings : RobotRecording, or sequence of it
     robot : Robot
     models : sequence of Model or str
-        Friction of all joints: "coulomb_viscous", "stribeck" (both by default), each also with ``:asymmetric``.
+        Friction of all joints: by default "coulomb_viscous" and "stribeck"; each also with ``:asymmetric``.
     inertia : sequence of str
         Any of "urdf", "scaled" and "free" (all by default).
     folds : int
@@ -159,9 +159,9 @@ def _models(models: object, robot: Robot) -> list[str]:
     if not isinstance(found, list | tuple) or not found:
         raise InputError("a list of models is expected", argument="models", value=models)
     names = [friction_models(each, robot.names)[0] for each in found]
-    if {name_of(each) for each in names} - {PLAIN, STRIBECK}:
+    if {name_of(each) for each in names} - set(MODELS):
         raise InputError(
-            f"{PLAIN} and {STRIBECK} are compared, each also as NAME:asymmetric, and each joint's is chosen",
+            f"{', '.join(MODELS)} are compared, each also as NAME:asymmetric, and each joint's is chosen",
             argument="models",
             value=models,
         )

@@ -14,11 +14,11 @@ from jointid.identification.inference.covariance import Covariance
 from jointid.problem.window_table import WindowTable
 from jointid.robot.balance import Balance
 from jointid.robot.bodies import possible
-from jointid.robot.columns import DIFFERENCE, MEANINGS, UNITS
 from jointid.robot.findings import findings_of
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import SCALED
-from jointid.robot.models import PLAIN, STRIBECK, modelled
+from jointid.robot.models import terms_of
+from jointid.robot.parameters import DIFFERENCE, parameter_facts
 from jointid.robot.purposes import held_of, torques_of, within_of
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
@@ -41,6 +41,7 @@ def concluded(
     base: dict[str, ParameterEstimate] = {}
     free: list[str] = []
     held = held_of(balance, fit)
+    facts = [parameter_facts(model) for model in fit.models]
     names = [
         name if joint is None else f"{robot.names[joint]}.{name}" for joint, name in fit.labels
     ]
@@ -52,8 +53,9 @@ def concluded(
             )
             base[name] = p
         else:
-            unit = UNITS[name][robot.tree.prismatic[joint]]
-            p = _parameter(name, MEANINGS[name], unit, fit, number, place, covariance)
+            of_name = facts[joint][name]
+            unit = of_name.units[robot.tree.prismatic[joint]]
+            p = _parameter(name, of_name.meaning, unit, fit, number, place, covariance)
             if number in held:
                 p = replace(p, interval=held[number])
             of_joints[joint][name] = p
@@ -62,10 +64,8 @@ def concluded(
     joints = {
         name: RobotJoint(
             name=name,
-            model=modelled(
-                STRIBECK if "static" in of_joints[k] else PLAIN, DIFFERENCE in of_joints[k]
-            ),
-            parameters={key: of_joints[k][key] for key in MEANINGS if key in of_joints[k]},
+            model=fit.models[k],
+            parameters={key: of_joints[k][key] for key in facts[k] if key in of_joints[k]},
             residuals=_residuals(k, balance, fit, duration),
             windows=_table(k, balance, fit, runs),
         )
@@ -150,10 +150,9 @@ def _residuals(joint: int, balance: Balance, fit: Fit, duration: float) -> Resid
 
 def _table(joint: int, balance: Balance, fit: Fit, runs: Sequence[int]) -> WindowTable:
     mine = balance.rows.joint == joint
+    names = {DIFFERENCE, *(term.name for term in terms_of(fit.models[joint]))}
     friction = [
-        place
-        for place, label in enumerate(fit.labels)
-        if label[0] == joint and label[1] in ("coulomb", "viscous", "static", DIFFERENCE)
+        place for place, label in enumerate(fit.labels) if label[0] == joint and label[1] in names
     ]
     own = fit.jacobian[np.ix_(mine, friction)] @ fit.values[friction]
     residual = fit.residual[mine]

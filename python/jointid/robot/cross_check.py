@@ -8,23 +8,27 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import number, percent
 from jointid.robot.attempt import Asked, Attempt
-from jointid.robot.columns import DIFFERENCE
 from jointid.robot.finding_types import TYPES
+from jointid.robot.models import shaped_term
+from jointid.robot.parameters import LINEAR_FRICTION
 from jointid.robot.plain_motion import PlainSignals
+from jointid.robot.result import RobotJoint
 from jointid.robot.second_look import SETTINGS, Looked, looked_again
 
 Array = NDArray[np.float64]
 
-COMPARED = ("coulomb", "viscous", "rotor_inertia")
+COMPARED = (*LINEAR_FRICTION, "rotor_inertia")
 _APART, _ERRORS = 0.05, 3.0  # of the value, and of both errors
 _MATTERS = 0.01  # of the joint's torque: a smaller difference spoils nothing
 _VAGUE = 0.5  # of the value: with more doubt the look says nothing
 _SHOWN = 5
-_PAST = 2.2  # over the root of the decay: static friction is gone
+_PAST = 2.2  # of the speed that a shape stands for: static friction is gone
+_GONE = 0.01  # of a coefficient
 _POOR, _BETTER = 0.05, 0.5  # residual of the torque, and the second look's squared one beside it
 
 
@@ -110,14 +114,12 @@ def cross_checked(
     if not signals:
         return CrossCheck(reason="the recording is too short")
     joints = list(estimate.joints.values())
-    decays = [joint.parameters.get("stribeck") for joint in joints]
-    past = [_PAST / np.sqrt(p.value) if p is not None and p.value > 0.0 else 0.0 for p in decays]
     look = looked_again(
         signals,
         robot,
         estimate.inertia,
-        np.maximum(past, asked.slowest),
-        [DIFFERENCE in joint.parameters for joint in joints],
+        np.maximum([_past_shape(joint) for joint in joints], asked.slowest),
+        [joint.model for joint in joints],
         np.zeros(robot.n) if stated is None else stated,
         attempt.delay,
     )
@@ -138,6 +140,17 @@ def cross_checked(
         agrees=(all(said) and not worse) if said or worse else None,
         reason="" if said or worse else "it determines none of the values",
     )
+
+
+def _past_shape(joint: RobotJoint) -> float:
+    """The speed past which a joint's shaped term is gone; infinite where it never is."""
+    term = shaped_term(joint.model)
+    value = joint.parameters[term.shapes[0]].value if term else 0.0
+    if term is None or not value > 0.0:
+        return 0.0
+    power = _core.shape(term.shapes[0]).speed_power
+    speed = _PAST * value ** (1.0 / power) if power else np.inf
+    return float(speed) if _core.friction_basis(term.key, [speed], [value])[0] < _GONE else np.inf
 
 
 def _compared(attempt: Attempt, look: Looked, joint: int, name: str) -> Compared:

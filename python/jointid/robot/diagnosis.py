@@ -19,8 +19,9 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.attempt import Asked, Attempt, attempted
 from jointid.robot.error_candidates import ZERO, SmallError, refined, small_errors
 from jointid.robot.finding_types import TYPES, listed
-from jointid.robot.findings import FRICTION, doubtful_joints
+from jointid.robot.findings import doubtful_joints
 from jointid.robot.naming import named_error, named_fact
+from jointid.robot.parameters import LINEAR_FRICTION, MOTOR_TERMS
 from jointid.robot.robot import Robot
 from jointid.robot.wrong_facts import WrongFact, wrong_fact
 
@@ -205,7 +206,7 @@ def _held(attempt: Attempt) -> int:
         p.at_bound is not None
         for joint in attempt.estimate.joints.values()
         for name, p in joint.parameters.items()
-        if name in FRICTION
+        if name in (*LINEAR_FRICTION, *MOTOR_TERMS)
     )
 
 

@@ -15,6 +15,8 @@ from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.identification.inference.purposes import Torques
 from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.inertia import FREE, InertiaColumns
+from jointid.robot.models import linear_terms
+from jointid.robot.parameters import LINEAR_FRICTION, MOTOR_TERMS
 from jointid.robot.result import RobotEstimate, RobotJoint
 
 _STANDING = 0.1  # of the time: worth saying
@@ -23,7 +25,7 @@ _VAGUE = 0.25  # a standard error, of the value
 _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
-FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
+_FRICTION = (*LINEAR_FRICTION, *MOTOR_TERMS)
 _LEFT_OUT = "such motion says nothing about friction and is left out"
 RANK = {"blocking": 0, "warning": 1, "info": 2}
 
@@ -56,7 +58,7 @@ def doubtful_joints(estimate: RobotEstimate) -> list[int]:
         number
         for number, joint in enumerate(estimate.joints.values())
         if joint.relative_residual > _DOUBTFUL
-        or any(joint.parameters[name].at_bound == "min" for name in ("coulomb", "viscous"))
+        or any(joint.parameters[term.name].at_bound == "min" for term in linear_terms(joint.model))
     ]
 
 
@@ -84,7 +86,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
 
 
 def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> Iterator[Finding]:
-    for name in FRICTION:
+    for name in _FRICTION:
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
             continue
@@ -100,7 +102,7 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> I
             parameters=(f"{joint.name}.{name}",),
             evidence={"stderr": Measured(p.stderr, p.unit)} if known else {},
         )
-    held = [name for name in FRICTION if name in joint.parameters]
+    held = [name for name in _FRICTION if name in joint.parameters]
     held = [name for name in held if joint.parameters[name].at_bound is not None]
     held_by = {
         name: torques.of_all_friction(name, distance_from_bound(joint.parameters[name]))

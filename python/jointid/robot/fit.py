@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 
 from jointid.identification.inference.covariance import Covariance, parameter_covariance
 from jointid.robot.balance import Balance
-from jointid.robot.decays import Decays, DecaySolution
 from jointid.robot.inertia import InertiaColumns
 from jointid.robot.products import Products
+from jointid.robot.shaped_terms import ShapedSolution, ShapedTerms
 from jointid.robot.solving import time_segments
 
 Array = NDArray[np.float64]
-
-_SIGNED = ("torque_offset", "inertia_scale")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -27,6 +25,8 @@ class Fit:
 
     Attributes
     ----------
+    models : tuple of str
+        One a joint.
     labels : tuple of (int or None, str)
         Joint and name; of a base parameter None and the combination.
     units : tuple of str
@@ -43,6 +43,7 @@ class Fit:
         Inertial parameters of all links.
     """
 
+    models: tuple[str, ...]
     labels: tuple[tuple[int | None, str], ...]
     units: tuple[str, ...]
     values: Array
@@ -59,10 +60,10 @@ class Fit:
         cls,
         balance: Balance,
         columns: InertiaColumns,
-        kept: Sequence[int],
+        models: Sequence[str],
         products: Products,
-        decays: Decays,
-        found: DecaySolution,
+        shaped: ShapedTerms,
+        found: ShapedSolution,
     ) -> Self:
         """Return the fit of a solution.
 
@@ -70,47 +71,48 @@ class Fit:
         ----------
         balance : Balance
         columns : InertiaColumns
-        kept : sequence of int
-            Columns of the balance that are used, before those of the inertia.
+        models : sequence of str
+            One a joint.
         products : Products
-            Of these two.
-        decays : Decays
-        found : DecaySolution
+            Of the balance's columns of these models, and of the inertia's.
+        shaped : ShapedTerms
+        found : ShapedSolution
         """
+        kept = balance.columns_of(models, columns.dropped)
         labels = [balance.labels[place] for place in kept]
         inertial: list[tuple[int | None, str]] = [
             (joint, "inertia_scale") if columns.scales else (None, name)
             for joint, name in zip(columns.joints, columns.names, strict=True)
         ]
-        stribeck, decay = decays.joints, np.exp(found.logs)
+        terms, shapes = shaped.terms.items(), np.exp(found.logs)
         every = [
             *labels,
             *inertial,
-            *((joint, "static") for joint in stribeck),
-            *((joint, "stribeck") for joint in stribeck),
+            *((joint, term.name) for joint, term in terms),
+            *((joint, term.shapes[0]) for joint, term in terms),
         ]
-        linear = len(every) - len(stribeck)
-        positive = [joint is not None and name not in _SIGNED for joint, name in every[:linear]]
-        lengths = np.append(products.norms[:-1], decays.norms)
+        linear = len(every) - len(shapes)
+        lengths = np.append(products.norms[:-1], shaped.norms)
         values = found.solution.values * (products.norms[-1] / lengths)
         first = len(labels) + len(inertial)
+        least = (*balance.least[kept], *np.full(len(inertial), -np.inf), *shaped.least)
         jacobian = np.zeros((balance.rows.joint.size, len(every)))
         jacobian[:, : len(labels)] = balance.matrix[:, kept]
         jacobian[:, len(labels) : first] = columns.columns(balance)
-        for number, joint in enumerate(stribeck):
-            mine = balance.places[joint]
-            value, slope = decays.column(joint, float(decay[number]))
-            jacobian[mine, first + number] = value
-            static = values[first + number]
-            jacobian[mine, linear + number] = static * slope / decay[number]
+        for number, joint in enumerate(shaped.joints):
+            mine, shape = balance.places[joint], float(shapes[number])
+            jacobian[mine, first + number] = shaped.column(joint, shape)
+            by_shape = values[first + number] * shaped.slope(joint, shape) / shape
+            jacobian[mine, linear + number] = by_shape
         wanted = balance.rows.torque - columns.known(balance)
         return cls(
+            models=tuple(models),
             labels=tuple(every),
-            units=("",) * len(labels) + columns.units + ("",) * (2 * len(stribeck)),
-            values=np.append(values, decay),
+            units=("",) * len(labels) + columns.units + ("",) * (2 * len(shapes)),
+            values=np.append(values, shapes),
             bounds=(
-                *((0.0 if each else -np.inf, np.inf) for each in positive),
-                *(decays.bounds(joint) for joint in stribeck),
+                *((float(low), np.inf) for low in least),
+                *(shaped.bounds(joint) for joint in shaped.joints),
             ),
             at_bound=np.append(found.solution.at_bound, found.at_bound),
             jacobian=jacobian,

@@ -5,30 +5,38 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.robot.columns import DIFFERENCE
-from jointid.robot.result import RobotEstimate
+from jointid import _core
+from jointid.robot.models import terms_of
+from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS, VISCOUS
+from jointid.robot.result import RobotEstimate, RobotJoint
 
 Array = NDArray[np.float64]
 
 
 def friction_of(estimate: RobotEstimate, velocity: Array) -> Array:
     """Return the friction torque at the joints; see `RobotEstimate.friction`."""
-    robot = estimate.robot
-    coulomb, static, stribeck, viscous, motor_coulomb, motor_viscous = (
-        _values(estimate, name)
-        for name in ("coulomb", "static", "stribeck", "viscous", "motor_coulomb", "motor_viscous")
-    )
-    dry = coulomb + static * np.exp(-stribeck * velocity**2)
-    motors = velocity @ robot.couplings.T
-    # A joint's viscous coefficient contains what the motors add at its own speed.
-    own = viscous - (robot.couplings**2).T @ motor_viscous
-    of_motors = motor_coulomb * np.sign(motors) + motor_viscous * motors
-    difference = _values(estimate, DIFFERENCE) * np.abs(velocity)
-    return np.asarray(
-        dry * np.sign(velocity) + own * velocity + difference + of_motors @ robot.couplings
-    )
+    couplings, joints = estimate.robot.couplings, list(estimate.joints.values())
+    own = [joint_friction(joint, velocity[..., k]) for k, joint in enumerate(joints)]
+    total, motors = np.stack(own, axis=-1), velocity @ couplings.T
+    for name, term in MOTOR_TERMS.items():
+        values = np.array([_value(joint, name) for joint in joints])
+        basis = _core.friction_basis(term.key, motors.ravel(), ()).reshape(motors.shape)
+        total = total + (values * basis) @ couplings
+        if term.basis == VISCOUS.basis:  # a joint's own contains what the motors add at its speed
+            total = total - (couplings**2).T @ values * velocity
+    return np.asarray(total)
 
 
-def _values(estimate: RobotEstimate, name: str) -> Array:
-    found = [joint.parameters.get(name) for joint in estimate.joints.values()]
-    return np.array([0.0 if each is None else each.value for each in found])
+def joint_friction(joint: RobotJoint, velocity: Array) -> Array:
+    """Return a joint's own friction at its speeds, the other joints at rest."""
+    total = _value(joint, DIFFERENCE) * np.abs(velocity)
+    for term in terms_of(joint.model):
+        shapes = [_value(joint, name) for name in term.shapes]
+        basis = _core.friction_basis(term.key, np.ravel(velocity), shapes)
+        total = total + _value(joint, term.name) * basis.reshape(np.shape(velocity))
+    return np.asarray(total)
+
+
+def _value(joint: RobotJoint, name: str) -> float:
+    found = joint.parameters.get(name)
+    return 0.0 if found is None else found.value

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
 from jointid.robot.balance import Balance, Rows
-from jointid.robot.decays import Decays
 from jointid.robot.fit import Fit
+from jointid.robot.shaped_terms import ShapedTerms
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -74,7 +74,7 @@ def part_of_balance(balance: Balance, kept: Flags) -> Balance:
 
 def told_by(fit: Fit, balance: Balance) -> Array:
     """Return the integrals of torque that a fit tells of a balance, which it need not have seen."""
-    places = {label: place for place, label in enumerate(balance.labels)}
+    places = {balance.labels[place]: place for place in balance.columns_of(fit.models)}
     total = fit.columns.known(balance)
     inertial = []
     for value, (joint, name) in zip(fit.values, fit.labels, strict=True):
@@ -84,9 +84,4 @@ def told_by(fit: Fit, balance: Balance) -> Array:
             total = total + value * balance.matrix[:, places[joint, name]]
     total = total + fit.columns.columns(balance) @ np.array(inertial)
     values = dict(zip(fit.labels, fit.values.tolist(), strict=True))
-    for (joint, name), value in values.items():
-        if name == "static" and joint is not None:
-            decays = Decays(balance=balance, joints=(joint,))
-            column, _ = decays.column(joint, values[joint, "stribeck"])
-            total[balance.places[joint]] += value * column
-    return np.asarray(total)
+    return np.asarray(total + ShapedTerms.of(balance, fit.models).torque(values))

@@ -3,7 +3,7 @@
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.estimate.json_schema import FINDING, MATRIX, PARAMETER, RESIDUALS, VERDICT, WINDOWS
 from jointid.robot.inertia import MODES
-from jointid.robot.models import PLAIN, STRIBECK, modelled
+from jointid.robot.models import MODELS, modelled
 
 _MOST = 1000  # joints
 _ANY = Number(infinite=True, undefined=True)
@@ -12,9 +12,7 @@ _TRIPLE = ListOf(_SIZE, 3, 3)
 
 _JOINT = Record(
     {
-        "model": Text(
-            known=tuple(modelled(n, a) for n in (PLAIN, STRIBECK) for a in (False, True))
-        ),
+        "model": Text(known=tuple(modelled(n, a) for n in MODELS for a in (False, True))),
         "parameters": TableOf(PARAMETER),
         "residuals": RESIDUALS,
         "windows": OrNull(WINDOWS),

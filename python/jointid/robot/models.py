@@ -1,20 +1,33 @@
-"""The friction model of each joint, as it is asked for: a name, and ``:asymmetric`` where directions differ."""
+"""The friction model of each joint as text: a name, and ``:asymmetric`` where the directions differ; and its terms."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from jointid import _core
 from jointid.base.errors import InputError
-from jointid.joint.model import FIELDS, Model
+from jointid.joint.model import AUTO, FIELDS, Model
 
-PLAIN, STRIBECK, AUTO = "coulomb_viscous", "stribeck", "auto"
-_NAMES = (PLAIN, STRIBECK, AUTO)
+
+def terms_of(model: str) -> list[_core.Term]:
+    """Return the terms of a model, each for both directions."""
+    return [_core.term(key) for key in _core.model_terms(name_of(model))]
+
+
+def linear_terms(model: str) -> list[_core.Term]:
+    """Return the terms whose basis has no shape parameter."""
+    return [term for term in terms_of(model) if not term.shapes]
+
+
+def shaped_term(model: str) -> _core.Term | None:
+    """Return the term whose basis has a shape parameter, if the model has one."""
+    return next((term for term in terms_of(model) if term.shapes), None)
 
 
 def friction_models(
     model: object, names: Sequence[str], usual: Sequence[str] | None = None
 ) -> list[str]:
-    """Return the name of each joint's model.
+    """Return the text of each joint's model.
 
     Parameters
     ----------
@@ -49,9 +62,10 @@ def _named(model: object, usual: str) -> str:
     if not chosen.stated():
         return usual
     stated = {name for name in chosen.stated() if name not in ("name", "asymmetric")}
-    if chosen.name not in (None, *_NAMES) or stated:
+    if chosen.name not in (None, *MODELS, AUTO) or stated:
         raise InputError(
-            f"of a whole robot's friction, one of {', '.join(_NAMES)} is identified, each also as NAME:asymmetric",
+            f"of a whole robot's friction, one of {', '.join((*MODELS, AUTO))} is identified, each also as "
+            "NAME:asymmetric",
             argument="model",
             value=str(chosen),
         )
@@ -68,6 +82,17 @@ def name_of(model: str) -> str:
     return model.partition(":")[0]
 
 
-def asymmetric(models: Sequence[str]) -> list[bool]:
-    """Return which models' friction differs between the directions."""
-    return [bool(Model.parse(each).asymmetric) for each in models]
+def is_asymmetric(model: str) -> bool:
+    """Return whether a model's friction differs between the directions."""
+    return bool(Model.parse(model).asymmetric)
+
+
+MODELS = tuple(
+    model.name
+    for model in _core.models()
+    if sum(len(term.shapes) for term in terms_of(model.name)) <= 1
+)
+"""Of a robot's joint: at most one shape parameter."""
+PLAIN = next(name for name in MODELS if shaped_term(name) is None)
+SHAPED = next(name for name in MODELS if shaped_term(name) is not None)
+"""What "auto" tries: `PLAIN`, and this model where it predicts better."""

@@ -8,9 +8,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.problem.low_pass import low_passed, reach
-from jointid.robot.columns import DIFFERENCE
 from jointid.robot.inertia import InertiaColumns
+from jointid.robot.models import is_asymmetric, linear_terms
+from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS, VISCOUS
 from jointid.robot.plain_motion import PlainSignals, link_columns
 from jointid.robot.robot import Robot
 
@@ -71,8 +73,8 @@ class Columns:
     inertia : InertiaColumns
     slowest : ndarray, shape (n,)
         Speed of each joint below which there are no rows.
-    differs : sequence of bool
-        Joints whose friction differs between the directions.
+    models : sequence of str
+        One a joint.
     made : dict
         Columns by signals, width and least speeds, once they were made.
     """
@@ -80,7 +82,7 @@ class Columns:
     robot: Robot
     inertia: InertiaColumns
     slowest: Array
-    differs: Sequence[bool]
+    models: Sequence[str]
     made: dict[tuple[int, int, tuple[float, ...]], list[_Rows]] = field(default_factory=dict)
 
     def blocks(
@@ -178,18 +180,20 @@ class Columns:
         """Columns of a joint's balance besides the links; "given" is what is known."""
         robot, own = self.robot, speed[joint]
         found: dict[Label, Array] = {
-            (joint, "coulomb"): np.sign(own),
-            (joint, "viscous"): own,
-            (joint, "torque_offset"): np.ones_like(own),
-            (joint, "given"): np.zeros_like(own),
+            (joint, term.name): _core.friction_basis(term.key, own, ())
+            for term in linear_terms(self.models[joint])
         }
-        if self.differs[joint]:
+        found[joint, "torque_offset"] = np.ones_like(own)
+        found[joint, "given"] = np.zeros_like(own)
+        if is_asymmetric(self.models[joint]):
             found[joint, DIFFERENCE] = np.abs(own)
         for motor in map(int, np.flatnonzero(robot.couplings[:, joint])):
             share, rotor = float(robot.couplings[motor, joint]), robot.rotor_inertias[motor]
             if robot.coupled[motor]:
-                found[motor, "motor_coulomb"] = share * np.sign(motors[motor])
-                found[motor, "motor_viscous"] = share * (motors[motor] - share * own)
+                for name, term in MOTOR_TERMS.items():
+                    basis = _core.friction_basis(term.key, motors[motor], ())
+                    of_joint = share * own if term.basis == VISCOUS.basis else 0.0
+                    found[motor, name] = share * (basis - of_joint)
             if rotor is not None:
                 found[joint, "given"] = found[joint, "given"] + rotor * share * change[motor]
             elif motor not in self.inertia.dropped:

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance import Balance, balance_of
-from jointid.robot.columns import MEANINGS
-from jointid.robot.decays import Decays
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
+from jointid.robot.shaped_terms import ShapedTerms
 from jointid.robot.shifts import torque_shift, without_delay
 from jointid.robot.stamps import on_even_clock
 
@@ -69,15 +68,14 @@ def predict_robot(estimate: RobotEstimate, recording: RobotRecording) -> RobotPr
 def _friction(estimate: RobotEstimate, balance: Balance) -> Array:
     """Integrals of friction, offsets and the rotors that the links' parameters do not contain."""
     joints = list(estimate.joints.values())
-    total = np.zeros(balance.rows.torque.size)
-    for place, (joint, name) in enumerate(balance.labels):
-        parameter = joints[joint].parameters.get(name)
-        if parameter is not None and name in MEANINGS:
-            total += parameter.value * balance.matrix[:, place]
-    for joint, found in enumerate(joints):
-        static = found.parameters.get("static")
-        if static is not None:
-            decays = Decays(balance=balance, joints=(joint,))
-            value, _ = decays.column(joint, found.parameters["stribeck"].value)
-            total[balance.places[joint]] += static.value * value
+    models = [joint.model for joint in joints]
+    values: dict[tuple[int | None, str], float] = {
+        (number, name): p.value
+        for number, joint in enumerate(joints)
+        for name, p in joint.parameters.items()
+    }
+    total = ShapedTerms.of(balance, models).torque(values)
+    for place in balance.columns_of(models):
+        if balance.labels[place] in values:
+            total += values[balance.labels[place]] * balance.matrix[:, place]
     return total

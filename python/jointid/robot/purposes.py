@@ -11,15 +11,15 @@ from jointid.identification.inference.covariance import Covariance
 from jointid.identification.inference.held import held_intervals
 from jointid.identification.inference.purposes import Torques, within
 from jointid.robot.balance import Balance
-from jointid.robot.columns import MEANINGS
 from jointid.robot.fit import Fit
+from jointid.robot.parameters import PARAMETERS, SHAPES
 from jointid.robot.result import RobotEstimate
 from jointid.robot.solving import time_segments
 
 Array = NDArray[np.float64]
 
 _OTHERS = frozenset(("torque_offset", "rotor_inertia", "inertia_scale"))
-FRICTION = frozenset(MEANINGS) - _OTHERS
+FRICTION = frozenset(PARAMETERS) - _OTHERS
 """Parameters of a joint that are friction."""
 
 
@@ -32,7 +32,7 @@ def held_of(balance: Balance, fit: Fit) -> dict[int, tuple[float, float]]:
         held = {
             number: float(fit.values[place])
             for number, place in enumerate(own)
-            if fit.at_bound[place] and fit.labels[place][1] != "stribeck"
+            if fit.at_bound[place] and fit.labels[place][1] not in SHAPES
         }
         mine = rows.joint == joint
         kept = [number for number, place in enumerate(own) if not fit.at_bound[place]]
@@ -64,12 +64,12 @@ def torques_of(
     weight = 1.0 / fit.scatter[rows.joint[mine]]
     columns = fit.jacobian[mine] * weight[:, None]
     friction = [place for place, label in enumerate(fit.labels) if label[1] in FRICTION]
-    linear = [place for place in friction if fit.labels[place][1] != "stribeck"]
+    linear = [place for place in friction if fit.labels[place][1] not in SHAPES]
     return Torques(
         single={
             name: float(np.linalg.norm(columns[:, place]))
             for place, name in enumerate(names)
-            if fit.labels[place][1] != "stribeck"
+            if fit.labels[place][1] not in SHAPES
         },
         friction=frozenset(names[place] for place in friction),
         of_friction=float(np.linalg.norm(columns[:, linear] @ fit.values[linear])),

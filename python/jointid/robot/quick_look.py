@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance import Balance, balance_of
-from jointid.robot.columns import DIFFERENCE
 from jointid.robot.inertia import URDF, basis_of, inertia_columns
+from jointid.robot.models import PLAIN
 from jointid.robot.motion import Motion
 from jointid.robot.products import Products
 from jointid.robot.robot import Robot
@@ -97,11 +97,7 @@ def looked_at(
         return None
     columns = inertia_columns(robot, mode)
     # A rotor's inertia that no motion separates from the links' would make the columns dependent.
-    kept = [
-        place
-        for place, (joint, name) in enumerate(balance.labels)
-        if name != DIFFERENCE and (name != "rotor_inertia" or joint not in columns.dropped)
-    ]
+    kept = balance.columns_of((PLAIN,) * robot.n, columns.dropped)
     wanted = rows.torque - columns.known(balance)
     table = np.column_stack([balance.matrix[:, kept], columns.columns(balance), wanted])
     products = Products.of([table[place] for place in balance.places], list(balance.places), rows)

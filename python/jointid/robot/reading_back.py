@@ -18,18 +18,20 @@ from jointid.estimate.json import (
 )
 from jointid.estimate.statistics import ResidualStatistics
 from jointid.problem.window_table import WindowTable
-from jointid.robot.columns import DIFFERENCE, MEANINGS
 from jointid.robot.cross_check import Compared, CrossCheck
 from jointid.robot.document import KIND, SCHEMA
 from jointid.robot.json_schema import ROBOT_ESTIMATE
 from jointid.robot.link_tree import LinkTree
-from jointid.robot.models import PLAIN, STRIBECK, modelled
+from jointid.robot.models import MODELS, is_asymmetric, terms_of
+from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS, PARAMETERS
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import torque_shift
 
-_ALWAYS = ("coulomb", "viscous", "torque_offset")
-_PAIRS = (("static", "stribeck"), ("motor_coulomb", "motor_viscous"))
+_OF_MODELS = {
+    DIFFERENCE,
+    *(name for model in MODELS for term in terms_of(model) for name in (term.name, *term.shapes)),
+}
 _TURNED = 1e-6  # by which a rotation may be none
 _SINGULAR = 1e9
 
@@ -175,18 +177,21 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
     place = f"joints.{name}"
     held = d["parameters"]
     for key, p in held.items():
-        if key not in MEANINGS:
-            yield f"{place}.parameters.{key}", f"known are {', '.join(MEANINGS)}"
+        if key not in PARAMETERS:
+            yield f"{place}.parameters.{key}", f"known are {', '.join(PARAMETERS)}"
         if p["name"] != key:
             yield f"{place}.parameters.{key}.name", "this is not the name of the entry"
-    for key in _ALWAYS:
+    terms = terms_of(d["model"])
+    for key in (*(term.name for term in terms if not term.shapes), "torque_offset"):
         if key not in held:
             yield f"{place}.parameters.{key}", "this is missing"
-    for pair in _PAIRS:
-        if len(held.keys() & set(pair)) == 1:
-            yield f"{place}.parameters", f"{' and '.join(pair)} go together"
-    has = modelled(STRIBECK if "static" in held else PLAIN, DIFFERENCE in held)
-    if d["model"] != has:
+    for group in (MOTOR_TERMS, *((term.name, *term.shapes) for term in terms)):
+        if 0 < len(held.keys() & set(group)) < len(group):
+            yield f"{place}.parameters", f"{' and '.join(group)} go together"
+    has = {name for term in terms for name in (term.name, *term.shapes)}
+    if is_asymmetric(d["model"]):
+        has.add(DIFFERENCE)
+    if held.keys() & _OF_MODELS != has:
         yield f"{place}.model", "it does not fit the parameters"
     windows = d["windows"]
     if windows is not None:

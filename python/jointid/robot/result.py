@@ -37,9 +37,9 @@ class RobotJoint:
     ----------
     name : str
     model : str
-        "coulomb_viscous" or "stribeck".
+        As "coulomb_viscous" or "stribeck:asymmetric".
     parameters : mapping of str to ParameterEstimate
-        At the joint: "coulomb", "viscous" and "torque_offset"; "static" and "stribeck" with the model "stribeck"; of
+        At the joint: those of its model, as "coulomb" and "viscous", and "torque_offset"; of
         a motor that turns with several joints "motor_coulomb" and "motor_viscous"; "rotor_inertia" where it is
         identified, "inertia_scale" with ``inertia="scaled"``.
     residuals : ResidualStatistics

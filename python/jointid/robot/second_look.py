@@ -1,7 +1,7 @@
 """The second look: a plain filtered least squares of inverse dynamics, and whether it finds the same values.
 
 It is the first thing that an expert does by hand, on the signals as they were given. Only stated facts, the zeros that
-were found and the shape of static friction are those of the identification.
+were found and the shapes of friction are those of the identification.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def looked_again(
     robot: Robot,
     mode: str,
     slowest: Array,
-    differs: Sequence[bool],
+    models: Sequence[str],
     delay: Array,
     other: Array,
 ) -> Looked:
@@ -72,16 +72,16 @@ def looked_again(
     mode : str
         Of the inertia.
     slowest : ndarray, shape (n,)
-        Speed of each joint below which static friction matters, or that a call leaves out.
-    differs : sequence of bool
-        Joints whose friction differs between the directions.
+        Speed of each joint below which its shaped term matters, or that a call leaves out.
+    models : sequence of str
+        One a joint.
     delay : ndarray, shape (n,)
         That a call states [s].
     other : ndarray, shape (n,)
         That the identification took away: where these rows cannot tell it from their own, values differ by so much.
     """
     columns = inertia_columns(robot, mode)
-    every = Columns(robot, columns, slowest, differs)
+    every = Columns(robot, columns, slowest, models)
     sources = [(False, list(signals))]
     if all(each.recorded is not None for each in signals):
         swapped = [replace(each, velocity=np.asarray(each.recorded)) for each in signals]

@@ -9,14 +9,14 @@ from jointid.base.error_text import printable
 from jointid.base.text_table import aligned
 from jointid.estimate.wording import number, percent, two_digits
 from jointid.joints.tables import value_with_error
-from jointid.robot.columns import MEANINGS
+from jointid.robot.parameters import PARAMETERS
 from jointid.robot.result import RobotEstimate
 
 
 def shown_parameters(estimate: RobotEstimate) -> list[str]:
     """Names of the parameters that some joint has, in the order of the table."""
     present = {name for joint in estimate.joints.values() for name in joint.parameters}
-    return [name for name in MEANINGS if name in present]
+    return [name for name in PARAMETERS if name in present]
 
 
 def head(estimate: RobotEstimate) -> list[str]:

@@ -19,6 +19,8 @@ from jointid.problem.magnitude import BETTER, CLEAR, is_magnitude, is_one_sided,
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.inertia import InertiaColumns
+from jointid.robot.models import PLAIN
+from jointid.robot.parameters import CONSTANT
 from jointid.robot.plain_motion import PlainSignals
 from jointid.robot.plain_regression import Block, Columns
 from jointid.robot.robot import Robot
@@ -118,7 +120,7 @@ def _blocks(
         start=np.ones(count),
     )
     other = replace(robot, rotor_inertias=(None,) * robot.n)
-    columns = Columns(other, links, np.zeros(robot.n), [False] * robot.n)
+    columns = Columns(other, links, np.zeros(robot.n), (PLAIN,) * robot.n)
     return columns.blocks(signals, *SETTINGS[0], np.zeros((robot.n, 1)))
 
 
@@ -227,7 +229,9 @@ def _unsigned(
         ),
         details="the joints move both ways, and the magnitude fits a torque that changes its sign"
         + (f"; it is so for {', '.join(names)}" if len(names) > 1 else ""),
-        parameters=() if len(folded) == robot.n else tuple(f"{name}.coulomb" for name in names),
+        parameters=()
+        if len(folded) == robot.n
+        else tuple(f"{name}.{CONSTANT.name}" for name in names),
         evidence={name: Measured(float(lowest[j])) for name, j in zip(names, folded, strict=True)},
     )
 
@@ -236,7 +240,7 @@ def _folded(block: Block) -> bool:
     """Whether a joint's rows are the magnitude of what the columns make, and not its value."""
     target = block.targets[:, 0]
     direction = block.matrix[
-        :, block.labels.index(next(e for e in block.labels if e[1] == "coulomb"))
+        :, block.labels.index(next(e for e in block.labels if e[1] == CONSTANT.name))
     ]
     if min(np.mean(direction > 0.5), np.mean(direction < -0.5)) < _BOTH:
         return False

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from jointid.robot.inertia import FREE, URDF
 from jointid.robot.motion import Motion
+from jointid.robot.parameters import LINEAR_FRICTION, MOTOR_TERMS
 from jointid.robot.quick_look import looked_at, thinned
 from jointid.robot.robot import Robot
 
@@ -26,7 +27,6 @@ _BETTER = (
 _BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
 _CLEARLY = 0.05  # by which it has to be better than the next
 _LEAST = 0.01  # of a motor's torque: less residual does not decide
-_FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _SLOW = 0.02  # of a peak speed: standing still, for a quick look
 
 
@@ -160,7 +160,7 @@ def _look(robot: Robot, motions: Sequence[Motion], duration: float, mode: str) -
         return None
     couplings = robot.couplings if motions[0].at_motor else np.eye(robot.n)
     residual, torque = look.of_motors(couplings)
-    held = sum(name in _FRICTION for _, name in look.held)
+    held = sum(name in (*LINEAR_FRICTION, *MOTOR_TERMS) for _, name in look.held)
     return _Looked(residual=residual, torque=torque, held=held)
 
 

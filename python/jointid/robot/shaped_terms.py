@@ -1,66 +1,109 @@
-"""Static friction above Coulomb friction, and how fast it decays with speed: the only nonlinear parameters.
+"""Friction with a shape parameter, as static friction that decays with speed: the only nonlinear parameters.
 
 All linear parameters are eliminated (variable projection: Golub and Pereyra 1973; its derivative as by Kaufman 1975).
-Each joint's decay starts where a grid of decays explains most of what the other terms leave.
+Each joint's shape starts where a grid of shapes explains most of what the other terms leave.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.identification.search.computed_bounds import shape_bounds
 from jointid.robot.balance import Balance
+from jointid.robot.columns import interval_means
+from jointid.robot.models import shaped_term
+from jointid.robot.parameters import least_of
 from jointid.robot.products import Products, powers, weighted
 from jointid.robot.solving import Known, Solution, bounded, scatter_of, solved
 
 Array = NDArray[np.float64]
 
-_GRID = 16  # decays, from the fastest to the slowest
+_GRID = 16  # shapes, from the lowest to the highest
 _STEPS = 12
-_SETTLED = 1e-5  # of the misfit, and of the logarithm of a decay
+_SETTLED = 1e-5  # of the misfit, and of the logarithm of a shape
 _LONGEST = 1.0  # step of a logarithm
 _HALVINGS = 6
+_APART = 1e-5  # of logarithms on both sides of a shape, for a slope
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Decays:
-    """Columns of the static friction of some joints.
+class ShapedTerms:
+    """Columns of the terms with a shape parameter of some joints.
 
     Attributes
     ----------
     balance : Balance
-    joints : tuple of int
+    terms : mapping of int to Term
+        By joint.
     """
 
     balance: Balance
-    joints: tuple[int, ...]
+    terms: Mapping[int, _core.Term]
 
-    def column(self, joint: int, decay: float) -> tuple[Array, Array]:
-        """Integrals of ``sgn(v) exp(-decay v²)`` over a joint's rows, and their derivative by the decay's logarithm."""
+    @classmethod
+    def of(cls, balance: Balance, models: Sequence[str]) -> Self:
+        """Return those of joints with these models."""
+        found = {joint: shaped_term(model) for joint, model in enumerate(models)}
+        return cls(balance=balance, terms={j: term for j, term in found.items() if term})
+
+    @property
+    def joints(self) -> tuple[int, ...]:
+        """Joints that have such a term."""
+        return tuple(self.terms)
+
+    def column(self, joint: int, shape: float) -> Array:
+        """Integrals of the basis over a joint's rows."""
+        return self._integrals(joint, lambda velocity: self._basis(joint, velocity, shape))
+
+    def slope(self, joint: int, shape: float) -> Array:
+        """Derivative of the column by the shape's logarithm."""
+
+        def of(velocity: Array) -> Array:
+            low, high = (
+                self._basis(joint, velocity, shape * float(np.exp(apart)))
+                for apart in (-_APART, _APART)
+            )
+            return (high - low) / (2.0 * _APART)
+
+        return self._integrals(joint, of)
+
+    def _basis(self, joint: int, velocity: Array, shape: float) -> Array:
+        return _core.friction_basis(self.terms[joint].key, velocity, [shape])
+
+    def _integrals(self, joint: int, of: Callable[[Array], Array]) -> Array:
         found = []
         for number, summing in enumerate(self.balance.summings):
-            mine = self.balance.windows_of(joint, number)
-            speed = summing.velocity[joint]
-            exponent = decay * speed * speed
-            excess = np.sign(speed) * np.exp(-exponent)
-            parts = [
-                summing(joint, _between(each, speed) * summing.step)[mine]
-                for each in (excess, -exponent * excess)
-            ]
-            found.append(np.array(parts))
-        value, slope = np.concatenate(found, axis=1)
-        return value, slope
+            velocity = summing.velocity[joint]
+            whole = summing(joint, interval_means(of(velocity), velocity) * summing.step)
+            found.append(whole[self.balance.windows_of(joint, number)])
+        return np.concatenate(found)
+
+    def torque(self, values: Mapping[tuple[int | None, str], float]) -> Array:
+        """Integrals over all rows with these values of the joints' parameters."""
+        total = np.zeros(self.balance.rows.torque.size)
+        for joint, term in self.terms.items():
+            column = self.column(joint, values[joint, term.shapes[0]])
+            total[self.balance.places[joint]] += values[joint, term.name] * column
+        return total
 
     def bounds(self, joint: int) -> tuple[float, float]:
-        """Slowest and fastest decay that the joint's speeds show."""
+        """Lowest and highest shape that the joint's speeds show."""
         peak = max(
             float(np.abs(summing.velocity[joint]).max()) for summing in self.balance.summings
         )
-        return shape_bounds("stribeck", peak or 1.0)  # a joint that never moves shows none
+        # A joint that never moves shows none.
+        return shape_bounds(self.terms[joint].shapes[0], peak or 1.0)
+
+    @property
+    def least(self) -> Array:
+        """Lower bounds of the coefficients."""
+        return np.array([least_of(term) for term in self.terms.values()])
 
     @property
     def norms(self) -> Array:
@@ -74,30 +117,20 @@ class Decays:
         )
 
 
-def _between(signal: Array, velocity: Array) -> Array:
-    """Means over the intervals; within a reversal by the share of time on each side, as `direction_integrals`."""
-    speed = np.abs(velocity)
-    before, after = signal[:-1], signal[1:]
-    total = speed[:-1] + speed[1:]
-    share = speed[:-1] / np.where(total > 0.0, total, 1.0)
-    turned = before * after < 0.0
-    return np.where(turned, share * before + (1.0 - share) * after, 0.5 * (before + after))
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DecaySolution:
-    """A solution with decays.
+class ShapedSolution:
+    """A solution with shapes.
 
     Attributes
     ----------
     solution : Solution
-        Its values: the fixed columns', then the static friction of each joint, as scaled.
+        Its values: the fixed columns', then the coefficient of each joint's shaped term, as scaled.
     logs : ndarray
-        Logarithms of the decays.
+        Logarithms of the shapes.
     at_bound : ndarray of bool
-        Decays at a bound of their range, or of no static friction.
+        Shapes at a bound of their range, or of a term that a bound holds at 0.
     sums : ndarray
-        Products with the columns of static friction, by stretch and joint.
+        Products with the columns of shaped terms, by stretch and joint.
     """
 
     solution: Solution
@@ -106,40 +139,40 @@ class DecaySolution:
     sums: Array
 
 
-def solved_with_decays(
-    decays: Decays,
+def solved_with_shapes(
+    shaped: ShapedTerms,
     products: Products,
     least: Array,
     known: Known,
     start: Sequence[float] | None = None,
-) -> DecaySolution:
-    """Return the best values of linear parameters and decays.
+) -> ShapedSolution:
+    """Return the best values of linear parameters and shapes.
 
     Parameters
     ----------
-    decays : Decays
+    shaped : ShapedTerms
     products : Products
         Of the fixed columns.
     least : ndarray, shape (parameters,)
     known : Known
         Of the fixed columns' parameters beforehand.
     start : sequence of float, optional
-        Logarithms of the decays to begin with. Default: from a grid.
+        Logarithms of the shapes to begin with. Default: from a grid.
     """
     plain = solved(products, least, known)
-    if not decays.joints:
+    if not shaped.joints:
         nothing = np.zeros(0)
-        return DecaySolution(
+        return ShapedSolution(
             solution=plain, logs=nothing, at_bound=nothing.astype(bool), sums=products.sums
         )
     search = _Search(
-        decays=decays,
+        shaped=shaped,
         products=products,
-        norms=decays.norms,
-        bounds=np.log([decays.bounds(joint) for joint in decays.joints]).reshape(-1, 2),
-        least=np.append(least, np.zeros(len(decays.joints))),
-        known=known.padded(len(decays.joints)).scaled(
-            np.concatenate([products.norms[:-1], decays.norms, products.norms[-1:]])
+        norms=shaped.norms,
+        bounds=np.log([shaped.bounds(joint) for joint in shaped.joints]).reshape(-1, 2),
+        least=np.append(least, shaped.least),
+        known=known.padded(len(shaped.joints)).scaled(
+            np.concatenate([products.norms[:-1], shaped.norms, products.norms[-1:]])
         ),
     )
     low, high = search.bounds.T
@@ -151,7 +184,7 @@ def solved_with_decays(
         if np.all(np.abs(scatter - before) <= 0.01 * before):
             break
     ended = (logs <= low) | (logs >= high) | at.held[products.columns :]
-    return DecaySolution(
+    return ShapedSolution(
         solution=Solution(values=at.values, at_bound=at.held, scatter=scatter),
         logs=logs,
         at_bound=ended,
@@ -161,7 +194,7 @@ def solved_with_decays(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _At:
-    """The fit at some decays."""
+    """The fit at some shaped."""
 
     misfit: float
     values: Array
@@ -173,9 +206,9 @@ class _At:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Search:
-    """Gauss-Newton on the logarithms of the decays, all linear parameters eliminated."""
+    """Gauss-Newton on the logarithms of the shapes, all linear parameters eliminated."""
 
-    decays: Decays
+    shaped: ShapedTerms
     products: Products
     norms: Array
     bounds: Array
@@ -183,12 +216,14 @@ class _Search:
     known: Array
 
     def sums(self, logs: Array, *, slopes: bool) -> Array:
-        """Products with the columns of static friction; their slopes, if asked for, stand behind all of them."""
-        count, first = len(self.decays.joints), self.products.columns
+        """Products with the columns of shaped terms; their slopes, if asked for, stand behind all of them."""
+        count, first = len(self.shaped.joints), self.products.columns
         added = {}
-        for place, joint in enumerate(self.decays.joints):
-            value, slope = self.decays.column(joint, float(np.exp(logs[place])))
-            both = (value, slope) if slopes else (value,)
+        for place, joint in enumerate(self.shaped.joints):
+            shape = float(np.exp(logs[place]))
+            both = [self.shaped.column(joint, shape)]
+            if slopes:
+                both.append(self.shaped.slope(joint, shape))
             added[joint] = np.column_stack(both) / self.norms[place]
         found = self.products.with_columns(added)
         if not slopes:
@@ -204,15 +239,15 @@ class _Search:
         return found[:, :, order[:, None], order]
 
     def from_grid(self, plain: Solution) -> Array:
-        """The decay of each joint that explains most of the residual of everything else."""
+        """The shape of each joint that explains most of the residual of everything else."""
         whole = self.products.sums.sum(axis=0)
         gram = weighted(whole, plain.scatter)[:-1, :-1]
         inverse = np.linalg.pinv(gram, rcond=1e-12, hermitian=True)
-        logs = np.empty(len(self.decays.joints))
-        for place, joint in enumerate(self.decays.joints):
+        logs = np.empty(len(self.shaped.joints))
+        for place, joint in enumerate(self.shaped.joints):
             grid = np.linspace(self.bounds[place, 0], self.bounds[place, 1], _GRID)
             columns = np.column_stack(
-                [self.decays.column(joint, float(np.exp(each)))[0] for each in grid]
+                [self.shaped.column(joint, float(np.exp(each))) for each in grid]
             )
             block, size = self.products.blocks[joint], plain.scatter[joint] ** 2
             across = block[:, :-1].T @ columns / size
@@ -224,8 +259,8 @@ class _Search:
         return logs
 
     def at(self, logs: Array, scatter: Array) -> _At:
-        """The fit at some decays, and how the misfit changes with them."""
-        count, first = len(self.decays.joints), self.products.columns
+        """The fit at some shapes, and how the misfit changes with them."""
+        count, first = len(self.shaped.joints), self.products.columns
         by_joint = self.sums(logs, slopes=True).sum(axis=0)
         linear = np.append(np.arange(first + count), by_joint.shape[-1] - 1)
         slopes = first + count + np.arange(count)
@@ -233,12 +268,12 @@ class _Search:
         product = whole[np.ix_(linear, linear)] + self.known
         values, held = bounded(product, self.least)
         full = np.append(values, -1.0)
-        static = values[first:]
+        sizes = values[first:]
         # The residual's products with the derivatives, and what of these the linear parameters cannot follow.
-        pushed = -(whole[np.ix_(slopes, linear)] @ full) * static
+        pushed = -(whole[np.ix_(slopes, linear)] @ full) * sizes
         free = np.flatnonzero(~held)
-        across = whole[np.ix_(slopes, free)] * static[:, None]
-        curvature = whole[np.ix_(slopes, slopes)] * np.outer(static, static)
+        across = whole[np.ix_(slopes, free)] * sizes[:, None]
+        curvature = whole[np.ix_(slopes, slopes)] * np.outer(sizes, sizes)
         inverse = np.linalg.pinv(product[np.ix_(free, free)], rcond=1e-12, hermitian=True)
         return _At(
             misfit=float(full @ product @ full),
@@ -252,7 +287,7 @@ class _Search:
         )
 
     def searched(self, logs: Array, scatter: Array) -> tuple[Array, _At]:
-        """The best decays with these weights."""
+        """The best shapes with these weights."""
         low, high = self.bounds.T
         now = self.at(logs, scatter)
         for _ in range(_STEPS):
