@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -43,8 +44,9 @@ def recording(
     duration: float = 12.0,
     seed: int = 0,
     names: tuple[str, ...] = ("shoulder", "elbow"),
+    friction: Callable[[Array], Array] | None = None,
 ) -> jid.RobotRecording:
-    """At 1 kHz, with 0.02 N·m of noise on the torques."""
+    """At 1 kHz, with 0.02 N·m of noise on the torques; `friction` of both speeds instead of ours."""
     import pinocchio
 
     model = pinocchio.buildModelFromUrdf(str(path))
@@ -58,6 +60,7 @@ def recording(
     a = -np.einsum("jk,jkn->nj", sizes * rates**2, np.sin(phases))
     torque = np.array([pinocchio.rnea(model, state, *each) for each in zip(q, v, a, strict=True)])
     dry = COULOMB * (1.0 + static * np.exp(-100.0 * v**2))
-    torque = torque + ROTOR * a + dry * np.sign(v) + VISCOUS * v
+    of_speed = dry * np.sign(v) + VISCOUS * v if friction is None else friction(v)
+    torque = torque + ROTOR * a + of_speed
     torque += np.random.default_rng(seed).normal(scale=0.02, size=torque.shape)
     return jid.RobotRecording(time=time, position=q, torque=torque, names=names)

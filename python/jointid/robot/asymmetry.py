@@ -12,7 +12,7 @@ from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.robot.attempt import Attempt
 from jointid.robot.finding_types import TYPES, titled
 from jointid.robot.looked_rows import LookedRows
-from jointid.robot.models import AUTO, modelled
+from jointid.robot.models import AUTO, modelled, terms_of
 from jointid.robot.parameters import DIFFERENCE, VISCOUS
 
 _SURE = 6.0  # standard errors
@@ -25,7 +25,8 @@ def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
     """Findings of joints whose viscous friction clearly differs between the directions."""
     rows = LookedRows(attempt.balance, attempt.fit, attempt.looks)
     for joint, (name, found) in enumerate(attempt.estimate.joints.items()):
-        if DIFFERENCE in found.parameters:
+        keys = [term.key for term in terms_of(found.model)]
+        if DIFFERENCE in found.parameters or VISCOUS.key not in keys:
             continue
         place = attempt.balance.labels.index((joint, DIFFERENCE))
         share = rows.share(attempt.balance.matrix[rows.kept, place, None])
@@ -33,16 +34,14 @@ def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
         left = float(rows.residual[mine] @ rows.residual[mine]) or 1.0
         explained = share.share * float(rows.residual @ rows.residual) / left
         value, error = float(share.values[0]), float(share.errors[0])
-        viscous = found.parameters.get(VISCOUS.name)
-        if viscous is None:
-            continue
-        unit, large = viscous.unit, abs(value) > max(_SURE * error, _LARGE * viscous.value)
+        viscous, unit = found.parameters[VISCOUS.name].value, found.parameters[VISCOUS.name].unit
+        large = abs(value) > max(_SURE * error, _LARGE * viscous)
         if not (np.isfinite(error) and large):
             continue
         if share.certainty > _BETTER and explained > _EXPLAINED:
             size = f"{rounded(2.0 * abs(value), 2.0 * error)} ± {two_digits(2.0 * error)} {unit}"
             yield TYPES["asymmetric_friction"].finding(
-                titled(f"viscous friction of {name} differs between the directions", size),
+                titled(f"{VISCOUS.meaning} of {name} differs between the directions", size),
                 Action("call", {"model": modelled(AUTO, True)}, function="identify_robot"),
                 details=f"the difference is {size}; it explains {percent(explained)} of the joint's squared residual "
                 "in motion that was held out",
