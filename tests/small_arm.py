@@ -60,7 +60,7 @@ def recording(
     a = -np.einsum("jk,jkn->nj", sizes * rates**2, np.sin(phases))
     torque = np.array([pinocchio.rnea(model, state, *each) for each in zip(q, v, a, strict=True)])
     dry = COULOMB * (1.0 + static * np.exp(-100.0 * v**2))
-    of_speed = dry * np.sign(v) + VISCOUS * v if friction is None else friction(v)
-    torque = torque + ROTOR * a + of_speed
+    torque = torque + ROTOR * a
+    torque = torque + dry * np.sign(v) + VISCOUS * v if friction is None else torque + friction(v)
     torque += np.random.default_rng(seed).normal(scale=0.02, size=torque.shape)
     return jid.RobotRecording(time=time, position=q, torque=torque, names=names)

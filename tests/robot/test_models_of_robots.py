@@ -31,7 +31,7 @@ OTHERS = [model.name for model in _core.models() if model.name not in MODELS]
 
 def truth(model: str) -> dict[str, float]:
     """Of the second joint: each term makes 1.5 N·m at the speed at which it is largest."""
-    found = {}
+    found: dict[str, float] = {}
     for term in terms(model):
         shapes = [float(np.sqrt(np.prod(shape_bounds(name, PEAK)))) for name in term.shapes]
         largest = np.abs(_core.friction_basis(term.key, SPEEDS, shapes)).max()

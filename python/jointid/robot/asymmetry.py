@@ -9,10 +9,11 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, rounded, two_digits
+from jointid.joint.model import AUTO
 from jointid.robot.attempt import Attempt
 from jointid.robot.finding_types import TYPES, titled
 from jointid.robot.looked_rows import LookedRows
-from jointid.robot.models import AUTO, modelled, terms_of
+from jointid.robot.models import modelled, terms_of
 from jointid.robot.parameters import DIFFERENCE, VISCOUS
 
 _SURE = 6.0  # standard errors

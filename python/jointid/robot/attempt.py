@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
+from jointid.joint.model import AUTO
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.asked import duration_of
 from jointid.robot.balance import Balance, balance_of
@@ -17,7 +18,7 @@ from jointid.robot.choice import certainty, with_shapes
 from jointid.robot.conclusion import concluded
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import basis_of, inertia_columns
-from jointid.robot.models import AUTO, PLAIN, SHAPED, is_asymmetric, modelled, name_of
+from jointid.robot.models import PLAIN, SHAPED, is_asymmetric, modelled, name_of
 from jointid.robot.motion import Motion, part_of
 from jointid.robot.products import Products
 from jointid.robot.resampling import RobotDraws

@@ -12,13 +12,12 @@ from jointid.robot.columns import Column, Summing, linear_columns, rotor_values
 from jointid.robot.integrals import Windows, inertia_integrals, torque_integrals
 from jointid.robot.models import is_asymmetric, terms_of
 from jointid.robot.motion import Motion
-from jointid.robot.parameters import DIFFERENCE, LINEAR_TERMS
+from jointid.robot.parameters import DIFFERENCE
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-_BY_MODEL = frozenset((*LINEAR_TERMS, DIFFERENCE))
 _LEAST = 0.2  # of a window that has to be usable
 
 
@@ -60,7 +59,7 @@ class Balance:
     labels : tuple of (int, str)
         Joint and name of each parameter of `matrix`.
     keys : tuple of str
-        Of their terms in the core's table, or the names.
+        Of their terms in the core's table; empty of what every joint has.
     least : ndarray
         Their lower bounds.
     matrix : ndarray, shape (rows, parameters)
@@ -96,13 +95,12 @@ class Balance:
 
     def columns_of(self, models: Sequence[str], dropped: Collection[int] = ()) -> list[int]:
         """Return the places of the columns of joints with these models, without the inertia of some rotors."""
-        friction = [{term.key for term in terms_of(model)} for model in models]
-        for joint, model in enumerate(models):
-            friction[joint] |= {DIFFERENCE} if is_asymmetric(model) else set()
+        friction = [{"", *(term.key for term in terms_of(model))} for model in models]
         return [
             place
             for place, ((joint, name), key) in enumerate(zip(self.labels, self.keys, strict=True))
-            if (key not in _BY_MODEL or key in friction[joint])
+            if key in friction[joint]
+            and (name != DIFFERENCE or is_asymmetric(models[joint]))
             and (name != "rotor_inertia" or joint not in dropped)
         ]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.robot.integrals import Windows, direction_integrals
+from jointid.robot.integrals import Windows, direction_integrals, interval_means
 from jointid.robot.motion import Motion
 from jointid.robot.parameters import (
     CONSTANT,
@@ -35,7 +35,7 @@ class Column:
         Whose parameter it is.
     name : str
     key : str
-        Of the term in the core's table, or the name.
+        Of the term in the core's table; empty of what every joint has.
     least : float
         The lower bound: 0 of what cannot be negative.
     values : mapping of int to ndarray, shape (windows,)
@@ -44,8 +44,8 @@ class Column:
 
     joint: int
     name: str
-    key: str
     values: Mapping[int, Array]
+    key: str = ""
     least: float = field(default=-np.inf)
 
 
@@ -98,35 +98,24 @@ def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Colum
             found += _of_motor(joint, robot, motion, summing)
         if robot.rotor_inertias[joint] is None:
             values = rotor_values(joint, robot, motion, summing)
-            found.append(_column(joint, "rotor_inertia", values, least=0.0))
+            found.append(Column(joint=joint, name="rotor_inertia", values=values, least=0.0))
     return found
-
-
-def _column(
-    joint: int, name: str, values: Mapping[int, Array], *, key: str = "", least: float = -np.inf
-) -> Column:
-    return Column(joint=joint, name=name, key=key or name, values=values, least=least)
 
 
 def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
     velocity, travel = motion.velocity[joint], np.diff(motion.position[joint])
 
-    def of(intervals: Array) -> dict[int, Array]:
-        return {joint: summing(joint, intervals)}
+    def column(name: str, intervals: Array, key: str = "", least: float = -np.inf) -> Column:
+        values = {joint: summing(joint, intervals)}
+        return Column(joint=joint, name=name, key=key, values=values, least=least)
 
     return [
         *(
-            _column(
-                joint,
-                term.name,
-                of(_integrals(term, velocity, travel, summing.step)),
-                key=key,
-                least=least_of(term),
-            )
-            for key, term in LINEAR_TERMS.items()
+            column(t.name, _integrals(t, velocity, travel, summing.step), key, least_of(t))
+            for key, t in LINEAR_TERMS.items()
         ),
-        _column(joint, DIFFERENCE, of(np.abs(travel))),
-        _column(joint, "torque_offset", of(summing.step)),
+        column(DIFFERENCE, np.abs(travel)),
+        column("torque_offset", summing.step),
     ]
 
 
@@ -137,11 +126,10 @@ def _of_motor(motor: int, robot: Robot, motion: Motion, summing: Summing) -> lis
         whole = _integrals(term, motion.motor_velocity[motor], travel, summing.step)
         values = {}
         for joint in map(int, np.flatnonzero(row)):
-            own = (
-                row[joint] * np.diff(motion.position[joint]) if term.basis == VISCOUS.basis else 0.0
-            )
-            values[joint] = row[joint] * summing(joint, whole - own)
-        found.append(_column(motor, name, values, least=least_of(term)))
+            own = row[joint] * np.diff(motion.position[joint])
+            beyond = whole - own if term.basis == VISCOUS.basis else whole
+            values[joint] = row[joint] * summing(joint, beyond)
+        found.append(Column(joint=motor, name=name, values=values, least=least_of(term)))
     return found
 
 
@@ -152,16 +140,6 @@ def _integrals(term: _core.Term, velocity: Array, travel: Array, step: Array) ->
     if term.basis == VISCOUS.basis:
         return travel
     return interval_means(_core.friction_basis(term.key, velocity, ()), velocity) * step
-
-
-def interval_means(signal: Array, velocity: Array) -> Array:
-    """Means over the intervals; within a reversal by the share of time on each side, as `direction_integrals`."""
-    speed = np.abs(velocity)
-    before, after = signal[:-1], signal[1:]
-    total = speed[:-1] + speed[1:]
-    share = speed[:-1] / np.where(total > 0.0, total, 1.0)
-    turned = before * after < 0.0
-    return np.where(turned, share * before + (1.0 - share) * after, 0.5 * (before + after))
 
 
 def rotor_values(motor: int, robot: Robot, motion: Motion, summing: Summing) -> dict[int, Array]:

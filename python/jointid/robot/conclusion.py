@@ -53,9 +53,9 @@ def concluded(
             )
             base[name] = p
         else:
-            of_name = facts[joint][name]
-            unit = of_name.units[robot.tree.prismatic[joint]]
-            p = _parameter(name, of_name.meaning, unit, fit, number, place, covariance)
+            meaning, *units = facts[joint][name]
+            unit = units[robot.tree.prismatic[joint]]
+            p = _parameter(name, meaning, unit, fit, number, place, covariance)
             if number in held:
                 p = replace(p, interval=held[number])
             of_joints[joint][name] = p

@@ -145,9 +145,9 @@ def cross_checked(
 def _past_shape(joint: RobotJoint) -> float:
     """The speed past which a joint's shaped term is gone; infinite where it never is."""
     term = shaped_term(joint.model)
-    value = joint.parameters[term.shapes[0]].value if term else 0.0
-    if term is None or not value > 0.0:
+    if term is None:
         return 0.0
+    value = joint.parameters[term.shapes[0]].value
     power = _core.shape(term.shapes[0]).speed_power
     speed = _PAST * value ** (1.0 / power) if power else np.inf
     return float(speed) if _core.friction_basis(term.key, [speed], [value])[0] < _GONE else np.inf

@@ -120,3 +120,13 @@ def direction_integrals(velocity: Array, step: Array) -> Array:
     speed = np.abs(before) + np.abs(after)
     share = (before + after) / np.where(speed > 0.0, speed, 1.0)
     return np.where(before * after < 0.0, share, 0.5 * (np.sign(before) + np.sign(after))) * step
+
+
+def interval_means(signal: Array, velocity: Array) -> Array:
+    """Means over the intervals; within a reversal by the share of time on each side, as `direction_integrals`."""
+    speed = np.abs(velocity)
+    before, after = signal[:-1], signal[1:]
+    total = speed[:-1] + speed[1:]
+    share = speed[:-1] / np.where(total > 0.0, total, 1.0)
+    turned = before * after < 0.0
+    return np.where(turned, share * before + (1.0 - share) * after, 0.5 * (before + after))

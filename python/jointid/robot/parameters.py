@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from jointid import _core
@@ -21,42 +19,42 @@ MOTOR_TERMS = {f"motor_{term.name}": term for term in linear_terms(PLAIN)}
 """Friction of a motor that turns with several joints."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ParameterFacts:
-    """What a table says of a parameter: its meaning, and its units of a hinge and of a slide."""
+def parameter_facts(*models: str) -> dict[str, tuple[str, str, str]]:
+    """Return what each parameter of a joint with one of these models means, and its unit of a hinge and of a slide.
 
-    meaning: str
-    units: tuple[str, str]
-
-
-def _facts(row: _core.Term | _core.Shape, meaning: str) -> ParameterFacts:
-    return ParameterFacts(meaning=meaning, units=(row.unit, row.unit_prismatic))
-
-
-def parameter_facts(*models: str) -> dict[str, ParameterFacts]:
-    """Return the facts of all parameters that a joint with one of these models can have, in the order of tables."""
+    In the order of tables.
+    """
     keys = {term.key for model in models for term in terms_of(model)}
-    found: dict[str, ParameterFacts] = {}
+    found: dict[str, tuple[str, str, str]] = {}
     for term in _core.terms():
         if term.key in keys:
             others = ", the other joints at rest" if term.basis == VISCOUS.basis else ""
             found.setdefault(term.name, _facts(term, f"{term.meaning}{others}"))
-            for name in term.shapes:
-                found.setdefault(name, _facts(_core.shape(name), _core.shape(name).meaning))
+            for shape in map(_core.shape, term.shapes):
+                found.setdefault(shape.name, _facts(shape, shape.meaning))
     more = f"half of what {VISCOUS.meaning} is more in the positive than in the negative direction"
-    found[DIFFERENCE] = _facts(VISCOUS, more)
-    for name, term in MOTOR_TERMS.items():
-        found[name] = _facts(term, f"{term.meaning} of the motor, on its own speed")
-    found["torque_offset"] = _facts(CONSTANT, "constant torque")
-    rotor = "inertia of the motor and its gear, at the joint"
-    found["rotor_inertia"] = ParameterFacts(meaning=rotor, units=("kg·m²", "kg"))
     scale = "factor on all inertial parameters of the link that the joint moves"
-    found["inertia_scale"] = ParameterFacts(meaning=scale, units=("", ""))
-    return found
+    return {
+        **found,
+        DIFFERENCE: _facts(VISCOUS, more),
+        **{
+            name: _facts(term, f"{term.meaning} of the motor, on its own speed")
+            for name, term in MOTOR_TERMS.items()
+        },
+        "torque_offset": _facts(CONSTANT, "constant torque"),
+        "rotor_inertia": ("inertia of the motor and its gear, at the joint", "kg·m²", "kg"),
+        "inertia_scale": (scale, "", ""),
+    }
+
+
+def _facts(row: _core.Term | _core.Shape, meaning: str) -> tuple[str, str, str]:
+    return meaning, row.unit, row.unit_prismatic
 
 
 PARAMETERS = tuple(parameter_facts(*MODELS))
 """Names of a joint's parameters, in the order of tables."""
+FRICTION = frozenset(PARAMETERS) - {"torque_offset", "rotor_inertia", "inertia_scale"}
+"""Those that are friction."""
 SHAPES = frozenset(name for model in MODELS for term in terms_of(model) for name in term.shapes)
 LINEAR_FRICTION = tuple(dict.fromkeys(term.name for term in LINEAR_TERMS.values()))
 """Names of a joint's friction without shape parameters."""

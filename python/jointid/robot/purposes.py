@@ -12,15 +12,11 @@ from jointid.identification.inference.held import held_intervals
 from jointid.identification.inference.purposes import Torques, within
 from jointid.robot.balance import Balance
 from jointid.robot.fit import Fit
-from jointid.robot.parameters import PARAMETERS, SHAPES
+from jointid.robot.parameters import FRICTION, SHAPES
 from jointid.robot.result import RobotEstimate
 from jointid.robot.solving import time_segments
 
 Array = NDArray[np.float64]
-
-_OTHERS = frozenset(("torque_offset", "rotor_inertia", "inertia_scale"))
-FRICTION = frozenset(PARAMETERS) - _OTHERS
-"""Parameters of a joint that are friction."""
 
 
 def held_of(balance: Balance, fit: Fit) -> dict[int, tuple[float, float]]:

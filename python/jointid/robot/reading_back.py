@@ -22,16 +22,12 @@ from jointid.robot.cross_check import Compared, CrossCheck
 from jointid.robot.document import KIND, SCHEMA
 from jointid.robot.json_schema import ROBOT_ESTIMATE
 from jointid.robot.link_tree import LinkTree
-from jointid.robot.models import MODELS, is_asymmetric, terms_of
-from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS, PARAMETERS
+from jointid.robot.models import is_asymmetric, terms_of
+from jointid.robot.parameters import DIFFERENCE, FRICTION, MOTOR_TERMS, PARAMETERS
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import torque_shift
 
-_OF_MODELS = {
-    DIFFERENCE,
-    *(name for model in MODELS for term in terms_of(model) for name in (term.name, *term.shapes)),
-}
 _TURNED = 1e-6  # by which a rotation may be none
 _SINGULAR = 1e9
 
@@ -191,7 +187,7 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
     has = {name for term in terms for name in (term.name, *term.shapes)}
     if is_asymmetric(d["model"]):
         has.add(DIFFERENCE)
-    if held.keys() & _OF_MODELS != has:
+    if held.keys() & (FRICTION - MOTOR_TERMS.keys()) != has:
         yield f"{place}.model", "it does not fit the parameters"
     windows = d["windows"]
     if windows is not None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from jointid.estimate.objections import EXPLAINED, Objection, explained_text, held_on_bounds
 from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
-from jointid.robot.purposes import FRICTION
+from jointid.robot.parameters import FRICTION
 from jointid.robot.result import RobotEstimate
 
 _COMPENSATED = FRICTION | {"torque_offset"}
