@@ -194,7 +194,7 @@ def solved_with_shapes(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _At:
-    """The fit at some shaped."""
+    """The fit at some shapes."""
 
     misfit: float
     values: Array
