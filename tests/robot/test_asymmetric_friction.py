@@ -78,6 +78,20 @@ def test_it_is_saved_predicted_and_drawn(
     assert found.bootstrap(20).parameters["elbow.viscous_difference"].interval is not None
 
 
+def test_a_difference_below_0_is_drawn_anew(path: Path) -> None:
+    run = recording(path, duration=6.0)
+    fields = run.fields()
+    speed = np.gradient(run.position, run.time, axis=0)
+    fields["torque"] = fields["torque"] - DIFFERENCE * np.abs(speed) * [0.0, 1.0]
+    model = {"elbow": "coulomb_viscous:asymmetric"}
+    found = jid.identify_robot(jid.RobotRecording(**fields), jid.Robot.from_urdf(path), model=model)
+    assert found.joints["elbow"].parameters["viscous_difference"].min == -np.inf
+    drawn = found.bootstrap(20).parameters["elbow.viscous_difference"]
+    assert drawn.interval is not None
+    assert drawn.interval[0] < -DIFFERENCE * 0.95 < drawn.interval[1] + 0.05
+    assert not drawn.near_bound
+
+
 def test_a_urdf_has_no_place_for_it(path: Path, found: jid.RobotEstimate, tmp_path: Path) -> None:
     target = tmp_path / "arm.urdf"
     with pytest.raises(jid.InputError, match="elbow has friction that differs"):
