@@ -9,7 +9,7 @@ from jointid.base.error_text import printable
 from jointid.estimate.answers import cut, findings, in_line, joint_lines, purposes
 from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
-from jointid.robot.parameters import LINEAR_FRICTION
+from jointid.robot.parameters import JOINT_FRICTION
 from jointid.robot.result import RobotEstimate
 
 _FINDINGS = 1
@@ -63,7 +63,7 @@ def _joints(estimate: RobotEstimate, models: Mapping[str, str]) -> list[str]:
     if estimate.verdict.level == "not usable":
         joints.sort(key=lambda joint: -joint.relative_residual)
     present = {name for joint in joints for name in joint.parameters}
-    shown = [name for name in LINEAR_FRICTION if name in present]
+    shown = [name for name in JOINT_FRICTION if name in present]
     return joint_lines(
         [
             [

@@ -15,14 +15,14 @@ from jointid.estimate.wording import number, percent
 from jointid.robot.attempt import Asked, Attempt
 from jointid.robot.finding_types import TYPES
 from jointid.robot.models import shaped_term
-from jointid.robot.parameters import LINEAR_FRICTION
+from jointid.robot.parameters import JOINT_FRICTION
 from jointid.robot.plain_motion import PlainSignals
 from jointid.robot.result import RobotJoint
 from jointid.robot.second_look import SETTINGS, Looked, looked_again
 
 Array = NDArray[np.float64]
 
-COMPARED = (*LINEAR_FRICTION, "rotor_inertia")
+COMPARED = (*JOINT_FRICTION, "rotor_inertia")
 _APART, _ERRORS = 0.05, 3.0  # of the value, and of both errors
 _MATTERS = 0.01  # of the joint's torque: a smaller difference spoils nothing
 _VAGUE = 0.5  # of the value: with more doubt the look says nothing

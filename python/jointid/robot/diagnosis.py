@@ -21,7 +21,7 @@ from jointid.robot.error_candidates import ZERO, SmallError, refined, small_erro
 from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.findings import doubtful_joints
 from jointid.robot.naming import named_error, named_fact
-from jointid.robot.parameters import LINEAR_FRICTION, MOTOR_TERMS
+from jointid.robot.parameters import LINEAR_FRICTION
 from jointid.robot.robot import Robot
 from jointid.robot.wrong_facts import WrongFact, wrong_fact
 
@@ -206,7 +206,7 @@ def _held(attempt: Attempt) -> int:
         p.at_bound is not None
         for joint in attempt.estimate.joints.values()
         for name, p in joint.parameters.items()
-        if name in (*LINEAR_FRICTION, *MOTOR_TERMS)
+        if name in LINEAR_FRICTION
     )
 
 

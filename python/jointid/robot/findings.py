@@ -16,7 +16,7 @@ from jointid.identification.inference.purposes import Torques
 from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.inertia import FREE, InertiaColumns
 from jointid.robot.models import linear_terms
-from jointid.robot.parameters import LINEAR_FRICTION, MOTOR_TERMS
+from jointid.robot.parameters import LINEAR_FRICTION
 from jointid.robot.result import RobotEstimate, RobotJoint
 
 _STANDING = 0.1  # of the time: worth saying
@@ -25,7 +25,6 @@ _VAGUE = 0.25  # a standard error, of the value
 _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
-_FRICTION = (*LINEAR_FRICTION, *MOTOR_TERMS)
 _LEFT_OUT = "such motion says nothing about friction and is left out"
 RANK = {"blocking": 0, "warning": 1, "info": 2}
 
@@ -86,7 +85,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
 
 
 def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> Iterator[Finding]:
-    for name in _FRICTION:
+    for name in LINEAR_FRICTION:
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
             continue
@@ -102,7 +101,7 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> I
             parameters=(f"{joint.name}.{name}",),
             evidence={"stderr": Measured(p.stderr, p.unit)} if known else {},
         )
-    held = [name for name in _FRICTION if name in joint.parameters]
+    held = [name for name in LINEAR_FRICTION if name in joint.parameters]
     held = [name for name in held if joint.parameters[name].at_bound is not None]
     held_by = {
         name: torques.of_all_friction(name, distance_from_bound(joint.parameters[name]))

@@ -56,8 +56,9 @@ PARAMETERS = tuple(parameter_facts(*MODELS))
 FRICTION = frozenset(PARAMETERS) - {"torque_offset", "rotor_inertia", "inertia_scale"}
 """Those that are friction."""
 SHAPES = frozenset(name for model in MODELS for term in terms_of(model) for name in term.shapes)
-LINEAR_FRICTION = tuple(dict.fromkeys(term.name for term in LINEAR_TERMS.values()))
-"""Names of a joint's friction without shape parameters."""
+JOINT_FRICTION = tuple(dict.fromkeys(term.name for term in LINEAR_TERMS.values()))
+LINEAR_FRICTION = (*JOINT_FRICTION, *MOTOR_TERMS)
+"""Friction without shape parameters: of joints on their own speed, and with that of motors."""
 
 
 def least_of(term: _core.Term) -> float:

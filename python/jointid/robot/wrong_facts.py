@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from jointid.robot.inertia import FREE, URDF
 from jointid.robot.motion import Motion
-from jointid.robot.parameters import LINEAR_FRICTION, MOTOR_TERMS
+from jointid.robot.parameters import LINEAR_FRICTION
 from jointid.robot.quick_look import looked_at, thinned
 from jointid.robot.robot import Robot
 
@@ -160,7 +160,7 @@ def _look(robot: Robot, motions: Sequence[Motion], duration: float, mode: str) -
         return None
     couplings = robot.couplings if motions[0].at_motor else np.eye(robot.n)
     residual, torque = look.of_motors(couplings)
-    held = sum(name in (*LINEAR_FRICTION, *MOTOR_TERMS) for _, name in look.held)
+    held = sum(name in LINEAR_FRICTION for _, name in look.held)
     return _Looked(residual=residual, torque=torque, held=held)
 
 
