@@ -367,7 +367,7 @@ CASES = (
          says="if it were braked now", detected=300 * PERIOD),
     Case(name="command beyond what the joint needs", stop="torque_envelope", script=_set("stage_gain", 0.3),
          limits={"torque_envelope": 1.0, "torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
-         says="is commanded where", detected=60 * PERIOD),
+         says="is commanded, but", detected=60 * PERIOD),
     Case(name="torque has the wrong sign", stop="torque_sign", script=_set("stage_gain", -1.0),
          limits={"torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
          says="opposite signs", detected=40 * PERIOD),
@@ -441,7 +441,7 @@ CASES = (
          says="acknowledges TC"),
     # Another master.
     Case(name="somebody else beats as our node", stop="foreign_master", script=foreign(OURS, b"\x05"),
-         says="another node beats as node 1 (701h)"),
+         says="another node sends the heartbeat of node 1 (701h)"),
     Case(name="somebody else commands a current", stop="foreign_master",
          script=foreign(COMMAND, bytes.fromhex("54 43 00 80 00 00 80 3F"), every=PERIOD),
          says="commands the drive: TC = 1 (37F#544300800000803F)"),

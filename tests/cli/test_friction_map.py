@@ -95,7 +95,7 @@ def test_the_report_says_what_is_not_in_it(
     assert main(["identify", str(path)]) == 0
     said = capsys.readouterr().out
     assert "not in it  inertia and gravity" in said
-    assert "friction is negative: a torque needs the sign of its speed" in said
+    assert "friction is negative: the torque must have the sign of the speed" in said
 
 
 @pytest.mark.parametrize(

@@ -196,7 +196,7 @@ def test_without_msgpack_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch
         ),
         (
             {"interface": "virtual", "fd": True, "data_bitrate": 250_000},
-            "data_bitrate is 250000: bitrate, 500000, to 8000000 bit/s is expected",
+            "data_bitrate is 250000: a value from bitrate, 500000, to 8000000 bit/s is expected",
         ),
         ({"interface": "virtual", "channel": ""}, "channel is '': missing"),
         ({"interface": "virtual", "channel": None}, "channel is None: missing"),

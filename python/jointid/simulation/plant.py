@@ -90,14 +90,20 @@ class Values:
         for term in self.terms:
             if not term.friction or term.needs_load:
                 continue
-            shapes = tuple(self.need(name) for name in term.shapes)
+            shapes = tuple(self._size(name) for name in term.shapes)
             sides = found.setdefault((term.basis, shapes), [0.0, 0.0])
-            value = self.need(term.name)
+            value = self._size(term.name)
             if term.side >= 0:
                 sides[0] += value
             if term.side <= 0:
                 sides[1] += value
         return [(basis, *sides, shapes) for (basis, shapes), sides in found.items()]
+
+    def _size(self, name: str) -> float:
+        value = self.need(name)
+        if value < 0.0:
+            raise InputError("must be at least 0", argument=f"joint.{name}", value=value)
+        return value
 
 
 def simulated_joint(

@@ -198,7 +198,5 @@ def _check_truth(truth: Table, joint: Joint) -> None:
         stepped_joint(joint)
     except InputError as error:
         name = error.argument.removeprefix("joint.")
-        if name not in truth.entries:  # friction of both directions under one name
-            name = name.removesuffix("_positive").removesuffix("_negative")
         if name in truth.entries:
             truth.refuse(name, error.reason, truth.entries[name])
