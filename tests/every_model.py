@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import jointid as jid
 from jointid import _core
+from jointid.joint.model import AUTO, ModelName
 
 FADED = 0.1  # rad/s: where friction has faded that has a shape
-MODELS = tuple(model.name for model in _core.models())
+MODELS = tuple(name for name in get_args(ModelName) if name != AUTO)
 
 
 def friction_values(name: str, *, asymmetric: bool = False, size: float = 25.0) -> dict[str, float]:
@@ -22,7 +25,7 @@ def friction_values(name: str, *, asymmetric: bool = False, size: float = 25.0) 
     return values
 
 
-def joint_of(name: str, *, asymmetric: bool = False) -> jid.Joint:
+def joint_of(name: ModelName, *, asymmetric: bool = False) -> jid.Joint:
     """A sensorless joint with all values."""
     joint = jid.Joint(
         name=f"joint with {name}{' of two sides' if asymmetric else ''}",

@@ -9,6 +9,7 @@ from every_model import MODELS, friction_values, joint_of
 
 import jointid as jid
 from jointid import _core
+from jointid.joint.model import ModelName
 
 CONTROLLER = jid.Pd(stiffness=3000.0, damping=200.0)
 each_model = pytest.mark.parametrize("model", MODELS)
@@ -26,7 +27,7 @@ def moved(joint: jid.Joint) -> jid.SimulatedRecording:
 
 @each_side
 @each_model
-def test_the_simulated_friction_is_the_sum_of_the_rows(model: str, asymmetric: bool) -> None:
+def test_the_simulated_friction_is_the_sum_of_the_rows(model: ModelName, asymmetric: bool) -> None:
     joint = joint_of(model, asymmetric=asymmetric)
     values = friction_values(model, asymmetric=asymmetric)
     recording = moved(joint)
@@ -45,7 +46,7 @@ def test_the_simulated_friction_is_the_sum_of_the_rows(model: str, asymmetric: b
 @each_side
 @each_model
 def test_what_is_simulated_is_identified_and_shown(
-    model: str, asymmetric: bool, tmp_path: Path
+    model: ModelName, asymmetric: bool, tmp_path: Path
 ) -> None:
     joint = joint_of(model, asymmetric=asymmetric)
     values = friction_values(model, asymmetric=asymmetric)
@@ -61,7 +62,7 @@ def test_what_is_simulated_is_identified_and_shown(
 
 
 @each_model
-def test_motions_are_designed_for_it(model: str) -> None:
+def test_motions_are_designed_for_it(model: ModelName) -> None:
     values = friction_values(model)
     design = jid.design_excitation(
         joint_of(model).replace(parameters={}),

@@ -1,6 +1,7 @@
 """A joint, its parameters' values and its payload, as the core simulates them."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from jointid import _core
@@ -84,7 +85,7 @@ class Values:
             return 0.0, 0.0
         return self.need(sides[0]), self.need(sides[1])
 
-    def friction(self) -> list[tuple[str, float, float, tuple[float, ...]]]:
+    def friction(self) -> list[tuple[str, float, float, Sequence[float]]]:
         """Return the friction that depends on the speed alone: basis, coefficients of both directions, shapes."""
         found: dict[tuple[str, tuple[float, ...]], list[float]] = {}
         for term in self.terms:
@@ -97,7 +98,7 @@ class Values:
                 sides[0] += value
             if term.side <= 0:
                 sides[1] += value
-        return [(basis, *sides, shapes) for (basis, shapes), sides in found.items()]
+        return [(basis, one, other, shapes) for (basis, shapes), (one, other) in found.items()]
 
     def _size(self, name: str) -> float:
         value = self.need(name)
