@@ -18,22 +18,11 @@ from jointid.recording.recording import Recording
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Asked:
-    """What an identification leaves free, and what a motion is designed for.
+    """What an identification leaves free, and what a motion is designed for."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        The free parameters.
-    wanted : tuple of str
-        Those that the motion is designed for.
-    terms : tuple of str
-        Keys of the balance's terms.
-    gear_ratio : float
-    """
-
-    names: tuple[str, ...]
-    wanted: tuple[str, ...]
-    terms: tuple[str, ...]
+    names: tuple[str, ...]  # the free parameters
+    wanted: tuple[str, ...]  # of the names, those that the motion is designed for
+    terms: tuple[str, ...]  # keys of the balance's terms
     gear_ratio: float
 
     def columns(self, values: Mapping[str, float]) -> list[_core.BalanceColumn]:
@@ -56,13 +45,7 @@ class Asked:
 
 
 def free_parameters(joint: Joint, wanted: Sequence[str] | None) -> Asked:
-    """Return the free parameters of an identification of this joint.
-
-    Raises
-    ------
-    InputError
-        A wanted parameter that is not free, or a joint whose own terms need signals of a recording.
-    """
+    """Return the free parameters of an identification of this joint; refuse own terms and unknown names."""
     if joint.model.resolved.terms:
         raise InputError(
             "a motion cannot be designed for own terms: their signals are not simulated",

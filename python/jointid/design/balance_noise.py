@@ -34,20 +34,9 @@ def noise_of_balance(
     torque: float,
     velocity: float,
 ) -> _core.BalanceNoise:
-    """Return the noise of the balance of one joint.
+    """Return the noise of the balance of one joint, from the limits of torque [N·m] and velocity [rad/s].
 
-    Parameters
-    ----------
-    joint : Joint
-    setup : Setup
-        Of the joint with values.
-    sensors : Sensors
-    period : float
-        Between samples of the simulation [s].
-    sampled : float
-        Between samples of the recording [s].
-    torque, velocity : float
-        The limits [N·m], [rad/s].
+    `period` is the time between samples of the simulation [s], `sampled` that of the recording.
     """
     variance = (_LEAST * torque) ** 2
     if joint.sensor:

@@ -11,14 +11,9 @@ _STIFF = 80.0  # 1/s
 
 
 def default_controller(nominal: Joint, torque: float) -> Controller:
-    """Return a law that believes a joint, or one without a model where none compensates its friction.
+    """Return a law that believes a joint with values, or one without a model where none compensates its friction.
 
-    Parameters
-    ----------
-    nominal : Joint
-        With values.
-    torque : float
-        The limit of the drive's torque, of which the robust term has a small part [N·m].
+    `torque` is the limit of the drive, of which the robust term has a small part [N·m].
     """
     try:
         law = _core.AdaptiveRobust(

@@ -29,9 +29,9 @@ def expected_errors(
 ) -> dict[str, ExpectedError]:
     """Return the expected error of each wanted parameter.
 
-    The errors counted in the rehearsal hold for the nominal joint. They are as much larger than those of
-    the information alone for the other joints. Beside information from other recordings, this motion's counts
-    as much less as that: what is known can only make an error smaller.
+    The errors counted in the rehearsal hold for the nominal joint; those of other joints grow as the information's do.
+    With information from other recordings, this motion's information shrinks by the same factors: what is known can
+    only make an error smaller.
     """
     asked, ranges = situation.asked, situation.ranges
     units = _units(situation)

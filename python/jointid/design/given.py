@@ -30,22 +30,13 @@ _SIGNED = ("offset", "gravity", "ripple", "position")
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Given:
-    """What an estimate says of a joint's parameters.
+    """What an estimate says of a joint's parameters."""
 
-    Attributes
-    ----------
-    known : Known
-        Information as wide as the intervals are.
-    values : ndarray, shape (p,)
-    bounds : mapping of str to (float, float)
-        That the user states, by name; None where there is none.
-    scale : mapping of str to float
-        What a parameter of either sign is held against, e.g. an offset against the torque.
-    """
-
-    known: Known
+    known: Known  # information as wide as the intervals are
     values: Array
+    # The user's bounds by name; None where there is none.
     bounds: Mapping[str, tuple[float | None, float | None]] = field(default_factory=dict)
+    # Size of a parameter of either sign, e.g. the torque for an offset.
     scale: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -54,18 +45,10 @@ class Given:
         return self.known.names
 
     def joints(self, count: int, seed: int = 0) -> tuple[dict[str, float], ...]:
-        """Values of joints that the recordings leave possible; the first are the estimate's.
+        """Return values of joints that the recordings leave possible; the first are the estimate's.
 
-        A joint is drawn from the distribution of all parameters together: what the recordings tell only of a sum
-        of two stays as it is while the two change. Where a joint would leave a bound, it is drawn nearer to the
-        estimate.
-
-        Parameters
-        ----------
-        count : int
-            How many, 1 or more.
-        seed : int
-            The same seed gives the same joints. Default 0.
+        A joint is drawn from the distribution of all parameters together, nearer to the estimate where it
+        would leave a bound.
         """
         width, lower, upper = self._box()
         strength, vectors = np.linalg.eigh(self.known.information * np.outer(width, width))
@@ -186,12 +169,9 @@ def sensors_of(estimate: Estimate) -> _core.Sensors | None:
 
 
 def joint_of(estimate: Estimate, given: Given, facts: Joint | None) -> Joint:
-    """Return the joint of a design: the estimate's values, free where another motion can tell more of them.
+    """Return the joint of a design: the estimate's values, free where another motion can improve them.
 
-    Parameters
-    ----------
-    facts : Joint, optional
-        A joint with what that of the identification lacked: a link, limits. Default: none.
+    `facts` is a joint with what that of the identification lacked: a link, limits.
     """
     if facts is not None:
         require_kind("joint", facts, Joint)

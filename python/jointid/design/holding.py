@@ -25,13 +25,7 @@ def held_by_all(
 ) -> tuple[Trajectory, Peaks, str]:
     """Return the motion, made smaller until many joints keep all limits, and what they reach.
 
-    Returns
-    -------
-    trajectory : Trajectory
-    peaks : Peaks
-        Of all these joints.
-    problem : str
-        Empty if all limits are kept, else a sentence: of which limit, by how much, and for which joint.
+    The last value names the limit that is exceeded, by how much and for which joint; it is empty if all are kept.
     """
     joints = situation.ranges.joints(_JOINTS, seed + 1)
     joints += situation.ranges.corners(_CORNERS, seed + 2)

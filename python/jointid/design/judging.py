@@ -40,22 +40,7 @@ def fade_of(duration: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """All that a motion is judged by, but the motion.
-
-    Attributes
-    ----------
-    joint : Joint
-    asked : Asked
-    ranges : Ranges
-    limits : MotionLimits
-    controller : Controller
-    sensors : Sensors
-    duration, control_period : float
-        [s]
-    criterion : str
-    known : ndarray, shape (p, p)
-        Information at hand about the free parameters.
-    """
+    """All by which a motion is judged, except the motion itself."""
 
     joint: Joint
     asked: Asked
@@ -63,23 +48,17 @@ class Situation:
     limits: MotionLimits
     controller: Controller
     sensors: _core.Sensors
-    duration: float
-    control_period: float
+    duration: float  # [s]
+    control_period: float  # [s]
     criterion: str
-    known: Array
+    known: Array  # information at hand about the free parameters, shape (p, p)
 
     def judge(
         self, values: list[dict[str, float]], *, coarse: int = 1, believed: bool = False
     ) -> _core.Excitation:
-        """Return the judge for joints with these values.
+        """Return the judge for joints with these values, with a control period that is `coarse` times as long.
 
-        Parameters
-        ----------
-        values : list of dict
-        coarse : int
-            A factor of the control period. Default 1.
-        believed : bool
-            Whether the prior's ranges count as information. Default False.
+        If `believed`, the prior's ranges count as information.
         """
         period = self.control_period * coarse
         scenario = _core.Scenario(

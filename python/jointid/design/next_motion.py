@@ -36,16 +36,7 @@ def motion_after(
     search: DesignSearch | None = None,
     **options: Any,
 ) -> Design:
-    """Answer `Estimate.next_motion`.
-
-    Parameters
-    ----------
-    estimate : Estimate
-    limits, duration, controller, sensors, parameters, prior, search, options
-        As `design_excitation`; see there and `Estimate.next_motion` for the defaults.
-    joint : Joint, optional
-        Facts that the estimate's joint lacks.
-    """
+    """Design the motion of `Estimate.next_motion`; `joint` has facts that the estimate's joint lacks."""
     given = given_by(estimate)
     wanted = given.names if parameters is None else tuple(parameters)
     for name in wanted:

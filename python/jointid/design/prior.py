@@ -21,19 +21,11 @@ _SMALL = 0.1  # of its range: an error of a smaller value counts in this
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ranges:
-    """What is believed of each free parameter.
+    """What is believed of each free parameter."""
 
-    Attributes
-    ----------
-    nominal : mapping of str to float
-        The joint in the middle.
-    ranges : mapping of str to (float, float)
-    drawn : tuple of mapping
-        Joints that are given one by one; empty: they are drawn from the ranges.
-    """
-
-    nominal: Mapping[str, float]
+    nominal: Mapping[str, float]  # the joint in the middle
     ranges: Mapping[str, Range]
+    # Joints that the user lists; empty: the ranges give them.
     drawn: tuple[Mapping[str, float], ...] = ()
 
     def scale(self, name: str, value: float) -> float:
@@ -53,12 +45,7 @@ class Ranges:
         ]
 
     def joints(self, count: int, seed: int) -> list[dict[str, float]]:
-        """Return values of `count` joints, the nominal one first; the others fill the ranges evenly.
-
-        Notes
-        -----
-        A Latin hypercube: each parameter has one joint in each of its equal shares, at its middle.
-        """
+        """Return values of `count` joints: the nominal one, then a Latin hypercube, at the middles of its shares."""
         if self.drawn:
             return [dict(each) for each in self.drawn[: max(1, count)]]
         others = max(0, count - 1)
@@ -72,13 +59,7 @@ class Ranges:
 
 
 def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
-    """Return what is believed of the free parameters `names`.
-
-    Raises
-    ------
-    InputError
-        A name that is no free parameter, a range that is empty, or parameters without any range: all are named.
-    """
+    """Return what is believed of the free parameters `names`; refuse those without any range, and name them all."""
     if prior is not None and (not isinstance(prior, Mapping | Sequence) or isinstance(prior, str)):
         raise InputError(
             "a range by parameter, or values of joints, are expected", argument="prior", value=prior

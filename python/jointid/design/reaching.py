@@ -32,25 +32,15 @@ _NAMES = {
 
 @dataclass
 class Reached:
-    """What joints reach, how much of the limits that is, and which joint it is.
-
-    Attributes
-    ----------
-    situation : Situation
-    lowest, highest : float
-        Position [rad].
-    velocity, torque, sensor : float
-        Largest magnitudes.
-    farthest : dict of str to mapping
-        Values of the joint that goes farthest, by the limit's name.
-    """
+    """What joints reach, how much of the limits that is, and which joint goes farthest."""
 
     situation: Situation
-    lowest: float = np.inf
+    lowest: float = np.inf  # position [rad]
     highest: float = -np.inf
-    velocity: float = 0.0
+    velocity: float = 0.0  # largest magnitude, as of torque and sensor
     torque: float = 0.0
     sensor: float = 0.0
+    # Values of the joint that goes farthest, by the limit's name.
     farthest: dict[str, Mapping[str, float]] = field(default_factory=dict)
 
     def add(
@@ -96,7 +86,7 @@ class Reached:
         return shares
 
     def peaks(self, trajectory: Trajectory) -> Peaks:
-        """Return what is reached, the reference's acceleration beside it."""
+        """Return what is reached, with the acceleration of the reference."""
         time = np.arange(0.0, trajectory.duration, self.situation.control_period)
         acceleration = trajectory.sample(time)[2]
         known = np.isfinite(self.lowest)

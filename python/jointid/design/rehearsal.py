@@ -23,17 +23,10 @@ _APART = 0.005  # of each value: how far the joints lie apart
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rehearsal:
-    """Errors of identifications from simulated recordings of one motion.
-
-    Attributes
-    ----------
-    names : tuple of str
-    errors : ndarray, shape (recordings, p)
-        Identified less true.
-    """
+    """Errors of identifications from simulated recordings of one motion."""
 
     names: tuple[str, ...]
-    errors: Array
+    errors: Array  # identified less true, shape (recordings, p)
 
     def rms(self) -> dict[str, float]:
         """Return the root mean square of each parameter's error."""
@@ -60,23 +53,7 @@ def rehearse(
 ) -> Rehearsal:
     """Simulate `count` recordings of joints with about these values, and identify each.
 
-    Each joint's parameters differ by up to half a per cent, so that an encoder's steps, which are the same for the same
-    motion, count as the noise that they are. The identification starts at the truth: which search finds the
-    minimum does not matter.
-
-    Parameters
-    ----------
-    situation : Situation
-    trajectory : Trajectory
-    values : mapping of str to float
-        Of the free parameters.
-    count : int
-    first : int
-        Seed of the first recording's noise. Default 0.
-    threads : int
-        0 (default): all.
-    observe : callable, optional
-        Called with how many are done.
+    `first` is the seed of the first recording's noise; `observe` is called with how many recordings are done.
     """
     names = situation.asked.names
     errors = np.empty((count, len(names)))

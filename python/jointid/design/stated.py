@@ -22,14 +22,7 @@ def check_stated(
     parameters: Sequence[str] | None = None,
     callback: object = None,
 ) -> None:
-    """Check arguments of `design_excitation`, each as it is described there.
-
-    Raises
-    ------
-    InputError
-        An argument of another kind, a controller that follows nothing, or noise of a torque sensor that the joint
-        does not have.
-    """
+    """Check arguments of `design_excitation`, each as it is described there."""
     if isinstance(controller, _core.OpenLoop):
         raise InputError(
             "a motion is designed for a controller that follows it",
@@ -58,13 +51,7 @@ def check_stated(
 
 
 def check_signs(asked: Asked, ranges: Ranges) -> None:
-    """Check that nothing is believed below 0 that cannot be.
-
-    Raises
-    ------
-    InputError
-        Names the parameter and its range.
-    """
+    """Check that nothing is believed below 0 that cannot be."""
     signed = {term.name: not term.non_negative for term in map(_core.term, asked.terms)}
     for name, (low, high) in ranges.ranges.items():
         if low < 0.0 and not signed.get(name, False):
@@ -74,13 +61,7 @@ def check_signs(asked: Asked, ranges: Ranges) -> None:
 
 
 def check_length(duration: float, control_period: float) -> None:
-    """Check that a motion is long enough for a recording, and short enough to be simulated many times.
-
-    Raises
-    ------
-    InputError
-        Names the duration.
-    """
+    """Check that a motion is long enough for a recording, and short enough to be simulated many times."""
     if not _FEWEST <= duration / control_period <= _MOST:
         raise InputError(
             f"{_FEWEST} to {_MOST} control periods of {control_period:g} s are expected",
@@ -90,13 +71,7 @@ def check_length(duration: float, control_period: float) -> None:
 
 
 def check_gain(joint: Joint, asked: Asked) -> None:
-    """Check that the sensor's gain, as it is believed and bounded, cannot be 0.
-
-    Raises
-    ------
-    InputError
-        Names the range in which the gain lies.
-    """
+    """Check that the sensor's gain, as it is believed and bounded, cannot be 0."""
     gain = joint.parameters.get("sensor_gain")
     if gain is None or "sensor_gain" not in asked.names or gain.min is None or gain.max is None:
         return

@@ -18,12 +18,11 @@ _INSIGNIFICANT = 0.5  # of its value: a standard error beyond it
 
 
 def unseen_friction(estimate: Estimate) -> tuple[dict[str, float], set[str]]:
-    """Return values of friction at low speed that is looked for, and the parameters of what is certainly not there.
+    """Return assumed values of friction at low speed, and the parameters of friction that is certainly absent.
 
     Where a bound holds a static excess or it is not significant, its estimate is no value to design a motion for.
-    What is looked for is an excess as large as the interval allows, a fifth of the Coulomb friction at most, that
-    fades at a thirtieth of the top speed. One that the interval keeps below 2 % of the Coulomb friction is not
-    there: it keeps its value.
+    The assumed excess is as large as the interval allows, at most a fifth of the Coulomb friction, and fades at a
+    thirtieth of the top speed. An excess that the interval keeps below 2 % of the Coulomb friction is absent.
     """
     found = estimate.parameters
     terms = [_core.term(key) for key in estimate.settings["terms"]]

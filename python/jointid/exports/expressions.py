@@ -18,19 +18,9 @@ _PARTS: dict[Over, tuple[str, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Language:
-    """How a language writes what the law needs.
+    """How a language writes what the law needs."""
 
-    Attributes
-    ----------
-    name : callable
-        A constant's name from a parameter's.
-    number : callable
-        A number.
-    exp, log, sin, cos : str
-        Functions.
-    """
-
-    name: Callable[[str], str]
+    name: Callable[[str], str]  # a constant's name from a parameter's
     number: Callable[[float], str]
     exp: str
     log: str

@@ -12,13 +12,7 @@ _LONGEST = 24  # C99 distinguishes the first 31 characters of a name that other 
 def identifier(name: str, usual: str = "joint", *, longest: int = _LONGEST) -> str:
     """Return a name of letters, digits and single underscores that begins with a letter.
 
-    Parameters
-    ----------
-    name : str
-    usual : str
-        In front of a name that begins otherwise, and instead of one of which nothing is left. Default "joint".
-    longest : int
-        Letters at most. Default 24.
+    `usual` precedes a name that begins otherwise, and replaces one of which nothing is left.
 
     Examples
     --------

@@ -19,40 +19,19 @@ _SHARE = 0.02
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """What a joint moves, so that inertia and gravity about its axis are those of the law.
+    """What a joint moves, so that inertia and gravity about its axis are those of the law."""
 
-    Attributes
-    ----------
-    mass : float
-        [kg]
-    distance : float
-        Of the centre of mass from the axis [m].
-    angle : float
-        Of the centre of mass above the horizontal, at position 0 [rad].
-    inertia : float
-        About the centre of mass [kg·m²].
-    gravity : float
-        [m/s²]; 0 where the model has no gravity.
-    drive : float
-        Inertia of the drive at the output [kg·m²], or [kg].
-    note : str
-        What is chosen and not known; may be empty.
-    """
-
-    mass: float
-    distance: float
-    angle: float
-    inertia: float
-    gravity: float
-    drive: float
-    note: str = ""
+    mass: float  # [kg]
+    distance: float  # of the centre of mass from the axis [m]
+    angle: float  # of the centre of mass above the horizontal, at position 0 [rad]
+    inertia: float  # about the centre of mass [kg·m²]
+    gravity: float  # [m/s²]; 0 where the model has no gravity
+    drive: float  # inertia of the drive at the output [kg·m²], or [kg]
+    note: str = ""  # what is chosen and not known
 
 
 def drive_inertia(subject: Subject) -> float | None:
-    """Return the inertia of the drive alone, at the output; None if it is not known apart from the link's.
-
-    A torque sensor stands between them; without one, the identified inertia contains the link's.
-    """
+    """Return the inertia of the drive alone, at the output; None if it is not known apart from the link's."""
     joint, law = subject.joint, subject.law
     if joint.sensor and law.inertia is not None:
         return law.inertia
@@ -64,13 +43,7 @@ def drive_inertia(subject: Subject) -> float | None:
 
 
 def body_of(subject: Subject) -> Body:
-    """Return a body that, with the drive, has the inertia and the gravity of the joint.
-
-    Raises
-    ------
-    InputError
-        The inertia is not known, or smaller than the link's.
-    """
+    """Return a body that, with the drive, has the inertia and the gravity of the joint."""
     joint, law = subject.joint, subject.law
     total = law.total_inertia
     if total is None or total <= 0.0:

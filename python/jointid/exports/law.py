@@ -22,21 +22,11 @@ Function = Literal["torque", "inertia"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrictionTerm:
-    """One term of the friction: a coefficient times the core's basis.
-
-    Attributes
-    ----------
-    term : Term
-        Of the core.
-    value : float
-        Of the coefficient.
-    shapes : mapping of str to float
-        Shape parameters by name, in the order of the core.
-    """
+    """One term of the friction: a coefficient times the core's basis."""
 
     term: _core.Term
     value: float
-    shapes: Mapping[str, float]
+    shapes: Mapping[str, float]  # in the order of the core
 
     @property
     def vanishes(self) -> bool:
@@ -46,16 +36,9 @@ class FrictionTerm:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Harmonic:
-    """A torque that is periodic in an angle: ``cos * cos(order * angle) + sin * sin(order * angle)``.
+    """A torque that is periodic in an angle: ``cos * cos(order * angle) + sin * sin(order * angle)``."""
 
-    Attributes
-    ----------
-    over : str
-        "gravity" and "harmonics": the joint's angle; "ripple": the motor's, which is gear ratio · position.
-    order, cos, sin : float
-    """
-
-    over: Over
+    over: Over  # "ripple" is over the motor's angle, the others over the joint's
     order: float
     cos: float
     sin: float
@@ -68,16 +51,9 @@ class Harmonic:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Centred:
-    """A function of the joint's angle: ``cos * (cos(angle - centre) - 1) + sin * sin(angle - centre)``.
+    """A function of the joint's angle: ``cos * (cos(angle - centre) - 1) + sin * sin(angle - centre)``."""
 
-    Attributes
-    ----------
-    kind : str
-        "torque", or "inertia": then the joint's inertia grows by it, and the torque also by slope · v² / 2.
-    centre, cos, sin : float
-    """
-
-    kind: Function
+    kind: Function  # with "inertia" the torque also grows by slope · v² / 2
     centre: float
     cos: float
     sin: float
@@ -100,34 +76,16 @@ class Centred:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Law:
-    """The torque that a motion needs from the drive, at the output of the gear.
-
-    Attributes
-    ----------
-    friction : tuple of FrictionTerm
-    harmonics : tuple of Harmonic
-        Gravity, torques over the joint's angle, and ripple over the motor's.
-    inertia : float or None
-        What the drive's torque accelerates in front of a torque sensor; without a sensor, all. None: not known.
-    link_inertia : float
-        Behind the torque sensor; 0 without a sensor.
-    offset : float
-        Constant torque.
-    sensor : tuple of float or None
-        Gain and offset: torque = gain · reading + offset.
-    gear_ratio : float
-    centred : tuple of Centred
-        Own terms of the joint's own position.
-    """
+    """The torque that a motion needs from the drive, at the output of the gear."""
 
     friction: tuple[FrictionTerm, ...]
     harmonics: tuple[Harmonic, ...]
-    inertia: float | None
-    link_inertia: float
+    inertia: float | None  # in front of a torque sensor; without a sensor, all; None: not known
+    link_inertia: float  # behind the torque sensor; 0 without a sensor
     offset: float
-    sensor: tuple[float, float] | None
+    sensor: tuple[float, float] | None  # gain and offset: torque = gain · reading + offset
     gear_ratio: float
-    centred: tuple[Centred, ...] = ()
+    centred: tuple[Centred, ...] = ()  # own terms of the joint's own position
 
     @property
     def total_inertia(self) -> float | None:
@@ -149,16 +107,7 @@ class Law:
     def friction_torque(
         self, velocity: ArrayLike, load: float = 0.0, *, width: float = 0.0
     ) -> Array:
-        """Return the friction at each velocity [N·m or N].
-
-        Parameters
-        ----------
-        velocity : array_like
-        load : float
-            Torque that load friction grows with. Default 0.
-        width : float
-            Friction that does not vanish with the speed is multiplied by tanh(speed / width). Default 0: it is not.
-        """
+        """Return the friction at each velocity [N·m or N]; what is there at rest fades below the speed `width`."""
         velocities = np.atleast_1d(np.asarray(velocity, dtype=np.float64))
         fade = np.tanh(np.abs(velocities) / width) if width > 0.0 else np.ones_like(velocities)
         total = np.zeros_like(velocities)
@@ -169,10 +118,7 @@ class Law:
         return total
 
     def position_torque(self, position: ArrayLike, *kinds: Over) -> Array:
-        """Return the torque over the position [N·m or N] of some kinds; none named: of all.
-
-        Own torques over the joint's angle belong to "harmonics".
-        """
+        """Return the torque over the position [N·m or N] of some kinds, or of all; own torques are "harmonics"."""
         positions = np.atleast_1d(np.asarray(position, dtype=np.float64))
         total = np.zeros_like(positions)
         for each in self.harmonics:
@@ -199,22 +145,7 @@ class Law:
 
 
 def law_of(joint: Joint, terms: Sequence[str], values: Mapping[str, float]) -> Law:
-    """Return the law of a joint with these terms and values.
-
-    Parameters
-    ----------
-    joint : Joint
-        Gear ratio, link and drive.
-    terms : sequence of str
-        Keys of the core's terms.
-    values : mapping of str to float
-        By parameter name; one value for a parameter that each recording has for itself.
-
-    Raises
-    ------
-    InputError
-        A term that no export has.
-    """
+    """Return the law of a joint with these keys of the core's terms and these values by parameter name."""
     sensor = "sensor_gain" in terms
     model = joint.model.resolved
     harmonics = []

@@ -16,30 +16,15 @@ _SPEEDS = 400
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Nearest:
-    """Coulomb and viscous friction, the same in both directions.
+    """Coulomb and viscous friction, the same in both directions."""
 
-    Attributes
-    ----------
-    constant : float
-        Friction at every speed [N·m or N].
-    slope : float
-        Friction per speed.
-    lost : tuple of str
-        What of the law is not in it; empty where it is exact.
-    speed : float or None
-        The fit's largest speed; None where there was no fit.
-    worst : float
-        Largest difference of the friction over the range, without load, and of the torques over the position.
-    rms : float
-        Root mean square of the friction's difference, all speeds alike.
-    """
-
-    constant: float
-    slope: float
-    lost: tuple[str, ...] = ()
-    speed: float | None = None
+    constant: float  # friction at every speed [N·m or N]
+    slope: float  # friction per speed
+    lost: tuple[str, ...] = ()  # what of the law is not in it; empty where it is exact
+    speed: float | None = None  # the fit's largest speed; None where there was no fit
+    # Largest difference of the friction without load, and of the torques over the position.
     worst: float = 0.0
-    rms: float = 0.0
+    rms: float = 0.0  # of the friction's difference, all speeds alike
 
 
 def lost_terms(subject: Subject) -> tuple[str, ...]:
@@ -85,21 +70,7 @@ def _own_lost(subject: Subject) -> tuple[str, ...]:
 
 
 def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nearest:
-    """Return Coulomb and viscous friction: the law's own, or the nearest over the recorded speeds.
-
-    Parameters
-    ----------
-    subject : Subject
-    approximate : bool
-        Whether something may be lost.
-    target : str
-        The target's name, for the error.
-
-    Raises
-    ------
-    InputError
-        Something would be lost and must not, or no range of speeds is known.
-    """
+    """Return Coulomb and viscous friction: the law's own, or if `approximate` the nearest over the recorded speeds."""
     law, own = subject.law, _own_lost(subject)
     friction = lost_terms(subject)
     lost = (*friction, *own)

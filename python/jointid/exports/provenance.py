@@ -30,14 +30,7 @@ _PLAIN = str.maketrans(
 
 
 def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
-    """Return what a file states, line by line.
-
-    Parameters
-    ----------
-    subject : Subject
-    notes : sequence of str
-        What the target cannot express, or expresses in another way. Default: nothing.
-    """
+    """Return what a file states, line by line; `notes` say what the target expresses in another way or not at all."""
     joint = subject.joint
     name = f"Joint '{joint.name}'" if joint.name else "Joint"
     force = "force" if joint.kind == "prismatic" else "torque"

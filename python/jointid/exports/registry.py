@@ -28,13 +28,7 @@ def endings_text() -> str:
 
 
 def target_of(path: Path, name: str | None) -> Target:
-    """Return the target of this name, or the one that a file's ending chooses.
-
-    Raises
-    ------
-    InputError
-        There is no such target.
-    """
+    """Return the target of this name, or the one that a file's ending chooses."""
     if name is not None:
         check_choice("", "target", name, [target.name for target in TARGETS])
         return next(target for target in TARGETS if target.name == name)

@@ -24,19 +24,6 @@ def with_link_inertias(estimate: RobotEstimate, content: bytes, place: str) -> b
     """Return a URDF with the inertial parameters of an estimate; all else keeps its bytes.
 
     What is fixed to a link is part of it: the link that the joint moves gets all, the others lose theirs.
-
-    Parameters
-    ----------
-    estimate : RobotEstimate
-    content : bytes
-        The URDF.
-    place : str
-        Its name, for errors.
-
-    Raises
-    ------
-    InputError
-        Inertia was not identified, no bodies can have it, or the URDF's other joints move.
     """
     _check(estimate)
     found = elements(content, place)

@@ -20,23 +20,7 @@ def robot_in_urdf(
 ) -> bytes:
     """Return a URDF with the damping and friction of all joints of an estimate; the rest keeps its bytes.
 
-    Parameters
-    ----------
-    estimate : RobotEstimate
-    content : bytes
-        The URDF.
-    place : str
-        Its name, for errors.
-    approximate : bool
-        Whether what URDF has not may be lost: other friction than Coulomb and viscous, friction that differs between
-        the directions, and friction of coupled motors.
-    inertia : bool
-        Whether the links get their identified inertia, too.
-
-    Raises
-    ------
-    InputError
-        Something would be lost and must not, or the URDF has no such joint.
+    If `approximate`, friction that URDF cannot hold is lost; if `inertia`, the links get their identified inertia.
     """
     for joint in estimate.joints.values():
         lost = _lost(joint)

@@ -27,68 +27,32 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportedValue:
-    """One parameter as it is exported.
-
-    Attributes
-    ----------
-    name, meaning, unit : str
-    value : float
-    stderr : float or None
-        Standard error of chance alone; None if it is not known.
-    interval : tuple of float or None
-        95 % interval; None if it is not known.
-    remark : str
-        "fixed", "not well determined by the recording", …; "" where nothing is to be said.
-    doubtful : bool
-        Whether the recording did not determine it, or not well.
-    """
+    """One parameter as it is exported."""
 
     name: str
     meaning: str
     unit: str
     value: float
-    stderr: float | None = None
-    interval: tuple[float, float] | None = None
-    remark: str = ""
-    doubtful: bool = False
+    stderr: float | None = None  # of chance alone; None: not known
+    interval: tuple[float, float] | None = None  # 95 %; None: not known
+    remark: str = ""  # "fixed", "not well determined by the recording", …
+    doubtful: bool = False  # the recording did not determine it, or not well
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Subject:
-    """A joint as it is exported.
-
-    Attributes
-    ----------
-    joint : Joint
-    law : Law
-    values : tuple of ExportedValue
-        In the order of the torque balance.
-    model : str
-        Text of the model.
-    source : str
-        Where the values come from.
-    date : str
-        Of the export, in UTC.
-    version : str
-        Of jointid that exports.
-    findings : tuple of str
-        Warnings of the estimate.
-    speed : float or None
-        Largest speed of the recordings [rad/s or m/s]; None if it is not known.
-    others : str
-        The torque of other signals, which no file has, with its size; "" without own terms of such.
-    """
+    """A joint as it is exported."""
 
     joint: Joint
     law: Law
-    values: tuple[ExportedValue, ...]
+    values: tuple[ExportedValue, ...]  # in the order of the torque balance
     model: str
-    source: str
-    date: str
-    version: str
-    findings: tuple[str, ...]
-    speed: float | None
-    others: str = ""
+    source: str  # where the values come from
+    date: str  # of the export, in UTC
+    version: str  # of jointid that exports
+    findings: tuple[str, ...]  # warnings of the estimate
+    speed: float | None  # largest speed of the recordings [rad/s or m/s]; None: not known
+    others: str = ""  # the torque of other signals, which no file has, with its size
 
     @property
     def undetermined(self) -> tuple[str, ...]:
@@ -116,19 +80,7 @@ class Subject:
 
 
 def subject_of(value: Estimate | Joint, speed: float | None = None) -> Subject:
-    """Return what is exported of an estimate, or of a joint whose parameters have values.
-
-    Parameters
-    ----------
-    value : Estimate or Joint
-    speed : float, optional
-        Largest speed [rad/s or m/s]. Default: of the estimate's recordings.
-
-    Raises
-    ------
-    InputError
-        A parameter without a value, or a value that is not finite.
-    """
+    """Return what is exported of an estimate, or of a joint with values, known up to a speed [rad/s or m/s]."""
     require_kind("source", value, Estimate, Joint)
     subject = _of_estimate(value) if isinstance(value, Estimate) else _of_joint(value)
     for each in subject.values:

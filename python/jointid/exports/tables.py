@@ -11,22 +11,14 @@ from jointid.exports.subject import Subject
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """One motion and its torques.
-
-    Attributes
-    ----------
-    position, velocity, acceleration, load, reading : float
-    width : float
-        Of the smooth sign; 0: the sign itself.
-    friction, position_torque, torque, sensor_torque : float
-    """
+    """One motion and its torques."""
 
     position: float
     velocity: float
     acceleration: float
     load: float
     reading: float
-    width: float
+    width: float  # of the smooth sign; 0: the sign itself
     friction: float
     position_torque: float
     torque: float

@@ -10,61 +10,28 @@ from jointid.exports.subject import Subject
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Existing:
-    """A file that gets a joint's values.
-
-    Attributes
-    ----------
-    content : bytes
-    place : str
-        Its name, for errors.
-    joint : str
-        Name of its joint.
-    """
+    """A file that gets a joint's values."""
 
     content: bytes
-    place: str
-    joint: str
+    place: str  # the file's name, for errors
+    joint: str  # name of the file's joint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Order:
-    """What is asked of a target.
-
-    Attributes
-    ----------
-    name : str
-        What the file calls the joint, as far as the target's language allows.
-    approximate : bool
-        Whether what the target cannot express may be replaced by the nearest it can.
-    into : Existing or None
-        The file to edit; None: a new one.
-    """
+    """What is asked of a target."""
 
     name: str
-    approximate: bool = False
-    into: Existing | None = None
+    approximate: bool = False  # whether the nearest may replace what the target cannot express
+    into: Existing | None = None  # the file to edit; None: a new one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """How a joint is written for one kind of consumer.
-
-    Attributes
-    ----------
-    name : str
-    endings : tuple of str
-        Endings of file names that choose this target, in lower case, with the dot.
-    meaning : str
-        For help, e.g. "MuJoCo model".
-    write : callable
-        Takes a `Subject` and an `Order`, returns the file's content; raises `InputError` for what cannot be
-        expressed.
-    edits : bool
-        Whether it can set the values of a joint in an existing file.
-    """
+    """How a joint is written for one kind of consumer."""
 
     name: str
-    endings: tuple[str, ...]
-    meaning: str
-    write: Callable[[Subject, Order], bytes]
-    edits: bool = False
+    endings: tuple[str, ...]  # of file names that choose this target, in lower case, with the dot
+    meaning: str  # for help, e.g. "MuJoCo model"
+    write: Callable[[Subject, Order], bytes]  # the file's content
+    edits: bool = False  # whether it can set the values of a joint in an existing file

@@ -17,20 +17,7 @@ VOLTAGE_NOTES = (
 
 
 def voltage_motor(joint: Joint, drive: VoltageDrive, name: str) -> str:
-    """Return the element of a motor on a voltage: force = (k_t / R) supply duty - (k_t² / R) velocity.
-
-    Parameters
-    ----------
-    joint : Joint
-    drive : VoltageDrive
-    name : str
-        Of the joint in the model.
-
-    Raises
-    ------
-    InputError
-        Torque constant, resistance or supply is not known.
-    """
+    """Return the element of a motor on a voltage: force = (k_t / R) supply duty - (k_t² / R) velocity."""
     for argument, value in (
         ("torque_constant", joint.torque_constant),
         ("resistance", drive.resistance),

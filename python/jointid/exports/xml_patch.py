@@ -15,39 +15,19 @@ _PAIR = re.compile(rb"""(\s+)([^\s=/>]+)(\s*=\s*)("[^"]*"|'[^']*')""")
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One element of a text.
-
-    Attributes
-    ----------
-    tag : str
-    attributes : mapping of str to str
-    path : tuple of str
-        Tags of the elements around it, the outermost first.
-    start, inner : int
-        Where its start tag begins, and the byte behind it.
-    stop : int
-        Where its end tag begins; the same as `inner` for an element without one.
-    parent : int
-        Place of the element around it in the list of all; -1 for the root.
-    """
+    """One element of a text."""
 
     tag: str
     attributes: Mapping[str, str]
-    path: tuple[str, ...]
-    start: int
-    inner: int
-    stop: int
-    parent: int
+    path: tuple[str, ...]  # tags of the elements around it, the outermost first
+    start: int  # where its start tag begins
+    inner: int  # the byte behind its start tag
+    stop: int  # where its end tag begins; `inner` for an element without one
+    parent: int  # place of the element around it in the list of all; -1 for the root
 
 
 def elements(content: bytes, place: str) -> list[Element]:
-    """Return all elements of an XML text, in the order of their start tags.
-
-    Raises
-    ------
-    InputError
-        It is not XML, in an encoding whose bytes cannot be edited, or has elements in entities.
-    """
+    """Return all elements of an XML text, in the order of their start tags."""
     try:
         readable = "\0" not in content.decode("utf-8")
     except UnicodeDecodeError:
@@ -170,13 +150,7 @@ def only(
     place: str,
     suggestion: Callable[[str, list[str]], str],
 ) -> Element:
-    """Return the one joint of a name.
-
-    Raises
-    ------
-    InputError
-        There is none, or several.
-    """
+    """Return the one joint of a name."""
     joints = [each for each in found if is_joint(each)]
     named = [each for each in joints if each.attributes.get("name") == name]
     if len(named) == 1:

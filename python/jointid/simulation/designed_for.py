@@ -22,29 +22,14 @@ _NAMES = {"known_inertia": "inertia"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignedFor:
-    """The joint, the controller and the period that a motion was designed for.
+    """The joint, the controller and the period that a motion was designed for."""
 
-    Attributes
-    ----------
-    source : str
-        The file of the motion, for messages.
-    trajectory : Trajectory
-        The motion: of another one nothing is said.
-    joint : Joint
-        The nominal one.
-    controller : Controller
-        That drives it.
-    control_period : float
-        Of the controller [s].
-    believed : mapping of str to (float, float)
-        Range of each parameter, from which joints were drawn that keep the limits. Default: not known.
-    """
-
-    source: str
+    source: str  # the file of the motion, for messages
     trajectory: Trajectory
-    joint: Joint
+    joint: Joint  # the nominal one
     controller: Controller
-    control_period: float
+    control_period: float  # [s]
+    # Ranges of the parameters from which joints were drawn that keep the limits; empty: not known.
     believed: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
 
     def warning(
@@ -54,19 +39,7 @@ class DesignedFor:
         controller: Controller,
         control_period: float,
     ) -> str:
-        """Return one sentence that names in what a bench differs; empty where it is the one of the design.
-
-        Parameters
-        ----------
-        trajectory : Trajectory
-            That is run; another motion than the designed one needs no warning.
-        joint : Joint or None
-            That is moved, as far as it is known.
-        controller : Controller
-            That moves it.
-        control_period : float
-            [s]
-        """
+        """Return one sentence that names in what a bench differs; empty for the design's bench or another motion."""
         if trajectory != self.trajectory:
             return ""
         found = [*self._joints(joint), *self._laws(controller)]

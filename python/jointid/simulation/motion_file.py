@@ -60,20 +60,11 @@ COMMENTS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """What a motion's file holds.
-
-    Attributes
-    ----------
-    trajectory : Trajectory
-    peaks : Peaks or None
-        What the joints that it was designed for reach; None where the file does not say it.
-    designed_for : DesignedFor or None
-        The joint and the controller; None of a motion that was written by hand.
-    """
+    """What a motion's file holds."""
 
     trajectory: Trajectory
-    peaks: Peaks | None = None
-    designed_for: DesignedFor | None = None
+    peaks: Peaks | None = None  # what the joints of the design reach; None: not in the file
+    designed_for: DesignedFor | None = None  # None of a motion that was written by hand
 
 
 def load_motion(path: str | Path) -> Motion:
@@ -81,11 +72,6 @@ def load_motion(path: str | Path) -> Motion:
 
     Its `form` is a class method of `Trajectory`, and the other keys are its arguments; angles may be
     texts such as "60deg".
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or holds no motion; names file and key.
     """
     place = require_path("path", path)
     try:
@@ -95,19 +81,7 @@ def load_motion(path: str | Path) -> Motion:
 
 
 def motion_of(document: Mapping[str, Any], source: str = "the motion") -> Motion:
-    """Return the motion of a file's tables.
-
-    Parameters
-    ----------
-    document : mapping
-    source : str
-        The file's name, for later messages. Default: a word for it.
-
-    Raises
-    ------
-    InputError
-        Names the key.
-    """
+    """Return the motion of a file's tables; `source` is the file's name, for later messages."""
     if "trajectory" in document:  # else it is another file, such as a joint's
         check_schema(document)
     tables = _FILE.read(dict(document), "")
@@ -121,13 +95,7 @@ def motion_of(document: Mapping[str, Any], source: str = "the motion") -> Motion
 
 
 def check_schema(document: Mapping[str, Any]) -> None:
-    """Refuse the file of a later jointid; one that was written by hand states no schema.
-
-    Raises
-    ------
-    InputError
-        Names the schema.
-    """
+    """Refuse the file of a later jointid; one that was written by hand states no schema."""
     schema = document.get("schema")
     if isinstance(schema, int) and not isinstance(schema, bool) and schema > SCHEMA:
         raise InputError(
@@ -139,13 +107,7 @@ def check_schema(document: Mapping[str, Any]) -> None:
 
 
 def believed_of(tables: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
-    """Return the ranges of a table `[believed]`, if there is one.
-
-    Raises
-    ------
-    InputError
-        A range whose ends are the wrong way round.
-    """
+    """Return the ranges of a table `[believed]`, if there is one."""
     found = {name: (low, high) for name, (low, high) in tables.get("believed", {}).items()}
     for name, (low, high) in found.items():
         if low > high:
@@ -158,13 +120,7 @@ def believed_of(tables: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
 
 
 def motion_table(trajectory: Trajectory) -> dict[str, Any]:
-    """Return the table `[trajectory]` of a motion that is a sum of sines; the inverse of `motion_of`.
-
-    Raises
-    ------
-    InputError
-        It is of another form.
-    """
+    """Return the table `[trajectory]` of a motion that is a sum of sines; the inverse of `motion_of`."""
     if trajectory.form != "multisine":
         raise InputError(
             "a sum of sines is expected", argument="trajectory.form", value=trajectory.form

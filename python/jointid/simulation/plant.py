@@ -42,15 +42,7 @@ class Bristle:
 
 
 class Values:
-    """The values of a joint's parameters, and which of them were read.
-
-    Attributes
-    ----------
-    terms : tuple of Term
-        Terms of the joint's model.
-    used : dict of str to float
-        The values that were read, by name.
-    """
+    """The values of a joint's parameters; `used` has those that were read, by name."""
 
     def __init__(self, joint: Joint) -> None:
         self._joint = joint
@@ -110,14 +102,7 @@ class Values:
 def simulated_joint(
     joint: Joint, values: Values, payload: Link | float, bristle: Bristle | None
 ) -> _core.SimulatedJoint:
-    """Return the core's joint.
-
-    Raises
-    ------
-    InputError
-        A value that the simulation needs is missing or cannot be used; a term of the model cannot be
-        simulated.
-    """
+    """Return the core's joint; refuse a model that cannot be simulated, and a joint without a needed value."""
     require_simulated(joint, values.terms)
     revolute = joint.kind == "revolute"
     inertia, link_inertia = _inertias(joint, values)

@@ -191,13 +191,7 @@ class Scenario:
 
 
 def believing(controller: Controller, joint: Joint) -> Controller:
-    """Return a controller with what `control_estimates` reads from a joint, e.g. an estimate's.
-
-    Raises
-    ------
-    InputError
-        The controller uses no estimates, or the joint lacks a value.
-    """
+    """Return a controller with what `control_estimates` reads from a joint, e.g. an estimate's."""
     estimates = control_estimates(joint)
     used = {n: v for n, v in estimates.items() if n in controller.asdict()}
     if "coulomb" not in used:

@@ -23,26 +23,14 @@ def sensors_table(sensors: _core.Sensors) -> dict[str, Any]:
 
 
 def read_controller(table: Any, place: str) -> Controller:
-    """Return the controller of a table; the inverse of `controller_table`.
-
-    Raises
-    ------
-    InputError
-        Names place and key.
-    """
+    """Return the controller of a table; the inverse of `controller_table`."""
     read = Record({"law": Text(known=tuple(LAWS))}, other=Plain()).read(table, place)
     made: Controller = _made(LAWS[read.pop("law")], read, place)
     return made
 
 
 def read_sensors(table: Any, place: str) -> _core.Sensors:
-    """Return the sensors of a table; the inverse of `sensors_table`.
-
-    Raises
-    ------
-    InputError
-        Names place and key.
-    """
+    """Return the sensors of a table; the inverse of `sensors_table`."""
     made: _core.Sensors = _made(_core.Sensors, Record({}, other=Plain()).read(table, place), place)
     return made
 

@@ -18,25 +18,9 @@ def stepped_joint(
     velocity: float = 0.0,
     seed: int = 0,
 ) -> _core.SteppedJoint:
-    """Return a joint to step.
+    """Return a joint to step, made as in `simulate`, at rest unless a velocity [rad/s] is given.
 
-    Parameters
-    ----------
-    joint : Joint
-        With a value for each parameter of its model, as in `simulate`.
-    sensors, payload, bristle, seed
-        As in `simulate`.
-    period : float
-        Between observations [s], for the sensors' filter and velocity. Default 0.001.
-    integration_step : float
-        At most [s]. Default 0.00025.
-    position, velocity : float
-        At the start [rad], [rad/s]. Default 0.
-
-    Raises
-    ------
-    InputError
-        As in `simulate`.
+    `period` is the time between observations [s], `integration_step` the longest step [s].
     """
     values = Values(joint)
     return _core.SteppedJoint(

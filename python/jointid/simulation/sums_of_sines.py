@@ -9,17 +9,7 @@ _AT_ONCE = 1_000_000  # samples of all sines, of which a few arrays are made
 
 
 def peak_of_sines(rate: FloatArray, phase: FloatArray, duration: float, count: int) -> float:
-    """Return how far a sum of sines goes from where it starts; a part of its samples at a time.
-
-    Parameters
-    ----------
-    rate, phase : ndarray, shape (n,)
-        Of each sine [rad/s], [rad].
-    duration : float
-        [s]
-    count : int
-        Samples from 0 to `duration`, at least 2.
-    """
+    """Return how far a sum of sines goes from where it starts, in `count` samples from 0 to `duration` [s]."""
     step, part = duration / (count - 1), max(1, _AT_ONCE // len(rate))
     first, largest = np.sin(phase).sum(), 0.0
     for start in range(0, count, part):

@@ -42,13 +42,7 @@ def terms_of(joint: Joint) -> tuple[_core.Term, ...]:
 
 
 def require_simulated(joint: Joint, terms: Sequence[_core.Term]) -> None:
-    """Refuse a joint with a term that the simulated joint does not have.
-
-    Raises
-    ------
-    InputError
-        Names the term.
-    """
+    """Refuse a joint with a term that the simulated joint does not have."""
     usable = {term.key for term in _core.terms() if term.simulated}
     for term in terms:
         if not term.simulated:
@@ -58,13 +52,7 @@ def require_simulated(joint: Joint, terms: Sequence[_core.Term]) -> None:
 
 
 def require_compensated(joint: Joint, terms: Sequence[_core.Term]) -> None:
-    """Refuse a joint with a term that a controller neither has nor may omit.
-
-    Raises
-    ------
-    InputError
-        Names the term.
-    """
+    """Refuse a joint with a term that a controller neither has nor may omit."""
     refused = _core.Control.refused
     usable = {term.key for term in _core.terms() if term.control != refused}
     for term in terms:
