@@ -9,7 +9,7 @@
 
 namespace jointid::design {
 
-/// What the reference is held within.
+/// Limits of the reference.
 struct Bounds {
   double lowest = -1.0;  ///< position [rad]
   double highest = 1.0;

@@ -13,7 +13,7 @@ namespace jointid::design {
 namespace {
 
 constexpr double kExcess = 20.0;    // of the logarithm, for each unit of a limit
-constexpr double kUnknown = 1e6;    // an error that is none
+constexpr double kUnknown = 1e6;    // of an error: the parameter is not determined
 constexpr double kWeakest = 1e-13;  // eigenvalue of a correlation matrix
 constexpr double kUnstable = 1e3;   // a loop that diverges: worse than any other
 
@@ -29,7 +29,7 @@ void hold(Judgement& j, const Held& held) {
 }
 
 /// Root-mean-square errors by an information matrix and what misleads it, and the bias in them;
-/// kUnknown where it tells nothing.
+/// kUnknown for a parameter without information.
 std::pair<Eigen::VectorXd, Eigen::VectorXd> errors_of(const Eigen::MatrixXd& information,
                                                       const Eigen::VectorXd& misled) {
   const Eigen::VectorXd told = information.diagonal().cwiseMax(0.0).cwiseSqrt();

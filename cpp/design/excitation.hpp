@@ -21,13 +21,13 @@ struct Drawn {
   std::vector<Column> columns{};  ///< of the free parameters, the same for all joints
   Noise noise{};
   Eigen::VectorXd scale;   ///< what an error counts in
-  Eigen::VectorXd weight;  ///< 1: asked for, 0: not
+  Eigen::VectorXd weight;  ///< 1: requested, 0: not
   Eigen::MatrixXd known;   ///< information at hand: other recordings, the prior
   double inertia = 0.0;    ///< that a window's change of velocity counts with
   double viscous = 0.0;
 };
 
-/// What the joints themselves are held within.
+/// Limits of the joints themselves.
 struct Held {
   double lowest = -1e300;
   double highest = 1e300;

@@ -14,15 +14,15 @@ struct Noise {
   double torque = 1.0;    ///< of a sample, white [N·m]
   double position = 0.0;  ///< of the position at a window's end [rad]
   double velocity = 0.0;  ///< of the velocity there [rad/s]
-  double slowest = 0.0;   ///< slower samples tell nothing [rad/s]
-  /// Of a window in which the velocity changes its sign: when exactly, samples do not tell [N·m·s].
+  double slowest = 0.0;   ///< slower samples carry no information [rad/s]
+  /// Of a window in which the velocity changes its sign at an instant between samples [N·m·s].
   double reversal = 0.0;
   double sampled = 0.0;  ///< between samples of the recording [s]
 
   void validate() const;
 };
 
-/// What the windows of a run tell.
+/// Information of the windows of a run.
 struct Told {
   Eigen::MatrixXd information;  ///< sum of row' row / variance
   Eigen::VectorXd misled;       ///< sum of row' (what the balance misses) / variance

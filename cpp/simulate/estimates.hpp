@@ -16,7 +16,7 @@ namespace jointid::simulate {
 /// sticks; the desired one already says where it is to go.
 enum class FrictionVelocity { measured, reference };
 
-/// The last share of the static excess that was asked for: runs side by side often ask for the
+/// The last share of the static excess that was computed: runs in neighbouring lanes often need the
 /// same.
 struct Faded {
   double stribeck = -1.0;
@@ -44,7 +44,7 @@ struct Estimates {
   double viscous = 0.0;
   double sensor_gain = 1.0;
   double sensor_offset = 0.0;
-  bool torque_feedback = true;  ///< carry the link's torque as the sensor tells it
+  bool torque_feedback = true;  ///< carry the link's torque as the sensor measures it
   FrictionVelocity friction_velocity = FrictionVelocity::measured;
 
   [[nodiscard]] double friction_speed(const ControlInput& input) const {

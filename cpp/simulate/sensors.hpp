@@ -47,7 +47,7 @@ struct Observation {
   double reading = 0.0;
 };
 
-/// The true state that they look at.
+/// The true state that they measure.
 struct Seen {
   double time = 0.0;
   double position = 0.0;

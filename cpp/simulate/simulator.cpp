@@ -16,7 +16,7 @@ namespace {
 using Wide = base::Lanes<kSideBySide / 2>;
 using Narrow = base::Lanes<kSideBySide / 4>;  ///< no lane is idle where half as many run
 constexpr double kOutOfBounds = 1e12;         // radians: no motion, a loop that diverges
-constexpr std::size_t kBlock = 64;            // control periods between looks at the cancel flag
+constexpr std::size_t kBlock = 64;            // control periods between checks of the cancel flag
 
 std::int64_t rounded(double value) {
   return static_cast<std::int64_t>(std::floor(value + 0.5));
@@ -140,7 +140,7 @@ void run(const Scenario& scenario, const Wanted& reference, std::span<const Setu
   const auto every = static_cast<std::size_t>(scenario.sample_every);
   const std::size_t instants = scenario.instants();
   Number torque = 0.0;
-  Faded faded;  // laws that look at the reference ask for the same share in each run
+  Faded faded;  // laws that use the reference need the same share in each run
   for (std::size_t k = 0; k < instants; ++k) {
     if (k % kBlock == 0) cancel.check();
     const double time = static_cast<double>(k) * scenario.control_period;

@@ -59,7 +59,7 @@ struct Signals {
 };
 
 struct Outcome {
-  Signals signals{};  ///< empty unless asked for
+  Signals signals{};  ///< empty unless requested
   double rms_error = 0.0;
   double peak_error = 0.0;
   std::int64_t saturations = 0;
