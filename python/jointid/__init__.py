@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from jointid.design.design_file import load_design
     from jointid.design.design_search import DesignProgress, DesignSearch
     from jointid.design.designing import design_excitation
-    from jointid.design.known import Known
+    from jointid.design.information import Known
     from jointid.design.motion_limits import MotionLimits
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.estimate import Estimate
@@ -194,7 +194,7 @@ _HOMES = {
     "jointid.design.design_file": ("load_design",),
     "jointid.design.design_search": ("DesignProgress", "DesignSearch"),
     "jointid.design.designing": ("design_excitation",),
-    "jointid.design.known": ("Known",),
+    "jointid.design.information": ("Known",),
     "jointid.design.motion_limits": ("MotionLimits",),
     "jointid.estimate.bootstrap": ("Bootstrap",),
     "jointid.estimate.estimate": ("Estimate",),

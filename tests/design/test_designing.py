@@ -13,11 +13,11 @@ from closed_loop import TRUTH, thesis_joint, wrong_controller
 
 import jointid as jid
 from jointid.design import designing, holding
-from jointid.design.asked import free_parameters
 from jointid.design.judging import Situation
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import ranges_of
 from jointid.design.rehearsal import rehearse
+from jointid.design.request import request_of
 
 LIMITS = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
 SENSORS = jid.Sensors(torque_noise=0.5)
@@ -166,11 +166,11 @@ def test_little_is_done_after_ctrl_c(phase: str, monkeypatch: pytest.MonkeyPatch
         monkeypatch.setattr(holding, "_JOINTS", 20_000)
     begun = threading.Event()
     asked: list[float] = []
-    for name in ("rehearse", "held_by_all"):
+    for name in ("rehearse", "shrunk"):
         original = getattr(designing, name)
 
         def marked(*given: Any, original: Any = original, name: str = name, **more: Any) -> Any:
-            if (name, phase) in (("held_by_all", "limits"), ("rehearse", "rehearsal")):
+            if (name, phase) in (("shrunk", "limits"), ("rehearse", "rehearsal")):
                 begun.set()
             return original(*given, **more)
 
@@ -204,11 +204,11 @@ def test_little_is_done_after_ctrl_c(phase: str, monkeypatch: pytest.MonkeyPatch
 def test_information_says_what_simulated_recordings_show() -> None:
     """The judge's errors, from a noise-free run, are those that identifications have."""
     joint = thesis_joint()
-    asked = free_parameters(joint, None)
+    request = request_of(joint, None)
     situation = Situation(
         joint=joint,
-        asked=asked,
-        ranges=ranges_of(joint, asked.names, around()),
+        request=request,
+        ranges=ranges_of(joint, request.names, around()),
         limits=MotionLimits.of(LIMITS, joint),
         controller=wrong_controller(),
         sensors=SENSORS,
@@ -218,12 +218,12 @@ def test_information_says_what_simulated_recordings_show() -> None:
         known=np.zeros((6, 6)),
     )
     motion = jid.Trajectory.thesis(0.6, cycle=4.0)
-    values = {name: TRUTH[name] for name in asked.names}
+    values = {name: TRUTH[name] for name in request.names}
     judged = situation.judge([values]).judge(motion.core)[0]
     counted = rehearse(situation, motion, values, 80).rms()
     ratios = [
         error * abs(values[name]) / counted[name]
-        for name, error in zip(asked.names, judged.errors, strict=True)
+        for name, error in zip(request.names, judged.errors, strict=True)
     ]
     assert 0.7 < min(ratios) <= max(ratios) < 1.35
 
@@ -231,11 +231,11 @@ def test_information_says_what_simulated_recordings_show() -> None:
 def test_references_keep_their_bounds_between_samples() -> None:
     """Genes drawn at random, and the corners of their box."""
     joint = thesis_joint()
-    asked = free_parameters(joint, None)
+    request = request_of(joint, None)
     situation = Situation(
         joint=joint,
-        asked=asked,
-        ranges=ranges_of(joint, asked.names, around()),
+        request=request,
+        ranges=ranges_of(joint, request.names, around()),
         limits=MotionLimits.of({**LIMITS, "acceleration": 25.0}, joint),
         controller=wrong_controller(),
         sensors=SENSORS,
@@ -259,7 +259,7 @@ def test_references_keep_their_bounds_between_samples() -> None:
 
 def test_the_drawn_joints_fill_their_ranges_evenly() -> None:
     joint = thesis_joint()
-    names = free_parameters(joint, None).names
+    names = request_of(joint, None).names
     drawn = ranges_of(joint, names, around()).joints(11, 0)
     assert drawn[0] == pytest.approx(TRUTH)
     for name, (low, high) in around().items():

@@ -150,9 +150,9 @@ def test_what_cannot_be_asked_for(poor: jid.Estimate, first: jid.Recording) -> N
     with pytest.raises(jid.InputError, match="velocity: it is needed"):
         poor.next_motion({"position": (-1.0, 1.0)})
     nothing = np.zeros((0, 0))
-    held = dataclasses.replace(poor, free=(), covariance=nothing, information=nothing)
+    fixed = dataclasses.replace(poor, free=(), covariance=nothing, information=nothing)
     with pytest.raises(jid.InputError, match="the estimate has no free parameter, so no motion"):
-        held.next_motion(LIMITS)
+        fixed.next_motion(LIMITS)
     bare = jid.identify(first)
     with pytest.raises(jid.InputError, match="the joint has no link; give a joint with its link"):
         bare.next_motion(LIMITS | {"torque": 160.0})

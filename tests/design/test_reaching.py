@@ -9,15 +9,15 @@ from closed_loop import TRUTH, thesis_joint
 from designs import motion
 
 import jointid as jid
-from jointid.design.asked import free_parameters
-from jointid.design.holding import held_by_all
+from jointid.design.holding import shrunk
 from jointid.design.judging import Situation
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import ranges_of
+from jointid.design.request import request_of
 
 JOINT = thesis_joint()
-ASKED = free_parameters(JOINT, None)
-RANGES = {name: (0.8 * TRUTH[name], 1.2 * TRUTH[name]) for name in ASKED.names}
+REQUEST = request_of(JOINT, None)
+RANGES = {name: (0.8 * TRUTH[name], 1.2 * TRUTH[name]) for name in REQUEST.names}
 LAW = jid.AdaptiveRobust(**jid.control_estimates(JOINT.with_parameters(TRUTH)))
 
 
@@ -26,15 +26,15 @@ def situation(controller: Any = LAW, **limits: Any) -> Situation:
     usual: dict[str, Any] = {"position": (-1.2, 1.2), "velocity": 3.4, "torque": 160.0}
     return Situation(
         joint=JOINT,
-        asked=ASKED,
-        ranges=ranges_of(JOINT, ASKED.names, RANGES),
+        request=REQUEST,
+        ranges=ranges_of(JOINT, REQUEST.names, RANGES),
         limits=MotionLimits(**usual | limits),
         controller=controller,
         sensors=jid.Sensors(torque_noise=0.5),
         duration=6.0,
         control_period=1e-3,
         criterion="worst",
-        known=np.zeros((len(ASKED.names), len(ASKED.names))),
+        known=np.zeros((len(REQUEST.names), len(REQUEST.names))),
     )
 
 
@@ -45,7 +45,7 @@ def _one_step(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def problem(where: Situation) -> str:
-    return held_by_all(where, motion(), 0, 1)[2]
+    return shrunk(where, motion(), 0, 1)[2]
 
 
 def test_limits_that_are_kept_are_no_problem() -> None:
@@ -65,14 +65,14 @@ def test_the_limit_is_named_with_the_joint(limits: dict[str, Any], says: str) ->
     found = problem(situation(**limits))
     assert re.match(says, found), found
     values = dict(part.rsplit(" ", 1) for part in found.partition("a joint with ")[2].split(", "))
-    assert set(values) == set(ASKED.names)
+    assert set(values) == set(REQUEST.names)
     for name, value in values.items():
         assert 0.79 * TRUTH[name] <= float(value) <= 1.21 * TRUTH[name]
 
 
 def test_the_torque_that_is_needed_is_that_without_the_drives_limit() -> None:
     needed = float(problem(situation(torque=70.0)).split("have to be ")[1].split()[0])
-    reached = held_by_all(situation(torque=1000.0), motion(), 0, 1)[1].torque
+    reached = shrunk(situation(torque=1000.0), motion(), 0, 1)[1].torque
     assert 70.0 < needed <= 1.02 * reached
 
 

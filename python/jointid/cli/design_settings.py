@@ -171,7 +171,7 @@ def sensors_after(
     pairs: Sequence[tuple[str, str]], sensors: Sensors | None, estimate: Estimate
 ) -> Sensors | None:
     """The same sensors, with the noise that an estimate's residuals show where no option says it."""
-    from jointid.design.given import sensors_of
+    from jointid.design.posterior import sensors_of
 
     seen = sensors_of(estimate)
     if sensors is None or seen is None or "torque_noise" in dict(pairs):

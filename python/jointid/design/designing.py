@@ -14,19 +14,19 @@ from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.design.asked import free_parameters
 from jointid.design.balance_noise import assumed_sensors
+from jointid.design.checks import check_arguments, check_gain, check_length, check_signs
 from jointid.design.default_law import default_controller
 from jointid.design.design import COMPLETE, CRITERIA, Design
 from jointid.design.design_search import DesignProgress, DesignSearch
 from jointid.design.expectation import expected_errors, what_limits
-from jointid.design.holding import held_by_all
+from jointid.design.holding import shrunk
+from jointid.design.information import Known
 from jointid.design.judging import Situation, alike, fade_of
-from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of, with_room
 from jointid.design.rehearsal import Rehearsal, rehearse
-from jointid.design.stated import check_gain, check_length, check_signs, check_stated
+from jointid.design.request import request_of
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
 from jointid.simulation.peaks import Peaks
@@ -120,16 +120,16 @@ def design_excitation(
     >>> design.save("new_motion.toml")
     """
     require_kind("joint", joint, Joint)
-    check_stated(joint, controller, sensors, parameters, callback)
+    check_arguments(joint, controller, sensors, parameters, callback)
     settings = DesignSearch() if search is None else search
     require_kind("search", settings, DesignSearch)
-    held = MotionLimits.of(limits, joint)
+    limits = MotionLimits.of(limits, joint)
     drive = torque_limit(joint)
-    if drive is not None and held.torque is not None and held.torque > _SAME_TORQUE * drive:
+    if drive is not None and limits.torque is not None and limits.torque > _SAME_TORQUE * drive:
         raise InputError(
             f"it is beyond the drive's own limit of {drive:g}",
             argument="torque",
-            value=held.torque,
+            value=limits.torque,
             place="limits",
         )
     if criterion not in CRITERIA:
@@ -138,24 +138,24 @@ def design_excitation(
         )
     check_length(positive("duration", duration), positive("control_period", control_period))
     joint = _with_model(joint)
-    asked = free_parameters(joint, parameters)
-    ranges = ranges_of(joint, asked.names, prior)
-    check_signs(asked, ranges)
+    request = request_of(joint, parameters)
+    ranges = ranges_of(joint, request.names, prior)
+    check_signs(request, ranges)
     joint = with_room(joint, ranges.ranges)
-    check_gain(joint, asked)
+    check_gain(joint, request)
     nominal = joint.with_parameters(ranges.nominal)
-    assert held.torque is not None
+    assert limits.torque is not None
     situation = Situation(
         joint=joint,
-        asked=asked,
+        request=request,
         ranges=ranges,
-        limits=held,
-        controller=default_controller(nominal, held.torque) if controller is None else controller,
-        sensors=assumed_sensors(joint, held.torque) if sensors is None else sensors,
+        limits=limits,
+        controller=default_controller(nominal, limits.torque) if controller is None else controller,
+        sensors=assumed_sensors(joint, limits.torque) if sensors is None else sensors,
         duration=float(duration),
         control_period=float(control_period),
         criterion=criterion,
-        known=_matrix(known, asked.names),
+        known=_matrix(known, request.names),
     )
     return _Designing(situation, settings, callback).design(nominal)
 
@@ -184,7 +184,7 @@ class _Designing:
         self._fine = situation.judge(self._values)
         self._genes = self._fine.genes
         self._evaluations = 0
-        self._counted: tuple[str, ...] = situation.asked.wanted
+        self._counted: tuple[str, ...] = situation.request.wanted
 
     def design(self, nominal: Joint) -> Design:
         """Search, choose, and hold the limits for many joints."""
@@ -203,10 +203,12 @@ class _Designing:
             self._worth(motion, each) for motion, each in zip(motions, rehearsals, strict=True)
         ]
         chosen = motions[int(np.argmin(worth))]
-        final = self._held(chosen)
+        final = self._shrunk(chosen)
         if usual is not None and chosen is not usual:
             # Few rehearsals may flatter a motion; all of them, at the limits that it keeps, decide.
-            final = min(final, self._held(usual), key=lambda each: (bool(each.problem), each.worth))
+            final = min(
+                final, self._shrunk(usual), key=lambda each: (bool(each.problem), each.worth)
+            )
         trajectory, rehearsal = final.trajectory, final.rehearsal
         judgements = self._fine.judge(trajectory.core)
         errors = expected_errors(situation, judgements, self._values, rehearsal)
@@ -234,10 +236,10 @@ class _Designing:
         )
         return replace(made, limited_by=what_limits(made, situation, judgements[0]))
 
-    def _held(self, motion: Trajectory) -> _Final:
+    def _shrunk(self, motion: Trajectory) -> _Final:
         """Return a motion that many joints keep the limits with, and all its rehearsals."""
         situation, settings = self._situation, self._settings
-        trajectory, peaks, problem = held_by_all(situation, motion, settings.seed, settings.threads)
+        trajectory, peaks, problem = shrunk(situation, motion, settings.seed, settings.threads)
         rehearsal = rehearse(
             situation,
             trajectory,
@@ -251,14 +253,16 @@ class _Designing:
 
     def _counting(self, judge: _core.Excitation) -> tuple[str, ...]:
         """Return the wanted parameters that some motion determines for the nominal joint; all if none."""
-        asked = self._situation.asked
-        kept = dict(zip(asked.names, judge.joints[0].weight.tolist(), strict=True))
-        return tuple(name for name in asked.wanted if kept[name] > 0.0) or asked.wanted
+        request = self._situation.request
+        kept = dict(zip(request.names, judge.joints[0].weight.tolist(), strict=True))
+        return tuple(name for name in request.wanted if kept[name] > 0.0) or request.wanted
 
     def _relative(self, errors: Mapping[str, float]) -> dict[str, float]:
         """Return errors of the wanted parameters over these parameters' sizes."""
         situation, values = self._situation, self._values[0]
-        return {n: errors[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted}
+        return {
+            n: errors[n] / situation.ranges.scale(n, values[n]) for n in situation.request.wanted
+        }
 
     def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
         """Return what the search minimises, for the nominal joint.
@@ -270,13 +274,13 @@ class _Designing:
         judgement = self._fine.judge(motion.core)[0]
         bias, counted = self._relative(rehearsal.bias()), self._relative(rehearsal.rms())
         shares = []
-        for place, name in enumerate(self._situation.asked.names):
+        for place, name in enumerate(self._situation.request.names):
             if name in self._counted:
                 own = float(judgement.bias[place])
-                beside = max(bias[name] ** 2 - own**2, 0.0)
-                told = math.sqrt(float(judgement.errors[place]) ** 2 + beside)
+                unexplained = max(bias[name] ** 2 - own**2, 0.0)
+                expected = math.sqrt(float(judgement.errors[place]) ** 2 + unexplained)
                 low, high = counted[name] / _CONTRADICTED, counted[name] * _OVERSTATED
-                shares.append(min(max(told, low), high))
+                shares.append(min(max(expected, low), high))
         if self._situation.criterion == "worst":
             return float(max(shares))
         return float(np.mean(np.log(np.maximum(shares, 1e-12))))

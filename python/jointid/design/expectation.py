@@ -33,21 +33,21 @@ def expected_errors(
     With information from other recordings, this motion's information shrinks by the same factors: what is known can
     only make an error smaller.
     """
-    asked, ranges = situation.asked, situation.ranges
+    request, ranges = situation.request, situation.ranges
     units = _units(situation)
     counted = rehearsal.rms()
     known = bool(np.any(situation.known))
-    scales = np.array([ranges.scale(name, values[0][name]) for name in asked.names])
+    scales = np.array([ranges.scale(name, values[0][name]) for name in request.names])
     alone = _alone(judgements[0].information) if known else scales * judgements[0].errors
     factors = [
-        max(1.0, counted[name] / float(alone[place])) for place, name in enumerate(asked.names)
+        max(1.0, counted[name] / float(alone[place])) for place, name in enumerate(request.names)
     ]
     if known:
         stretch = np.outer(factors, factors)
         errors = [_alone(each.information / stretch + situation.known) for each in judgements]
     found = {}
-    for place, name in enumerate(asked.names):
-        if name not in asked.wanted:
+    for place, name in enumerate(request.names):
+        if name not in request.wanted:
             continue
         scale = ranges.scale(name, values[0][name])
         if known:
@@ -85,7 +85,7 @@ def what_limits(design: Design, situation: Situation, judgement: _core.MotionJud
 
 
 def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: str) -> str:
-    names = situation.asked.names
+    names = situation.request.names
     covariance = np.linalg.pinv(judgement.information + situation.known, hermitian=True)
     size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     row = np.abs(covariance / np.outer(size, size))[names.index(weakest)]
@@ -105,7 +105,7 @@ def _alone(information: Array) -> Array:
 
 def _units(situation: Situation) -> dict[str, str]:
     prismatic = situation.joint.kind == "prismatic"
-    rows = [_core.term(key) for key in situation.asked.terms]
+    rows = [_core.term(key) for key in situation.request.terms]
     units = {row.name: row.unit_prismatic if prismatic else row.unit for row in rows}
     shapes = {row.name: row.unit_prismatic if prismatic else row.unit for row in _core.shapes()}
     return units | shapes

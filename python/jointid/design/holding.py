@@ -20,7 +20,7 @@ _LEAST = 0.8  # of a motion's size, in one step
 _TOGETHER = 16
 
 
-def held_by_all(
+def shrunk(
     situation: Situation, trajectory: Trajectory, seed: int, threads: int
 ) -> tuple[Trajectory, Peaks, str]:
     """Return the motion, made smaller until many joints keep all limits, and what they reach.

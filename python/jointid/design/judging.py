@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.design.asked import Asked
 from jointid.design.balance_noise import noise_of_balance
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Ranges
+from jointid.design.request import Request
 from jointid.design.simulated_friction import largest_other, largest_viscous
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
@@ -43,7 +43,7 @@ class Situation:
     """All by which a motion is judged, except the motion itself."""
 
     joint: Joint
-    asked: Asked
+    request: Request
     ranges: Ranges
     limits: MotionLimits
     controller: Controller
@@ -86,7 +86,7 @@ class Situation:
         limited = self.joint
         if torque is not None:
             limited = limited.replace(limits=replace(limited.limits, torque=torque, current=None))
-        names = self.asked.names
+        names = self.request.names
         kept = {name: own for name, own in limited.parameters.items() if name not in names}
         return limited.replace(parameters=kept)
 
@@ -99,7 +99,7 @@ class Situation:
     def _drawn(
         self, values: dict[str, float], scenario: _core.Scenario, believed: bool
     ) -> _core.DrawnJoint:
-        names = self.asked.names
+        names = self.request.names
         setup = self.setup(values, scenario)
         scale = np.array([self.ranges.scale(name, values[name]) for name in names])
         width = np.array([high - low for low, high in (self.ranges.ranges[n] for n in names)])
@@ -109,7 +109,7 @@ class Situation:
             inertia += setup.joint.link_inertia
         return _core.DrawnJoint(
             setup=setup,
-            columns=self.asked.columns(values),
+            columns=self.request.columns(values),
             noise=noise_of_balance(
                 self.joint,
                 setup,
@@ -120,8 +120,8 @@ class Situation:
                 velocity=self.limits.velocity,
             ),
             scale=scale,
-            weight=np.array([float(name in self.asked.wanted) for name in names]),
-            # What was told of given joints is in `known`; a range tells that much.
+            weight=np.array([float(name in self.request.wanted) for name in names]),
+            # The information of listed joints is in `known`; a range adds its own.
             known=self.known + own if believed and not self.ranges.drawn else self.known,
             inertia=inertia,
             viscous=largest_viscous(setup.joint),

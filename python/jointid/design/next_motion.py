@@ -13,14 +13,14 @@ from jointid.base.errors import InputError
 from jointid.design.design import Design
 from jointid.design.design_search import DesignSearch
 from jointid.design.designing import design_excitation
-from jointid.design.given import given_by, joint_of, sensors_of
 from jointid.design.motion_limits import MotionLimits
+from jointid.design.posterior import joint_of, posterior_of, sensors_of
 from jointid.design.prior import Prior
 from jointid.estimate.estimate import Estimate
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 
-_HELD = 48  # joints that have to keep the limits
+_JOINTS = 48  # joints that have to keep the limits
 
 
 def motion_after(
@@ -37,11 +37,11 @@ def motion_after(
     **options: Any,
 ) -> Design:
     """Design the motion of `Estimate.next_motion`; `joint` has facts that the estimate's joint lacks."""
-    given = given_by(estimate)
-    wanted = given.names if parameters is None else tuple(parameters)
+    posterior = posterior_of(estimate)
+    wanted = posterior.names if parameters is None else tuple(parameters)
     for name in wanted:
-        if name not in given.names:
-            free = f"free are {', '.join(given.names)}" if given.names else "none is free"
+        if name not in posterior.names:
+            free = f"free are {', '.join(posterior.names)}" if posterior.names else "none is free"
             raise InputError(
                 f"the estimate has no free parameter of this name; {free}",
                 argument="parameters",
@@ -51,7 +51,7 @@ def motion_after(
         raise InputError(
             "the estimate has no free parameter, so no motion can improve it", argument="parameters"
         )
-    believed = joint_of(estimate, given, joint)
+    believed = joint_of(estimate, posterior, joint)
     if believed.sensor and believed.link is None and {"sensor_gain", "sensor_offset"} & set(wanted):
         raise InputError(
             "the load of the torque sensor is not known: the joint has no link",
@@ -68,11 +68,13 @@ def motion_after(
         sensors=sensors_of(estimate) if sensors is None else sensors,
         parameters=wanted,
         search=settings,
-        known=given.known,
-        prior=given.joints(max(_HELD, settings.joints), settings.seed) if prior is None else prior,
+        known=posterior.known,
+        prior=posterior.joints(max(_JOINTS, settings.joints), settings.seed)
+        if prior is None
+        else prior,
         **options,
     )
-    before = given.known.stderr()
+    before = posterior.known.stderr()
     rows = {
         name: replace(row, before=before.get(name, math.inf))
         for name, row in design.parameters.items()

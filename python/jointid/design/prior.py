@@ -65,9 +65,9 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
             "a range by parameter, or values of joints, are expected", argument="prior", value=prior
         )
     if prior is not None and not isinstance(prior, Mapping):
-        return _given(names, prior)
-    stated = {} if prior is None else dict(prior)
-    for name in stated:
+        return _of_joints(names, prior)
+    chosen = {} if prior is None else dict(prior)
+    for name in chosen:
         if name not in names:
             raise InputError(
                 f"it is not a free parameter; {suggestion(str(name), list(names))}",
@@ -81,8 +81,8 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
         parameter = joint.parameters.get(name)
         value = None if parameter is None else parameter.value
         bounds = (None, None) if parameter is None else (parameter.min, parameter.max)
-        if name in stated:
-            ranges[name] = _range(name, stated[name])
+        if name in chosen:
+            ranges[name] = _range(name, chosen[name])
             value = None
         elif bounds[0] is not None and bounds[1] is not None:
             ranges[name] = (bounds[0], bounds[1])
@@ -124,7 +124,7 @@ def with_room(joint: Joint, ranges: Mapping[str, Range]) -> Joint:
     return joint.replace(parameters=table)
 
 
-def _given(names: Sequence[str], joints: Sequence[Mapping[str, float]]) -> Ranges:
+def _of_joints(names: Sequence[str], joints: Sequence[Mapping[str, float]]) -> Ranges:
     found = []
     for number, each in enumerate(joints):
         if not isinstance(each, Mapping) or set(each) < set(names):
@@ -142,12 +142,12 @@ def _given(names: Sequence[str], joints: Sequence[Mapping[str, float]]) -> Range
     return Ranges(nominal=found[0], ranges=ranges, drawn=tuple(found))
 
 
-def _range(name: str, given: object) -> Range:
-    if not isinstance(given, list | tuple) or len(given) != 2:
+def _range(name: str, bounds: object) -> Range:
+    if not isinstance(bounds, list | tuple) or len(bounds) != 2:
         raise InputError(
-            "a lowest and a highest value are expected", argument=name, value=given, place="prior"
+            "a lowest and a highest value are expected", argument=name, value=bounds, place="prior"
         )
-    low, high = (finite_number("prior", name, bound) for bound in given)
+    low, high = (finite_number("prior", name, bound) for bound in bounds)
     if not low < high:
         raise InputError(
             "the first must be below the second", argument=name, value=[low, high], place="prior"

@@ -55,7 +55,7 @@ def rehearse(
 
     `first` is the seed of the first recording's noise; `observe` is called with how many recordings are done.
     """
-    names = situation.asked.names
+    names = situation.request.names
     errors = np.empty((count, len(names)))
     for begin in range(0, count, _TOGETHER):
         seeds = list(range(first + begin, first + min(begin + _TOGETHER, count)))

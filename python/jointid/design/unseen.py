@@ -1,4 +1,4 @@
-"""Friction at low speed that the recordings have not seen, and what a next motion looks for instead."""
+"""Friction at low speed that the recordings do not show, and the values that a next motion is designed for."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import NORMAL
 from jointid.estimate.statistics import ParameterEstimate
 
-_EXCESS = 0.2  # of Coulomb friction: a static excess that is looked for
-_NEGLIGIBLE = 0.02  # of Coulomb friction: a smaller one is not
+_EXCESS = 0.2  # of Coulomb friction: the largest assumed static excess
+_NEGLIGIBLE = 0.02  # of Coulomb friction: a smaller one is absent
 _FADED = 1.0 / 30.0  # of the top speed: where it fades
 _INSIGNIFICANT = 0.5  # of its value: a standard error beyond it
 

@@ -1,4 +1,4 @@
-"""The list of targets. A new target is one file beside this one, and one line in `MODULES`."""
+"""The list of targets. A new target is one file in this folder, and one line in `MODULES`."""
 
 from importlib import import_module
 from pathlib import Path

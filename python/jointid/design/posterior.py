@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
-from jointid.design.known import Known
+from jointid.design.information import Known
 from jointid.design.unseen import unseen_friction
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import NORMAL, half_widths
@@ -29,7 +29,7 @@ _SIGNED = ("offset", "gravity", "ripple", "position")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Given:
+class Posterior:
     """What an estimate says of a joint's parameters."""
 
     known: Known  # information as wide as the intervals are
@@ -81,28 +81,29 @@ class Given:
         return _WIDEST * size, lower, upper
 
 
-def given_by(estimate: Estimate) -> Given:
-    """Return what an estimate says of the parameters that another motion can tell more of.
+def posterior_of(estimate: Estimate) -> Posterior:
+    """Return what an estimate says of the parameters that another motion can improve, as uncertain as its intervals.
 
-    It is as uncertain as the intervals: by chance and by what the recordings show besides. An offset
-    that no motion divides from the friction of the two directions is taken as it is, and so is what a bound holds,
-    but for friction at low speed that was not seen: it is looked for.
+    An offset that no motion divides from the friction of the two directions is fixed, and so is a value at its bound,
+    except unseen friction at low speed: the next motion is to show it.
     """
-    assumed, held = unseen_friction(estimate)
-    held |= {each.offset for each in undivided(estimate.free)}
+    assumed, fixed = unseen_friction(estimate)
+    fixed |= {each.offset for each in undivided(estimate.free)}
     # A recording's own parameter, "coulomb[0]", will not be that of the next one.
     own = {name for name in estimate.free if "[" in name}
     own |= {key for term in estimate.joint.model.resolved.terms.each for key in term.keys}
     names = tuple(
-        name for name in estimate.parameters if name in {*estimate.free, *assumed} - held - own
+        name for name in estimate.parameters if name in {*estimate.free, *assumed} - fixed - own
     )
     table = estimate.joint.parameters
     values = {name: estimate.parameters[name].value for name in names} | assumed
     if "inertia" in values:
         values["inertia"] += _own_inertia(estimate)
     friction = float(np.max(np.abs(estimate.windows.friction), initial=0.0))
-    return Given(
-        known=Known(names=names, information=_information(estimate, names, held, {*assumed, *own})),
+    return Posterior(
+        known=Known(
+            names=names, information=_information(estimate, names, fixed, {*assumed, *own})
+        ),
         values=np.array([values[name] for name in names]),
         bounds={name: (table[name].min, table[name].max) for name in names if name in table},
         scale={name: friction for name in names if any(part in name for part in _SIGNED)},
@@ -122,14 +123,14 @@ def _own_inertia(estimate: Estimate) -> float:
 
 
 def _information(
-    estimate: Estimate, names: tuple[str, ...], held: set[str], unknown: set[str]
+    estimate: Estimate, names: tuple[str, ...], fixed: set[str], unknown: set[str]
 ) -> Array:
-    """Information of these parameters, as wide as their intervals: at what is held, whatever the unknown ones are."""
+    """Information of these parameters, as wide as their intervals: at the fixed values, for any of the unknown ones."""
     wider = half_widths(estimate, without="symmetry") / NORMAL  # which no motion tells
     whole = _of_chance(estimate) / np.outer(wider, wider)
     free = estimate.free
     kept = [free.index(name) for name in names if name in free and name not in unknown]
-    lost = [free.index(name) for name in free if name in unknown and name not in held]
+    lost = [free.index(name) for name in free if name in unknown and name not in fixed]
     left = whole[np.ix_(kept, kept)]
     if lost:
         across = whole[np.ix_(kept, lost)]
@@ -168,7 +169,7 @@ def sensors_of(estimate: Estimate) -> _core.Sensors | None:
     return _core.Sensors(torque_noise=noise) if noise > 0.0 else None
 
 
-def joint_of(estimate: Estimate, given: Given, facts: Joint | None) -> Joint:
+def joint_of(estimate: Estimate, posterior: Posterior, facts: Joint | None) -> Joint:
     """Return the joint of a design: the estimate's values, free where another motion can improve them.
 
     `facts` is a joint with what that of the identification lacked: a link, limits.
@@ -183,7 +184,7 @@ def joint_of(estimate: Estimate, given: Given, facts: Joint | None) -> Joint:
             argument="joint",
         )
     table = dict(base.parameters)
-    values = dict(zip(given.names, given.values.tolist(), strict=True))
+    values = dict(zip(posterior.names, posterior.values.tolist(), strict=True))
     for name, parameter in own.parameters.items():
         if parameter.value is None:  # of another model
             continue
@@ -193,7 +194,7 @@ def joint_of(estimate: Estimate, given: Given, facts: Joint | None) -> Joint:
             value=values.get(name, parameter.value),
             min=known.min,
             max=known.max,
-            vary=name in given.names,
+            vary=name in posterior.names,
         )
     for term in own.model.resolved.terms.each:
         for key in term.keys:

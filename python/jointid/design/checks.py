@@ -1,4 +1,4 @@
-"""Checks of what is stated for a design, before anything is simulated."""
+"""Checks of the arguments of a design, before anything is simulated."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from typing import get_args
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.design.asked import Asked
 from jointid.design.prior import Ranges
+from jointid.design.request import Request
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import LAWS, Controller
 
 _FEWEST, _MOST = 8, 1_000_000  # control periods of a motion: more of them would fill the memory
 
 
-def check_stated(
+def check_arguments(
     joint: Joint,
     controller: object = None,
     sensors: object = None,
@@ -50,9 +50,9 @@ def check_stated(
         raise InputError("a callable is expected", argument="callback", value=callback)
 
 
-def check_signs(asked: Asked, ranges: Ranges) -> None:
+def check_signs(request: Request, ranges: Ranges) -> None:
     """Check that nothing is believed below 0 that cannot be."""
-    signed = {term.name: not term.non_negative for term in map(_core.term, asked.terms)}
+    signed = {term.name: not term.non_negative for term in map(_core.term, request.terms)}
     for name, (low, high) in ranges.ranges.items():
         if low < 0.0 and not signed.get(name, False):
             raise InputError(
@@ -70,10 +70,10 @@ def check_length(duration: float, control_period: float) -> None:
         )
 
 
-def check_gain(joint: Joint, asked: Asked) -> None:
+def check_gain(joint: Joint, request: Request) -> None:
     """Check that the sensor's gain, as it is believed and bounded, cannot be 0."""
     gain = joint.parameters.get("sensor_gain")
-    if gain is None or "sensor_gain" not in asked.names or gain.min is None or gain.max is None:
+    if gain is None or "sensor_gain" not in request.names or gain.min is None or gain.max is None:
         return
     if gain.min <= 0.0 <= gain.max:
         raise InputError(

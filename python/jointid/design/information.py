@@ -25,8 +25,8 @@ class Known:
 
     Examples
     --------
-    >>> told = jid.Known(names=("coulomb", "viscous"), information=np.diag([4.0, 25.0]))
-    >>> told.stderr()["viscous"]
+    >>> before = jid.Known(names=("coulomb", "viscous"), information=np.diag([4.0, 25.0]))
+    >>> before.stderr()["viscous"]
     0.2
     """
 

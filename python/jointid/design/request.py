@@ -17,7 +17,7 @@ from jointid.recording.recording import Recording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
+class Request:
     """What an identification leaves free, and what a motion is designed for."""
 
     names: tuple[str, ...]  # the free parameters
@@ -44,7 +44,7 @@ class Asked:
         return [found[name] for name in self.names]
 
 
-def free_parameters(joint: Joint, wanted: Sequence[str] | None) -> Asked:
+def request_of(joint: Joint, wanted: Sequence[str] | None) -> Request:
     """Return the free parameters of an identification of this joint; refuse own terms and unknown names."""
     if joint.model.resolved.terms:
         raise InputError(
@@ -77,7 +77,7 @@ def free_parameters(joint: Joint, wanted: Sequence[str] | None) -> Asked:
             )
     if not chosen:
         raise InputError("at least one parameter is expected", argument="parameters", value=[])
-    return Asked(
+    return Request(
         names=names,
         wanted=chosen,
         terms=prepared.problem.choice.terms,

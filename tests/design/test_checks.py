@@ -1,4 +1,4 @@
-"""What is stated for a design and cannot be used is named, before anything is simulated."""
+"""Arguments of a design that cannot be used are named, before anything is simulated."""
 
 from typing import Any
 
