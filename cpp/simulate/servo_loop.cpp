@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFarthest = 1e6;  // [rad]; beyond, a motion has no meaning
 
-/// The duty that acts now: the latest whose delay has passed.
+/// The duty that acts now: the latest of those older than the delay.
 class DelayedDuty {
  public:
   explicit DelayedDuty(double delay) : delay_(delay) {}

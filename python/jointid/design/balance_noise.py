@@ -18,7 +18,7 @@ _STANDING = 1e-4  # of the largest speed
 
 
 def assumed_sensors(joint: Joint, torque: float) -> _core.Sensors:
-    """Return the sensors of a joint of which nothing is said: a torque sensor with noise, or a coarse encoder."""
+    """Return the default sensors of a joint: a torque sensor with noise, or a coarse encoder."""
     if joint.sensor:
         return _core.Sensors(torque_noise=_OWN * torque)
     return _core.Sensors(encoder_counts=_COUNTS, velocity="difference")

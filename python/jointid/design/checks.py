@@ -51,7 +51,7 @@ def check_arguments(
 
 
 def check_signs(request: Request, ranges: Ranges) -> None:
-    """Check that nothing is believed below 0 that cannot be."""
+    """Check that no range of the prior begins below 0 for a parameter that cannot be negative."""
     signed = {term.name: not term.non_negative for term in map(_core.term, request.terms)}
     for name, (low, high) in ranges.ranges.items():
         if low < 0.0 and not signed.get(name, False):

@@ -38,10 +38,10 @@ Callback = Callable[[DesignProgress], object]
 
 _RUNS = 2  # searches, of which the better motion is taken by rehearsing both
 _COARSE = 2  # times the control period, in the search
-_FIRST = 48  # motions drawn at random, from which follows what can be asked of which joint
+_FIRST = 48  # motions drawn at random: they show which parameters of which joint count
 _DETERMINED = 0.15  # relative error that one of them must reach
 _TRIED = 0.2  # of the rehearsals, to tell the motions found apart
-_CONTRADICTED = 1.25  # times the error that the information tells: it does not know something
+_CONTRADICTED = 1.25  # times the information's error: the information misses something
 _OVERSTATED = 1.5  # times the error counted; less may be the luck of few rehearsals
 _USUAL = math.radians(20.0)  # of the thesis's motion [rad]
 _CYCLE = 6.0  # the same [s]
@@ -267,9 +267,9 @@ class _Designing:
     def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
         """Return what the search minimises, for the nominal joint.
 
-        The information's errors scatter less than those of few rehearsals, whose mean tells what the information
-        does not know: a bias. Where the errors counted contradict both, they count: without a torque sensor, errors of
-        positions cancel between windows, and the information's are several times too large.
+        The information's errors scatter less than those of few rehearsals; the rehearsals' mean adds the bias, which
+        the information lacks. Counted errors that contradict both decide: without a torque sensor, position errors
+        cancel between windows, and the information's errors are several times too large.
         """
         judgement = self._fine.judge(motion.core)[0]
         bias, counted = self._relative(rehearsal.bias()), self._relative(rehearsal.rms())

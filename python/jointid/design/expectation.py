@@ -95,7 +95,7 @@ def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: st
 
 
 def _alone(information: Array) -> Array:
-    """Standard errors by an information matrix alone; infinite where it tells nothing."""
+    """Standard errors by an information matrix alone; infinite where it is zero."""
     seen = np.sqrt(np.maximum(np.diag(information), 0.0))
     size = np.where(seen > 0.0, seen, 1.0)
     strength, directions = np.linalg.eigh(information / np.outer(size, size))

@@ -98,7 +98,7 @@ def _recordings(
 def _unstable(
     situation: Situation, trajectory: Trajectory, joints: Sequence[Mapping[str, float]]
 ) -> str:
-    """The first joint whose loop is not stable, for a sentence."""
+    """The first joint with an unstable loop, for a sentence."""
     for each in joints:
         try:
             _recordings(situation, trajectory, [each], 0, 1)

@@ -22,7 +22,7 @@ from jointid.problem.constant_torque import undivided
 
 Array = NDArray[np.float64]
 
-_FACTOR = 3.0  # between a value and the farthest joint that is drawn, where nothing else bounds it
+_FACTOR = 3.0  # between a value and the farthest joint that is drawn, where no bound is nearer
 _WIDEST = 0.5  # of the value: a standard deviation beyond it is drawn as this
 _MEDIAN = 0.6745  # of the magnitude of normal noise, in its standard deviations
 _SIGNED = ("offset", "gravity", "ripple", "position")
@@ -111,7 +111,7 @@ def posterior_of(estimate: Estimate) -> Posterior:
 
 
 def _own_inertia(estimate: Estimate) -> float:
-    """The mean inertia of the own terms, whose signals no design knows [kg·m² or kg]."""
+    """The mean inertia of the own terms; no design has their signals [kg·m² or kg]."""
     terms = estimate.joint.model.resolved.terms.each
     means = estimate.settings.get("mean_inertia", {})
     return sum(

@@ -16,7 +16,7 @@ from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 
 _CUT = 0.9999  # of the drive's limit: a torque that was cut there
-_UNLIMITED = 20.0  # times the limit: what a joint would need is asked with so much more
+_UNLIMITED = 20.0  # times the limit: with this much torque, the simulation shows what a joint needs
 _UNITS = {
     "position": ("rad", "m"),
     "velocity": ("rad/s", "m/s"),

@@ -43,7 +43,7 @@ def rows(design: Design) -> list[list[str]]:
     return found
 
 
-def limits_held(design: Design) -> list[str]:
+def limits_used(design: Design) -> list[str]:
     """One sentence a limit: what is reached of it."""
     peaks, side = design.peaks, design.joint.kind == "prismatic"
     low, high = design.limits.position
@@ -108,7 +108,7 @@ def _remarks(design: Design) -> list[str]:
     return [
         *([f"{weakest}{limited}"] if weakest else []),
         *improved(design),
-        *(f"reaches {line}" for line in limits_held(design)),
+        *(f"reaches {line}" for line in limits_used(design)),
         assumed(design),
         judged_with(design),
     ]

@@ -70,7 +70,7 @@ class Centred:
 
     @property
     def size(self) -> float:
-        """More than this it is nowhere."""
+        """An upper bound of its magnitude."""
         return abs(self.cos) + math.hypot(self.cos, self.sin)
 
 

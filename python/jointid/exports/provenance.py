@@ -79,7 +79,7 @@ def value_line(value: ExportedValue) -> str:
 
 
 def plain(text: str) -> str:
-    """Return text in ASCII on one line, for files whose readers may know no other."""
+    """Return text in ASCII on one line, for readers that may know no other."""
     decomposed = unicodedata.normalize("NFKD", text.translate(_PLAIN))
     return " ".join(decomposed.encode("ascii", "ignore").decode("ascii").split(" ")).translate(
         dict.fromkeys((*range(32), 127), " ")

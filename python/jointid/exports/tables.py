@@ -26,7 +26,7 @@ class Reference:
 
 
 def speed_scale(subject: Subject) -> float:
-    """Return the largest speed of the tables: the recorded one, else 1."""
+    """Return the largest speed of the tables: the recorded one, or 1 if it is not known."""
     return subject.speed or 1.0
 
 

@@ -1,4 +1,4 @@
-"""MuJoCo: the motor of a servo, whose control is the duty."""
+"""MuJoCo: the motor of a servo; its control is the duty."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import numpy as np
 from jointid.base.html import Html, element, page, table
 from jointid.design.assumptions import assumed
 from jointid.design.design import COMPLETE, Design
-from jointid.design.tables import head, improved, judged_with, limits_held, rows, share_text
+from jointid.design.tables import head, improved, judged_with, limits_used, rows, share_text
 from jointid.joint.units import velocity_label
 from jointid.report.answering import answer
 from jointid.report.drawing.marks import Bars, Level, Line, Panel
@@ -37,7 +37,7 @@ def design_report(design: Design) -> str:
         table([list(row) for row in rows(design)], head=head(design), class_="errors"),
         element("p", "Expected standard errors of one recording of this motion."),
         element("h2", "Limits", id="limits"),
-        element("ul", *(element("li", line) for line in limits_held(design))),
+        element("ul", *(element("li", line) for line in limits_used(design))),
         element("h2", "Motion", id="motion"),
         *_pictures(design),
         element("h2", "What it assumes", id="assumptions"),

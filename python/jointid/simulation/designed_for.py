@@ -54,7 +54,7 @@ class DesignedFor:
         )
 
     def _joints(self, joint: Joint | None) -> Iterator[str]:
-        """In what a joint differs: its facts, its link, and values that nobody believed possible."""
+        """In what a joint differs: its facts, its link, and values outside the believed ranges."""
         if joint is None:
             return
         for name in _FACTS:

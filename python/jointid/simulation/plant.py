@@ -58,7 +58,7 @@ class Values:
         return value
 
     def need(self, name: str) -> float:
-        """Return a parameter's value; raise an error that names it where there is none."""
+        """Return a parameter's value; refuse a parameter without one."""
         value = self.get(name)
         if value is None:
             raise InputError(

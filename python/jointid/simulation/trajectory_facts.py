@@ -11,7 +11,7 @@ from jointid.base.html import Html, element, table
 if TYPE_CHECKING:
     from jointid.simulation.trajectory import Trajectory
 
-_LOOKS = 2001  # instants at which extremes are looked for
+_INSTANTS = 2001  # samples from which the extremes are taken
 
 
 def line_of(trajectory: Trajectory) -> str:
@@ -37,7 +37,7 @@ def html_facts(trajectory: Trajectory) -> Html:
 
 
 def _extremes(trajectory: Trajectory) -> tuple[tuple[float, float], float, float]:
-    time = np.linspace(0.0, trajectory.duration, _LOOKS)
+    time = np.linspace(0.0, trajectory.duration, _INSTANTS)
     position, velocity, acceleration = trajectory.sample(time)
     span = (float(position.min()), float(position.max()))
     return span, float(np.abs(velocity).max()), float(np.abs(acceleration).max())
