@@ -27,17 +27,9 @@ def answer(
     saved: str = "",
     rolled: Rollout | None = None,
 ) -> str:
-    """Return the answer in at most 15 lines.
+    """Return the answer in at most 15 lines; `action` words an advice, `saved` is the file that has the estimate.
 
-    Parameters
-    ----------
-    estimate : ServoEstimate
-    action : callable
-        Words an action. Default: as at a Python prompt.
-    saved : str
-        The file that has the estimate. Default: there is none.
-    rolled : Rollout, optional
-        Of the runs. Default: nothing was simulated.
+    `rolled` is the rollout of the runs, if there is one.
     """
     count = len(estimate.runs)
     verdict, runs = estimate.verdict, f"{count} run{'s' * (count != 1)}"

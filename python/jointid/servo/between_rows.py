@@ -23,21 +23,10 @@ UNSATURATED = 0.98
 def voltages(
     run: ServoSignals, drive: VoltageDrive | None, times: Array, lead: float
 ) -> tuple[Array, Array]:
-    """Return the voltage of a command that moves evenly, and what a held one adds [V].
+    """Return the voltage [V] of a command that moves evenly, and what a held one adds, at `times` [s].
 
-    Parameters
-    ----------
-    run : ServoSignals
-    drive : VoltageDrive or None
-        With the position loop, if it is known; else nothing is added.
-    times : ndarray, shape (m,)
-        Where the voltages are asked for [s].
-    lead : float
-        Time by which a row's position is older than its duty [s].
-
-    Returns
-    -------
-    even, late : ndarray, shape (m,)
+    Without a drive that has a position loop, nothing is added. `lead` is how much older a row's position is than its
+    duty [s].
     """
     # A row's duty was read after its position, so it belongs to a later time.
     stamps = run.time + lead

@@ -14,12 +14,7 @@ if TYPE_CHECKING:
 
 
 def identified_joint(estimate: ServoEstimate) -> Joint:
-    """Return the joint with motor, inertia and friction as identified.
-
-    Parameters
-    ----------
-    estimate : ServoEstimate
-    """
+    """Return the joint with motor, inertia and friction as identified."""
     joint = estimate.joint
     names = [t.name for t in (*LAYOUTS[estimate.model].friction, LOAD_FRICTION)]
     values = {name: estimate[name] for name in names if name in estimate.parameters}

@@ -28,16 +28,8 @@ _STEP = 5e-3  # s
 def share_of(joint: Joint, runs: Sequence[ServoSignals], layout: Layout, solution: Array) -> float:
     """Return the share of back-EMF whose free swing is nearest to those of all others; a half without gravity.
 
-    Parameters
-    ----------
-    joint : Joint
-        Its link is the load.
-    runs : sequence of ServoSignals
-        The load is let go where it pulls hardest in them, for as long as the longest of them.
-    layout : Layout
-        With friction in proportion to the speed.
-    solution : ndarray
-        Of its back-EMF and its friction in proportion to the speed only the sum is used.
+    The load is let go where it pulls hardest in the runs, for as long as the longest run. Of the solution's back-EMF
+    and its friction in proportion to the speed only the sum is used.
     """
     if joint.link is None:
         return 0.5

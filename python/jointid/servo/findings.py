@@ -21,13 +21,7 @@ _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
 def findings_of(estimate: ServoEstimate, sought: Sought) -> tuple[Finding, ...]:
-    """Return the findings, the most severe first.
-
-    Parameters
-    ----------
-    estimate : ServoEstimate
-    sought : Sought
-    """
+    """Return the findings, the most severe first."""
     found = [
         *_inseparable(estimate, sought),
         *_not_sensed(estimate),

@@ -33,17 +33,10 @@ BY_LOAD, INERTIA, HELD = range(-3, 0)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Layout:
-    """The parameters of a servo with one friction model.
-
-    Attributes
-    ----------
-    model : str
-    friction : tuple of Term
-        Friction of the speed, in the order of `SPEED_FRICTION`.
-    """
+    """The parameters of a servo with one friction model."""
 
     model: str
-    friction: tuple[_core.Term, ...]
+    friction: tuple[_core.Term, ...]  # of the speed, in the order of `SPEED_FRICTION`
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -76,10 +69,7 @@ DEFAULT_MODEL = next(iter(LAYOUTS))
 def balance(last: Array) -> tuple[Array, Array]:
     """Return the balance as linear in the parameters: columns (m, columns, size), and what they give (m, columns).
 
-    Parameters
-    ----------
-    last : ndarray, shape (m, size)
-        Some columns are products of parameters: these are formed with the last solutions.
+    Columns that are products of parameters are formed with the last solutions, (m, size).
     """
     count, size = last.shape
     torque, held = last[:, TORQUE], last[:, HELD]

@@ -11,15 +11,7 @@ _ENOUGH = 4  # samples of a span; three different instants fix a parabola
 
 
 def local_quadratic(time: Array, values: Array, at: Array, half: float) -> tuple[Array, Array]:
-    """Return value and slope of parabolas through the samples within a half span of each instant.
-
-    Parameters
-    ----------
-    time, values : ndarray, shape (n,)
-    at : ndarray, shape (m,)
-    half : float
-        [s]
-    """
+    """Return value and slope at each instant of a parabola through the samples within `half` [s] of it."""
     first = np.searchsorted(time, at - half - 1e-9)
     last = np.searchsorted(time, at + half + 1e-9)
     widest = int((last - first).max())
@@ -51,16 +43,10 @@ def local_quadratic(time: Array, values: Array, at: Array, half: float) -> tuple
 
 
 def smoothed(values: Array, reach: int) -> Array:
-    """Return a signal as the mean over the span that the slope of a parabola takes of a velocity.
+    """Return an even signal as the mean over the span that the slope of a parabola takes of a velocity.
 
-    The slope over a half span h weighs the velocity at a distance x by 1 - (x / h)².
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        On an even grid; its first and last are continued.
-    reach : int
-        Grid steps in a half span.
+    The slope over a half span h weighs the velocity at a distance x by 1 - (x / h)². `reach` is h in grid steps; the
+    first and last values are continued.
     """
     x = np.arange(-reach, reach + 1) / reach
     weights = 1.0 - x * x

@@ -15,15 +15,10 @@ _ROUNDS = 8
 
 
 def not_negative(normal: Array, right: Array) -> Array:
-    """Return the solutions without negative entries, shape (m, p).
+    """Return the solutions without negative entries, shape (m, p), of `normal` (m, p, p) and `right` (m, p).
 
-    Block principal pivoting: solve with all entries, put the negative ones on zero, take back those whose gradient
-    says so, and so on. It may go round in circles; what is not done after some rounds, the core's solver does.
-
-    Parameters
-    ----------
-    normal : ndarray, shape (m, p, p)
-    right : ndarray, shape (m, p)
+    Block principal pivoting: solve with all entries, put the negative ones on zero, take back those whose gradient says
+    so, and so on. It may go round in circles; what is not done after some rounds, the core's solver does.
     """
     count, size = right.shape
     scale = np.sqrt(np.maximum(np.einsum("mii->mi", normal), 1e-300))

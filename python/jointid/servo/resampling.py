@@ -29,13 +29,7 @@ def units_of(grid: ServoGrid) -> NDArray[np.int64]:
 def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int) -> Array:
     """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, size).
 
-    Parameters
-    ----------
-    products : ndarray, shape (units, columns, columns)
-    sought : Sought
-    values : ndarray, shape (size,)
-        The solution of all units, from which each set starts.
-    draws, seed : int
+    `products` is (units, columns, columns); each set starts from `values`, the solution of all units.
     """
     count = len(products)
     generator = np.random.default_rng(seed)

@@ -187,19 +187,7 @@ def rollout(
 
 
 def servo_loop(joint: Joint, run: ServoSignals) -> _core.ServoLoop:
-    """Return a servo at the beginning of a run, as the core simulates it.
-
-    Parameters
-    ----------
-    joint : Joint
-        With all values.
-    run : ServoSignals
-
-    Raises
-    ------
-    InputError
-        A value is missing.
-    """
+    """Return a servo at the beginning of a run, as the core simulates it, or name the value that the joint lacks."""
     voltage = joint.voltage
     assert voltage is not None  # `signals_of` refuses others
     k_t = abs(_needed(joint, "torque_constant", joint.torque_constant) * joint.gear_ratio)
@@ -224,15 +212,9 @@ def servo_loop(joint: Joint, run: ServoSignals) -> _core.ServoLoop:
 
 
 def servo_plant(joint: Joint, inertia: float, values: Mapping[str, float]) -> _core.SimulatedJoint:
-    """Return what the motor moves: drive and link, with the friction of the speed.
+    """Return drive and link with the friction of the speed; `inertia` is the drive's, at the output [kg·m²].
 
-    Parameters
-    ----------
-    joint : Joint
-    inertia : float
-        Of the drive, at the output [kg·m²].
-    values : mapping of str to float
-        Coefficients of the friction by name; without those that are not there.
+    Friction that has no coefficient in `values` is left out.
     """
     weights = []
     if joint.link is not None:

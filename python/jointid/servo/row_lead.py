@@ -16,17 +16,9 @@ _EVERY = 4  # samples: neighbours say the same
 
 
 def lead_of(runs: Sequence[ServoSignals], joint: Joint) -> float | None:
-    """Return the lead at which the position loop gives the logged duty best; None where that cannot be said.
+    """Return the lead [s] at which the position loop gives the logged duty best; None where that cannot be said.
 
-    Parameters
-    ----------
-    runs : sequence of ServoSignals
-    joint : Joint
-
-    Returns
-    -------
-    float or None
-        [s]; positive: the position is the older one.
+    A positive lead means that the position is older than the duty.
     """
     drive = joint.voltage
     loop = None if drive is None else drive.position_loop

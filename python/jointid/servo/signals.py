@@ -22,36 +22,17 @@ _LARGEST = 1.05
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ServoSignals:
-    """One run of a servo, in SI units.
-
-    Attributes
-    ----------
-    name : str
-    time, position : ndarray, shape (n,)
-        [s], [rad]
-    duty : ndarray, shape (n,)
-        As logged, times its scale; of the position loop where none is logged.
-    supply : ndarray, shape (n,)
-        [V]
-    driven : ndarray, shape (n,)
-        1 where the motor is on its voltage, 0 where it turns freely.
-    reference : ndarray or None, shape (n,)
-        Wanted position [rad].
-    gain : float
-        Duty per error of the position loop [1/rad]; 0 where there is none.
-    logged : bool
-        Whether the duty was logged.
-    """
+    """One run of a servo, in SI units (n samples)."""
 
     name: str
-    time: Array
-    position: Array
-    duty: Array
-    supply: Array
-    driven: Array
-    reference: Array | None
-    gain: float
-    logged: bool
+    time: Array  # [s]
+    position: Array  # [rad]
+    duty: Array  # as logged, times its scale; of the position loop where none is logged
+    supply: Array  # [V]
+    driven: Array  # 1 where the motor is on its voltage, 0 where it turns freely
+    reference: Array | None  # wanted position [rad]
+    gain: float  # duty per error of the position loop [1/rad]; 0 where there is none
+    logged: bool  # whether the duty was logged
 
     @property
     def closed(self) -> bool:
@@ -64,20 +45,10 @@ class ServoSignals:
 
 
 def signals_of(recordings: Recording | Sequence[Recording], joint: Joint) -> list[ServoSignals]:
-    """Return the runs of a servo.
+    """Return the runs of a servo from recordings, with defaults of the joint's voltage drive for what they lack.
 
-    Parameters
-    ----------
-    recordings : Recording or sequence of Recording
-        With the extra signals "duty" (or a `reference` and a known position loop), "supply" (unless the joint has
-        it), "driven" (default: always driven) and "gain".
-    joint : Joint
-        With a `voltage` drive.
-
-    Raises
-    ------
-    InputError
-        No recording, no voltage drive, or a signal that is needed and missing.
+    The extra signals are "duty" (or a `reference` and a known position loop), "supply" (unless the joint has it),
+    "driven" (default: always driven) and "gain".
     """
     require_kind("joint", joint, Joint)
     drive = voltage_drive(joint)
@@ -90,13 +61,7 @@ def signals_of(recordings: Recording | Sequence[Recording], joint: Joint) -> lis
 
 
 def voltage_drive(joint: Joint) -> VoltageDrive:
-    """Return a joint's voltage drive.
-
-    Raises
-    ------
-    InputError
-        The joint's input is a torque.
-    """
+    """Return a joint's voltage drive; a joint with a torque as its input is an error."""
     if joint.voltage is None:
         raise InputError(
             "the joint's input is not a voltage",

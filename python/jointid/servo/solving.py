@@ -20,34 +20,17 @@ _SETTLED = 1e-9  # relative change
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sought:
-    """What is sought, and what is known of it.
-
-    Attributes
-    ----------
-    layout : Layout
-    separable : bool
-        Whether some windows are driven and some are not, which divides back-EMF from friction in proportion to speed.
-    load_friction : bool
-        Whether friction grows with the gear's torque.
-    held : bool
-        Whether it is sought how the command moves between rows; else it moves evenly.
-    torque_constant : float or None
-        k_t at the output [N·m/A], if it is known.
-    resistance : float or None
-        [Ω], if it is known.
-    fixed : mapping of str to float
-        Known values of parameters.
-    share : float
-        Of the back-EMF in what brakes in proportion to speed, where nothing divides the two. Default: a half.
-    """
+    """What is sought, and what is known of it."""
 
     layout: Layout
+    # whether some windows are driven and some are not: divides back-EMF from friction in proportion to speed
     separable: bool
-    load_friction: bool
-    held: bool
-    torque_constant: float | None
-    resistance: float | None
-    fixed: Mapping[str, float]
+    load_friction: bool  # whether friction grows with the gear's torque
+    held: bool  # whether it is sought how the command moves between rows; otherwise it moves evenly
+    torque_constant: float | None  # k_t at the output [N·m/A]
+    resistance: float | None  # [Ω]
+    fixed: Mapping[str, float]  # known values of parameters
+    # of the back-EMF in what brakes in proportion to speed, where nothing divides the two
     share: float = 0.5
 
     @property
@@ -69,15 +52,9 @@ class Sought:
 
 
 def solved(products: Array, sought: Sought, start: Array) -> Array:
-    """Return the parameters that minimise the squared residual, shape (m, size).
+    """Return the parameters that minimise the squared residual, shape (m, size); `products` is (m, columns, columns).
 
-    Parameters
-    ----------
-    products : ndarray, shape (m, columns, columns)
-        Of m tables' columns, with the signs of the gear's torque held.
-    sought : Sought
-    start : ndarray, shape (m, size)
-        Some columns are products of parameters: these are formed with the last solution.
+    The signs of the gear's torque are held. Columns that are products of parameters are formed with `start`, (m, size).
     """
     found = start
     for _ in range(_PASSES if _turns(sought) else 1):
@@ -95,15 +72,8 @@ def fixed_point(
 ) -> Array:
     """Return the parameters, once the signs of the gear's torque have settled, shape (size,).
 
-    Parameters
-    ----------
-    side_of : callable
-        The side of the gear's torque, for parameters.
-    products_of : callable
-        Products of the columns for a side; without columns of the load's friction for None.
-    sought : Sought
-    start : ndarray, shape (size,), optional
-        A solution of nearly the same. Default: the one without friction of the load.
+    `products_of` gives the products of the columns for a side; for None, those without columns of the load's friction.
+    Without `start`, the iteration begins at the solution without friction of the load.
     """
     if start is None:
         start = _without_load(products_of(None)[None], sought)
@@ -128,12 +98,7 @@ def _without_load(products: Array, sought: Sought) -> Array:
 
 
 def weights(values: Array) -> Array:
-    """Return the factors by which a table's columns make up the balance, shape (columns,): what is left is their sum.
-
-    Parameters
-    ----------
-    values : ndarray, shape (size,)
-    """
+    """Return the factors by which a table's columns make up the balance, (columns,): what is left is their sum."""
     columns, target = balance(values[None])
     return np.asarray(columns[0] @ values - target[0])
 

@@ -37,17 +37,9 @@ def parameters_of(
     units: int,
     moved: Mapping[str, Array],
 ) -> dict[str, ParameterEstimate]:
-    """Return the parameters with the errors of runs drawn anew.
+    """Return the parameters of a solution with the errors of `draws`, (draws, size), of so many units of resampling.
 
-    Parameters
-    ----------
-    values : ndarray, shape (size,)
-    draws : ndarray, shape (draws, size)
-    sought : Sought
-    units : int
-        Units of resampling.
-    moved : mapping of str to ndarray, each of shape (size,)
-        The parameters by other windows and another lead.
+    `moved` has the parameters by other windows and another lead.
     """
     facts = zip(MOTOR, (sought.torque_constant, sought.resistance), strict=True)
     given = {name: fact for name, fact in facts if fact is not None}
@@ -146,14 +138,7 @@ def _interval(p: ParameterEstimate) -> str:
 
 
 def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) -> str:
-    """Return the report that `ServoEstimate.report` shows.
-
-    Parameters
-    ----------
-    estimate : ServoEstimate
-    action : callable
-        Words an advice. Default: as at a Python prompt.
-    """
+    """Return the report that `ServoEstimate.report` shows; `action` words an advice."""
     name = estimate.joint.name or "servo"
     used = float(np.mean(estimate.moving))
     lines = [

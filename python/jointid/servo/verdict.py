@@ -17,23 +17,8 @@ def judged_servo(estimate: ServoEstimate) -> Verdict:
     """Judge a servo's estimate by its findings.
 
     Not usable: a blocking finding, less than 90 % of the load's squared torque explained, or, for what needs it, a
-    value on its bound that `at_bound` warns of. Usable with care: a
-    warning, or no errors (``draws=0``). Usable: else. Compensation needs friction and what turns a torque into a
-    duty, simulation all values.
-
-    Parameters
-    ----------
-    estimate : ServoEstimate
-
-    Returns
-    -------
-    Verdict
-
-    Examples
-    --------
-    >>> found = jid.identify_servo(servo_runs, servo)
-    >>> found.verdict.level in ("usable", "usable with care", "not usable")
-    True
+    value on its bound that `at_bound` warns of. Usable with care: a warning, or no errors (``draws=0``). Otherwise
+    usable. Compensation needs friction and what turns a torque into a duty, simulation all values.
     """
     objections = [*_objections(estimate)]
     asked = tuple(estimate.parameters)

@@ -46,44 +46,23 @@ _REACH = int(0.5 * _SPAN * _PIECES)  # grid steps in half of that span
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ServoGrid:
-    """All runs on even grids, one after the other, and their windows.
+    """All runs on even grids, one after the other (n instants), and their windows."""
 
-    Attributes
-    ----------
-    velocity, voltage, late, gravity, driven, sign : ndarray, shape (n,)
-        [rad/s], [V], [V] that a held command adds, [N·m], 0 or 1, sign of the velocity.
-    friction : ndarray, shape (terms, n)
-        Of the speed, for a coefficient of 1.
-    instants : tuple of ndarray
-        Of each run [s].
-    step : ndarray, shape (n,)
-        Of each instant's run [s].
-    start, end : ndarray of int, shape (windows,)
-        Instants of a window's ends.
-    run : ndarray of int, shape (windows,)
-    time : ndarray, shape (windows,)
-        Of a window's start in its run [s].
-    load_inertia : float
-        [kg·m²]
-    columns : ndarray, shape (windows, columns)
-        The table, with zeros for the load's friction.
-    """
-
-    velocity: Array
-    voltage: Array
-    late: Array
-    gravity: Array
-    driven: Array
-    sign: Array
-    friction: Array
-    instants: tuple[Array, ...]
-    step: Array
-    start: Counts
-    end: Counts
-    run: Counts
-    time: Array
-    load_inertia: float
-    columns: Array
+    velocity: Array  # (n,) [rad/s]
+    voltage: Array  # (n,) [V]
+    late: Array  # (n,) [V], what a held command adds
+    gravity: Array  # (n,) [N·m]
+    driven: Array  # (n,), 0 or 1
+    sign: Array  # (n,), of the velocity
+    friction: Array  # (terms, n), of the speed, for a coefficient of 1
+    instants: tuple[Array, ...]  # of each run [s]
+    step: Array  # (n,), of each instant's run [s]
+    start: Counts  # (windows,), first instant
+    end: Counts  # (windows,), last instant
+    run: Counts  # (windows,)
+    time: Array  # (windows,), start in the window's run [s]
+    load_inertia: float  # [kg·m²]
+    columns: Array  # (windows, columns), with zeros for the load's friction
 
     def integrals(self, *signals: Array) -> Array:
         """Return the trapezoidal integrals of signals over each window, shape (windows, signals)."""
@@ -117,16 +96,7 @@ class ServoGrid:
         return filled
 
     def with_lead(self, runs: Sequence[ServoSignals], joint: Joint, lead: float) -> ServoGrid:
-        """Return the grid with another lead of the rows; its windows stay.
-
-        Parameters
-        ----------
-        runs : sequence of ServoSignals
-            Of this grid.
-        joint : Joint
-        lead : float
-            [s]
-        """
+        """Return the grid of the same runs with another lead of the rows [s]; its windows stay."""
         pairs = [
             _voltages(run, joint, at, lead) for run, at in zip(runs, self.instants, strict=True)
         ]
@@ -146,21 +116,8 @@ def grid_of(
     """Return runs on even grids, with the windows that can be used.
 
     A window is used where the motor is driven throughout or not at all, and the velocity neither changes its sign nor
-    falls below the slowest.
-
-    Parameters
-    ----------
-    runs : sequence of ServoSignals
-    joint : Joint
-        Its link is the known load.
-    friction : sequence of Term
-        Of the speed.
-    window : float
-        Duration [s]; longer where samples are rare. Default `WINDOW`.
-    slowest : float
-        [rad/s]. Default `SLOWEST`.
-    lead : float
-        Time by which a row's position is older than its duty [s]. Default 0.
+    falls below `slowest` [rad/s]. `window` is its duration [s], longer where samples are rare; `lead` is how much older
+    a row's position is than its duty [s].
     """
     parts, instants, offset = [], [], 0
     for number, run in enumerate(runs):
