@@ -28,20 +28,11 @@ _HALF = 0.2  # of a sample period: so near to half a period early, a torque is o
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Aligned:
-    """An identification on one clock.
-
-    Attributes
-    ----------
-    attempt : Attempt
-    left : TorqueDelay
-        After what was taken away.
-    chosen : bool
-        Whether what was taken away was found, not given.
-    """
+    """An identification on one clock."""
 
     attempt: Attempt
-    left: TorqueDelay
-    chosen: bool
+    left: TorqueDelay  # delay after what was taken away
+    chosen: bool  # whether what was taken away was found, not given
 
 
 def aligned(
@@ -49,13 +40,7 @@ def aligned(
 ) -> Aligned:
     """Return the identification without the torque's delay, and what is left of it.
 
-    Parameters
-    ----------
-    recordings : sequence of RobotRecording
-    robot : Robot
-    asked : Asked
-    shift : mapping or None
-        Delays that are given; None: those that are certain are taken away.
+    Without a `shift`, the delays that are certain are taken away.
     """
     delay = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
     attempt = attempted(recordings, robot, asked, delay)

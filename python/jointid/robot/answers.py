@@ -18,13 +18,7 @@ _FINDINGS = 1
 def answer(estimate: RobotEstimate, action: Callable[[Action], str] = str, saved: str = "") -> str:
     """Return the answer in at most 7 lines and one for each joint, the worst joint first where it is not usable.
 
-    Parameters
-    ----------
-    estimate : RobotEstimate
-    action : callable
-        Words an action. Default: as at a Python prompt.
-    saved : str
-        The file that has the estimate. Default: there is none.
+    `action` words an advice; `saved` is the file that has the estimate.
     """
     lines = [
         f"{estimate.robot.name or 'robot'}: {estimate.verdict.level}",
@@ -38,14 +32,7 @@ def answer(estimate: RobotEstimate, action: Callable[[Action], str] = str, saved
 def answer_of_comparison(
     found: RobotComparison, action: Callable[[Action], str] = str, saved: str = ""
 ) -> str:
-    """Return the winner with each joint's model and values, in at most 7 lines and one for each joint.
-
-    Parameters
-    ----------
-    found : RobotComparison
-    action, saved
-        As those of `answer`.
-    """
+    """Return the winner with each joint's model and values, in at most 7 lines and one for each joint."""
     estimate, winner = found.estimate, found.winner
     others = sorted((row for row in found.rows if row != winner), key=lambda row: row.score)
     beside = f", next {others[0].name} {_score(others[0])}" if others else ""

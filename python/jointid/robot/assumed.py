@@ -24,12 +24,7 @@ def assumptions_told(
 ) -> Iterator[Finding]:
     """Findings of what was assumed: joints in order, joints that stand, no gravity, and the positions' unit.
 
-    Parameters
-    ----------
-    recordings : sequence of RobotRecording
-    robot : Robot
-        As given.
-    attempt : Attempt
+    The robot is as given.
     """
     for run in recordings:
         columns = robot.columns_of(run)

@@ -37,77 +37,36 @@ _LOOKS = 4  # recordings by whose beginnings facts are judged
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Asked:
-    """What a call asks for, beside recordings and robot.
-
-    Attributes
-    ----------
-    inertia : str
-    models : tuple of str
-        One a joint.
-    windows : float, int or None
-    slowest : ndarray, shape (n,)
-        Least speeds.
-    mask_standstill : bool
-    beside : tuple of str
-        Further modes of inertia that the balance is to hold.
-    """
+    """What a call asks for besides recordings and robot."""
 
     inertia: str
-    models: tuple[str, ...]
+    models: tuple[str, ...]  # one a joint
     windows: float | None
-    slowest: Array
+    slowest: Array  # (n,), least speeds
     mask_standstill: bool
-    beside: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()  # further modes of inertia that the balance is to hold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Attempt:
-    """An estimate, and what it was made of.
+    """An estimate, and what it was made of."""
 
-    Attributes
-    ----------
-    robot : Robot
-        With the zero offsets that were found.
-    delay : ndarray, shape (n,)
-        Of the torques, as taken away [s].
-    estimate : RobotEstimate
-        Without settings.
-    fit : Fit
-    balance : Balance
-    looks : mapping of int to Motion
-        The beginnings of some recordings, by the number of their piece in the balance.
-    duration : float
-        Of the windows [s].
-    zeros : Zeros or None
-        None where they are given.
-    runs : tuple of int
-        The recording of each piece.
-    """
-
-    robot: Robot
-    delay: Array
-    estimate: RobotEstimate
+    robot: Robot  # with the zero offsets that were found
+    delay: Array  # (n,), of the torques, as taken away [s]
+    estimate: RobotEstimate  # without settings
     fit: Fit
     balance: Balance
+    # the beginnings of some recordings, by the number of their piece in the balance
     looks: Mapping[int, Motion]
-    duration: float
-    zeros: Zeros | None
-    runs: tuple[int, ...]
+    duration: float  # of the windows [s]
+    zeros: Zeros | None  # None where they are given
+    runs: tuple[int, ...]  # the recording of each piece
 
 
 def attempted(
     recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, delay: Array
 ) -> Attempt:
-    """Return the identification of recordings on even clocks.
-
-    Parameters
-    ----------
-    recordings : sequence of RobotRecording
-    robot : Robot
-    asked : Asked
-    delay : ndarray, shape (n,)
-        Of the torques, taken away [s].
-    """
+    """Return the identification of recordings on even clocks, with a delay of each torque taken away [s]."""
     runs = [without_delay(run, robot, delay) for run in recordings]
     pieces = _pieces(runs)
     numbers = [number for number, _, _ in pieces]
@@ -165,18 +124,7 @@ def _solved(
 
 
 def fitted(robot: Robot, balance: Balance, mode: str, models: Sequence[str]) -> tuple[Fit, Known]:
-    """Return the values of all parameters, and what was known of them beforehand.
-
-    Parameters
-    ----------
-    robot : Robot
-    balance : Balance
-        That holds the mode.
-    mode : str
-        Of the inertia.
-    models : sequence of str
-        One a joint.
-    """
+    """Return the values of all parameters, and what was known of them beforehand; the balance must hold the mode."""
     chosen = [joint for joint, model in enumerate(models) if name_of(model) == AUTO]
     models = _renamed(models, chosen, SHAPED)
     columns = inertia_columns(robot, mode)

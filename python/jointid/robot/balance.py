@@ -23,75 +23,35 @@ _LEAST = 0.2  # of a window that has to be usable
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rows:
-    """Windows of all joints and recordings, in the order of time; one row a joint and window.
-
-    Attributes
-    ----------
-    joint, piece, window : ndarray of int, shape (rows,)
-        Pieces are counted through all recordings, windows in each piece.
-    start, stop : ndarray, shape (rows,)
-        [s]
-    duration : ndarray, shape (rows,)
-        Integrated time [s].
-    velocity : ndarray, shape (rows,)
-        The joint's mean velocity.
-    torque : ndarray, shape (rows,)
-        Integral of the measured torque [N·m·s].
-    """
+    """Windows of all joints and recordings, in the order of time; a row for each joint and window: (rows,)."""
 
     joint: Whole
-    piece: Whole
-    window: Whole
-    start: Array
-    stop: Array
-    duration: Array
-    velocity: Array
-    torque: Array
+    piece: Whole  # counted through all recordings
+    window: Whole  # counted in each piece
+    start: Array  # [s]
+    stop: Array  # [s]
+    duration: Array  # integrated time [s]
+    velocity: Array  # the joint's mean
+    torque: Array  # integral of the measured one [N·m·s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Balance:
-    """The linear system: torque = matrix x parameters + inertia x inertial parameters + known.
-
-    Attributes
-    ----------
-    rows : Rows
-    labels : tuple of (int, str)
-        Joint and name of each parameter of `matrix`.
-    keys : tuple of str
-        Of their terms in the core's table; empty of what every joint has.
-    least : ndarray
-        Their lower bounds.
-    matrix : ndarray, shape (rows, parameters)
-    inertia : ndarray, shape (rows, directions)
-        By changes of the inertial parameters.
-    basis : ndarray, shape (10 n, directions)
-        These changes, of all links' inertial parameters.
-    known : ndarray, shape (rows,)
-        Integral of the torque of given rotor inertias.
-    standing : ndarray, shape (n,)
-        Share of the time that each joint's balance leaves out.
-    samples : int
-    velocity_noise : ndarray, shape (n,)
-    summings : tuple of Summing
-        One a piece: for columns that are not linear.
-    places : tuple of ndarray of int
-        Numbers of each joint's rows.
-    """
+    """The linear system: torque = matrix x parameters + inertia x inertial parameters + known."""
 
     rows: Rows
-    labels: tuple[tuple[int, str], ...]
-    keys: tuple[str, ...]
-    least: Array
-    matrix: Array
-    inertia: Array
-    basis: Array
-    known: Array
-    standing: Array
+    labels: tuple[tuple[int, str], ...]  # joint and name of each parameter of `matrix`
+    keys: tuple[str, ...]  # of their terms in the core's table; empty of what every joint has
+    least: Array  # their lower bounds
+    matrix: Array  # (rows, parameters)
+    inertia: Array  # (rows, directions), by changes of the inertial parameters
+    basis: Array  # (10 n, directions), these changes, of all links' inertial parameters
+    known: Array  # (rows,), integral of the torque of given rotor inertias
+    standing: Array  # (n,), share of the time that each joint's balance leaves out
     samples: int
-    velocity_noise: Array
-    summings: tuple[Summing, ...]
-    places: tuple[Whole, ...]
+    velocity_noise: Array  # (n,)
+    summings: tuple[Summing, ...]  # one a piece: for columns that are not linear
+    places: tuple[Whole, ...]  # numbers of each joint's rows
 
     def columns_of(self, models: Sequence[str], dropped: Collection[int] = ()) -> list[int]:
         """Return the places of the columns of joints with these models, without the inertia of some rotors."""
@@ -111,18 +71,9 @@ class Balance:
 
 
 def balance_of(robot: Robot, motions: Iterable[Motion], duration: float, basis: Array) -> Balance:
-    """Return the balances of a robot's joints over windows.
+    """Return the balances of a robot's joints over windows of a duration [s]; `basis` is as in `Balance`.
 
-    Motions are looked at one after the other; of each only its velocities and windows are kept.
-
-    Parameters
-    ----------
-    robot : Robot
-    motions : iterable of Motion
-    duration : float
-        Of the windows [s].
-    basis : ndarray, shape (10 n, directions)
-        Changes of the inertial parameters that are asked for.
+    Motions are taken one after the other; of each only its velocities and windows are kept.
     """
     parts = [_part(robot, motion, number, duration, basis) for number, motion in enumerate(motions)]
     first = parts[0]

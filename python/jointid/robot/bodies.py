@@ -11,22 +11,11 @@ _NEGATIVE = 1e-9  # of the largest eigenvalue: what rounding makes
 
 
 def possible(inertial: Array) -> bool:
-    """Return whether bodies of positive density everywhere can have these inertial parameters.
+    """Return whether bodies of positive density everywhere can have these inertial parameters, shape (links, 10).
 
     They can if the matrix of second moments, first moments and mass is positive semidefinite (Wensing, Kim and Slotine
-    2018); then inertias obey the triangle inequality, too.
-
-    Parameters
-    ----------
-    inertial : ndarray, shape (links, 10)
-        Mass, first moments, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> ball = np.array([[2.0, 0, 0, 0, 0.1, 0, 0.1, 0, 0, 0.1]])
-    >>> possible(ball), possible(-ball)
-    (True, False)
+    2018); then inertias obey the triangle inequality, too. The order is mass, first moments, Ixx, Ixy, Iyy, Ixz, Iyz,
+    Izz about the frame.
     """
     for each in inertial:
         values = np.linalg.eigvalsh(moments_of(each))
@@ -36,16 +25,7 @@ def possible(inertial: Array) -> bool:
 
 
 def moments_of(inertial: Array) -> Array:
-    """Return the matrix of second moments, first moments and mass of one link.
-
-    Parameters
-    ----------
-    inertial : ndarray, shape (10,)
-
-    Returns
-    -------
-    ndarray, shape (4, 4)
-    """
+    """Return the matrix of second moments, first moments and mass of one link, shape (4, 4), from its 10 parameters."""
     m, x, y, z, xx, xy, yy, xz, yz, zz = inertial
     turning = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     moments = np.empty((4, 4))

@@ -18,21 +18,11 @@ _CLEAR = 1.0  # standard errors by which the misfit falls
 def with_shapes(
     found: ShapedSolution, products: Products, shaped: ShapedTerms, known: Known
 ) -> tuple[int, ...]:
-    """Return the joints that need their shaped term, as static friction.
+    """Return the joints that need their shaped term, as static friction; products and known are of the other columns.
 
     Each stretch of time is predicted from the others, with the shaped terms of all joints and without that of one. It
-    is kept where it makes the joint's own prediction better by more than its scatter over the stretches. A shape at
-    the bound of its range, or a coefficient at 0, is no such term.
-
-    Parameters
-    ----------
-    found : ShapedSolution
-        With all `shaped`.
-    products : Products
-        Of the other columns.
-    shaped : ShapedTerms
-    known : Known
-        Of the other columns' parameters beforehand.
+    is kept where it makes the joint's own prediction better by more than its scatter over the stretches. A shape at the
+    bound of its range, or a coefficient at 0, is no such term.
     """
     joints = shaped.joints
     every = np.arange(products.columns + len(joints))

@@ -27,47 +27,23 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Column:
-    """One linear parameter and what it adds to each joint's balance.
+    """One linear parameter and what it adds to each joint's balance."""
 
-    Attributes
-    ----------
-    joint : int
-        Whose parameter it is.
-    name : str
-    key : str
-        Of the term in the core's table; empty of what every joint has.
-    least : float
-        The lower bound: 0 of what cannot be negative.
-    values : mapping of int to ndarray, shape (windows,)
-        Joint whose balance it enters → its integrals over all windows.
-    """
-
-    joint: int
+    joint: int  # whose parameter it is
     name: str
-    values: Mapping[int, Array]
-    key: str = ""
-    least: float = field(default=-np.inf)
+    values: Mapping[int, Array]  # joint whose balance it enters → its integrals over all windows
+    key: str = ""  # of the term in the core's table; empty of what every joint has
+    least: float = field(default=-np.inf)  # lower bound: 0 of what cannot be negative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Summing:
-    """Integrals over intervals summed over the windows, of each joint's usable intervals alone.
+    """Integrals over intervals summed over the windows, of each joint's usable intervals alone."""
 
-    Attributes
-    ----------
-    velocity : ndarray, shape (n, samples)
-        Of the joints.
-    usable : ndarray of bool, shape (n, samples - 1)
-        Intervals in which a joint's balance holds.
-    windows : Windows
-    step : ndarray, shape (samples - 1,)
-        [s]
-    """
-
-    velocity: Array
-    usable: Flags
+    velocity: Array  # (n, samples), of the joints
+    usable: Flags  # (n, samples - 1), intervals in which a joint's balance holds
     windows: Windows
-    step: Array
+    step: Array  # (samples - 1,) [s]
 
     @classmethod
     def of(cls, robot: Robot, motion: Motion, windows: Windows) -> Summing:

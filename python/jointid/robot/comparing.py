@@ -196,13 +196,7 @@ def _row(attempt: Attempt, mode: Inertia, model: str, blocks: Whole) -> Compared
 
 
 def _chosen(scores: Array, parameters: Sequence[int]) -> tuple[int, int]:
-    """The best candidate, and the simplest that is not worse by more than an error of the difference.
-
-    Parameters
-    ----------
-    scores : ndarray, shape (candidates, blocks)
-    parameters : sequence of int
-    """
+    """The best candidate, and the simplest that is not worse by more than an error of the difference."""
     best = int(np.argmin(scores.mean(axis=1)))
     near = [
         number

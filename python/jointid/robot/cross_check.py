@@ -100,16 +100,7 @@ class CrossCheck:
 def cross_checked(
     signals: Sequence[PlainSignals], attempt: Attempt, asked: Asked, stated: Array | None
 ) -> CrossCheck:
-    """Return the second look at signals as they were recorded.
-
-    Parameters
-    ----------
-    signals : sequence of PlainSignals
-    attempt : Attempt
-    asked : Asked
-    stated : ndarray, shape (n,), or None
-        Delay of the torques that the call states [s].
-    """
+    """Return the second look at signals as they were recorded; `stated` is the torques' delay that a call names [s]."""
     robot, estimate = attempt.robot, attempt.estimate
     if not signals:
         return CrossCheck(reason="the recording is too short")

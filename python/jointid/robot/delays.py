@@ -41,38 +41,22 @@ _BETTER = 3.0  # standard errors by which held-out stretches fit better
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TorqueDelay:
-    """How late the torque is against the position; positive: late.
+    """How late the torque is against the position [s]; positive: late."""
 
-    Attributes
-    ----------
-    value, stderr : float
-        Of the joints that are alike [s].
-    joints, errors : ndarray, shape (n,)
-        Of each joint by itself [s].
-    taken : ndarray, shape (n,)
-        What is certain: the common delay, another one of a joint that clearly has another, or 0 [s].
-    certain : bool
-        Whether any of it is, and held-out stretches of motion are better explained without it.
-    """
-
-    value: float
+    value: float  # of the joints that are alike
     stderr: float
-    joints: Array
-    errors: Array
+    joints: Array  # (n,), of each joint by itself
+    errors: Array  # of these
+    # (n,), what is certain: the common delay, another one of a joint that clearly has another, or 0
     taken: Array
+    # whether any of it is, and held-out stretches of motion are better explained without it
     certain: bool
 
 
 def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> TorqueDelay:
-    """Return the torque's delay.
+    """Return the torque's delay; the fit's parameters follow the shift as far as they can.
 
-    Parameters
-    ----------
-    balance : Balance
-    fit : Fit
-        Of it: its parameters follow the shift as far as they can.
-    motions : mapping of int to Motion
-        Some of the balance's pieces, by number.
+    The motions are some of the balance's pieces, by number.
     """
     rows = LookedRows(balance, fit, motions)
     torque = _Shifted(rows, balance, motions)

@@ -37,20 +37,11 @@ _POOR = 0.15  # of a joint's torque: what is left says that more is wrong
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Diagnosis:
-    """Findings of an attempt, and the attempt without the wrong facts.
-
-    Attributes
-    ----------
-    findings : tuple of Finding
-    recordings : sequence of RobotRecording
-        With their columns as they should be.
-    corrected : Attempt
-        The same attempt where no fact is wrong.
-    """
+    """Findings of an attempt, and the attempt without the wrong facts."""
 
     findings: tuple[Finding, ...]
-    recordings: Sequence[RobotRecording]
-    corrected: Attempt
+    recordings: Sequence[RobotRecording]  # with their columns as they should be
+    corrected: Attempt  # the same attempt where no fact is wrong
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -68,15 +59,7 @@ def diagnosed(
 ) -> Diagnosis:
     """Return an attempt's findings: the given facts that are wrong first, and without what only follows from them.
 
-    Parameters
-    ----------
-    recordings : sequence of RobotRecording
-        On even clocks, with the torques as they were recorded.
-    robot : Robot
-        As given.
-    asked : Asked
-    attempt : Attempt
-        Of them.
+    The recordings are on even clocks, with the torques as they were recorded; the robot is as given.
     """
     causes: list[Finding] = []
     last = attempt

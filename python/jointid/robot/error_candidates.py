@@ -45,32 +45,20 @@ _MATTERS = {
 class SmallError:
     """A fact that is somewhat wrong.
 
-    Attributes
-    ----------
-    kind : str
-        One of the names above; also the finding's code.
-    joint : int or None
-        Whose zero, torque or link.
-    values, errors : ndarray
-        Of a tilt: further gravity along the base's two other axes, of its size. Of a zero: what is missing [rad or m].
-        Of a torque: its scale less 1. Of a link: its scale less 1. Of a centre: further first moments [kg·m]. Of a
-        payload: mass, then first moments.
-    share : float
-        Of the squared residuals of held-out stretches, weighted by joint, that it explains.
-    given, robot : Robot
-        As it was given, and with it corrected.
-    others : tuple of (str, int or None)
-        Kinds and joints that explain as much.
+    Values of a tilt: further gravity along the base's two other axes, of its size. Of a zero: what is missing [rad or
+    m]. Of a torque or a link: its scale less 1. Of a centre: further first moments [kg·m]. Of a payload: mass, then
+    first moments.
     """
 
-    kind: str
-    joint: int | None
+    kind: str  # one of the names above; also the finding's code
+    joint: int | None  # whose zero, torque or link
     values: Array
     errors: Array
+    # of the squared residuals of held-out stretches, weighted by joint, that it explains
     share: float
-    given: Robot
-    robot: Robot
-    others: tuple[tuple[str, int | None], ...] = ()
+    given: Robot  # as it was given
+    robot: Robot  # with the fact corrected
+    others: tuple[tuple[str, int | None], ...] = ()  # kinds and joints that explain as much
 
 
 _Told = tuple[str, int | None, Share]

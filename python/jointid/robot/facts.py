@@ -18,13 +18,7 @@ _FACTS = TableOf(Plain())  # `Robot` says more of each value
 
 
 def read_facts(path: Path) -> dict[str, Any]:
-    """Return the arguments of `Robot.from_urdf` that a facts file holds.
-
-    Raises
-    ------
-    InputError
-        It cannot be read, is no TOML, or has a key that is unknown or a number that is not finite; names the file.
-    """
+    """Return the arguments of `Robot.from_urdf` that a facts file holds, or name the file and what is wrong in it."""
     try:
         found = _FACTS.read(read_toml(path), "")
     except InputError as error:

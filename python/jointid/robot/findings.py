@@ -32,13 +32,7 @@ RANK = {"blocking": 0, "warning": 1, "info": 2}
 def findings_of(
     estimate: RobotEstimate, columns: InertiaColumns, torques: Mapping[str, Torques]
 ) -> RobotEstimate:
-    """Return the estimate with its findings, the most severe first.
-
-    Parameters
-    ----------
-    torques : mapping of str to Torques
-        Of each joint, by the names of its parameters.
-    """
+    """Return the estimate with its findings, the most severe first; torques are by the parameters' names."""
     found = [
         *_standing(estimate),
         *(

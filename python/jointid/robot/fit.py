@@ -21,39 +21,20 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Fit:
-    """Values of all parameters.
+    """Values of all parameters."""
 
-    Attributes
-    ----------
-    models : tuple of str
-        One a joint.
-    labels : tuple of (int or None, str)
-        Joint and name; of a base parameter None and the combination.
-    units : tuple of str
-        Of base parameters.
-    values : ndarray
-    bounds : tuple of (float, float)
-    at_bound : ndarray of bool
-    jacobian : ndarray, shape (rows, parameters)
-    residual : ndarray, shape (rows,)
-    scatter : ndarray, shape (joints,)
-        Root mean square of each joint's residuals.
-    columns : InertiaColumns
-    inertial : ndarray, shape (10 n,)
-        Inertial parameters of all links.
-    """
-
-    models: tuple[str, ...]
+    models: tuple[str, ...]  # one a joint
+    # joint and name; of a base parameter None and the combination
     labels: tuple[tuple[int | None, str], ...]
-    units: tuple[str, ...]
+    units: tuple[str, ...]  # of base parameters
     values: Array
     bounds: tuple[tuple[float, float], ...]
     at_bound: NDArray[np.bool_]
-    jacobian: Array
-    residual: Array
-    scatter: Array
+    jacobian: Array  # (rows, parameters)
+    residual: Array  # (rows,)
+    scatter: Array  # (joints,), root mean square of each one's residuals
     columns: InertiaColumns
-    inertial: Array
+    inertial: Array  # (10 n,), of all links
 
     @classmethod
     def of(
@@ -65,19 +46,7 @@ class Fit:
         shaped: ShapedTerms,
         found: ShapedSolution,
     ) -> Self:
-        """Return the fit of a solution.
-
-        Parameters
-        ----------
-        balance : Balance
-        columns : InertiaColumns
-        models : sequence of str
-            One a joint.
-        products : Products
-            Of the balance's columns of these models, and of the inertia's.
-        shaped : ShapedTerms
-        found : ShapedSolution
-        """
+        """Return the fit of a solution; `products` are of the balance's and the inertia's columns of these models."""
         kept = balance.columns_of(models, columns.dropped)
         labels = [balance.labels[place] for place in kept]
         inertial: list[tuple[int | None, str]] = [

@@ -21,20 +21,9 @@ _FEWEST = 4  # windows of each joint that a block needs
 
 
 def blocks_of(rows: Rows, runs: Sequence[int], count: int) -> Whole:
-    """Return the block of each row: of one recording, stretches of as many rows; else whole recordings.
+    """Return the block of each row: of one recording, stretches of as many rows; otherwise whole recordings.
 
-    Parameters
-    ----------
-    rows : Rows
-    runs : sequence of int
-        The recording of each piece.
-    count : int
-        How many blocks at most.
-
-    Raises
-    ------
-    InputError
-        Too few windows for so many blocks.
+    There are at most `count` blocks; `runs` is the recording of each piece.
     """
     recording = np.asarray(runs)[rows.piece]
     every = np.unique(recording)

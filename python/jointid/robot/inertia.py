@@ -30,41 +30,20 @@ _SHOWN = 1e-6  # of the coefficients in a combination
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class InertiaColumns:
-    """Columns of the inertia that are identified, and what remains as given.
+    """Columns of the inertia that are identified, and what remains as given."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        One a column; of a scale the joint's number, of a base parameter the combination.
-    units : tuple of str
-    joints : tuple of int
-        Link that each belongs to.
-    directions : ndarray, shape (10 n, columns)
-        Inertial parameters of all links per unit of each column.
-    given : ndarray, shape (10 n,)
-        What is not identified.
-    start : ndarray, shape (columns,)
-        Values of the URDF.
-    dropped : tuple of int
-        Motors whose inertia no motion separates from the links'.
-    fixed : tuple of int
-        Links whose scale no motion separates from the rotors' inertias or other scales; they stay at 1.
-    scales : bool
-        Whether the columns are scales.
-    prior : Prior or None
-        What the URDF says of base parameters.
-    """
-
+    # one a column; of a scale the joint's number, of a base parameter the combination
     names: tuple[str, ...]
     units: tuple[str, ...]
-    joints: tuple[int, ...]
-    directions: Array
-    given: Array
-    start: Array
-    dropped: tuple[int, ...] = ()
+    joints: tuple[int, ...]  # link that each belongs to
+    directions: Array  # (10 n, columns), inertial parameters of all links per unit of each column
+    given: Array  # (10 n,), what is not identified
+    start: Array  # (columns,), values of the URDF
+    dropped: tuple[int, ...] = ()  # motors whose inertia no motion separates from the links'
+    # links whose scale no motion separates from the rotors' inertias or other scales; they stay at 1
     fixed: tuple[int, ...] = ()
-    scales: bool = False
-    prior: Prior | None = None
+    scales: bool = False  # whether the columns are scales
+    prior: Prior | None = None  # what the URDF says of base parameters
 
     def inertial(self, values: Array) -> Array:
         """Return the inertial parameters of all links that have these values, shape (10 n,)."""
@@ -183,14 +162,7 @@ def _structure(robot: Robot) -> tuple[Array, Array]:
 
 
 def independent(matrix: Array) -> tuple[list[int], Array]:
-    """Return the columns that those before them do not explain, and how the others combine with them.
-
-    Returns
-    -------
-    kept : list of int
-    combined : ndarray, shape (kept, columns)
-        The matrix is its kept columns times this.
-    """
+    """Return the columns that those before them do not explain, and a matrix that combines these to all columns."""
     basis = np.zeros((matrix.shape[0], 0))
     kept: list[int] = []
     nothing = _DEPENDENT * float(np.linalg.norm(matrix, axis=0).max(initial=0.0))

@@ -24,19 +24,11 @@ _LEAST = 0.2  # of a window that has to be usable
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Windows:
-    """Equal windows over the stretches of a recording without a gap.
+    """Equal windows over the stretches of a recording without a gap."""
 
-    Attributes
-    ----------
-    edges : ndarray of int, shape (windows + 1,)
-        First intervals between samples of the windows; windows that contain a gap are as others, with nothing
-        usable there.
-    duration : float
-        Usual length [s].
-    """
-
+    # (windows + 1,), first interval of each; windows with a gap are as others, with nothing usable there
     edges: NDArray[np.int64]
-    duration: float
+    duration: float  # usual length [s]
 
     @classmethod
     def of(cls, time: Array, duration: float) -> Windows:
@@ -54,32 +46,16 @@ class Windows:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class InertiaIntegrals:
-    """Integrals of a joint's balance by inertial parameters, for each of its usable windows.
+    """Integrals of a joint's balance by inertial parameters, for each of its usable windows."""
 
-    Attributes
-    ----------
-    links : tuple of int
-        Links that the joint carries.
-    columns : ndarray, shape (windows, 10 * links)
-    """
-
-    links: tuple[int, ...]
-    columns: Array
+    links: tuple[int, ...]  # that the joint carries
+    columns: Array  # (windows, 10 * links)
 
 
 def inertia_integrals(
     tree: LinkTree, motion: Motion, usable: Flags, windows: Windows
 ) -> list[InertiaIntegrals]:
-    """Return each joint's integrals by the inertial parameters of the links that it carries.
-
-    Parameters
-    ----------
-    tree : LinkTree
-    motion : Motion
-    usable : ndarray of bool, shape (n, samples - 1)
-        Intervals in which a joint's balance is used.
-    windows : Windows
-    """
+    """Return each joint's integrals by inertial parameters of the links that it carries, over its usable intervals."""
     pairs, count = tree.pairs, len(windows.edges) - 1
     total = np.zeros((len(pairs), 10, count))
     rows = np.array([joint for joint, _ in pairs])

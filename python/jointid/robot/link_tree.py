@@ -16,41 +16,20 @@ INERTIAL_UNITS = ("kg", *("kg·m",) * 3, *("kg·m²",) * 6)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LinkTree:
-    """Links and the joints of one degree of freedom that move them; link k is moved by joint k.
+    """Links and the joints of one degree of freedom that move them; link k is moved by joint k."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        Of the joints.
-    parents : tuple of int
-        Link that each joint sits on, before its own; -1: the base, which stands still.
-    rotations : ndarray, shape (n, 3, 3)
-        Of a joint's frame at position 0, to its parent's frame.
-    translations : ndarray, shape (n, 3)
-        [m]
-    axes : ndarray, shape (n, 3)
-        Unit vectors in the joint's own frame.
-    prismatic : tuple of bool
-        Whether a joint slides along its axis.
-    inertias : ndarray, shape (n, 10)
-        In the order of `INERTIAL`.
-    gravity : ndarray, shape (3,)
-        Acceleration in the base's frame [m/s²].
-    locked : tuple of str
-        Joints that move and are left out; they stand at 0. Not known of a robot that was read from JSON.
-    spans : tuple of float or None
-        How far each joint may move by the URDF's limits [rad or m]; None: not known.
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # of the joints
+    # link that each joint sits on, before its own; -1: the base, which stands still
     parents: tuple[int, ...]
-    rotations: Array
-    translations: Array
-    axes: Array
-    prismatic: tuple[bool, ...]
-    inertias: Array
-    gravity: Array
+    rotations: Array  # (n, 3, 3), of a joint's frame at position 0, to its parent's frame
+    translations: Array  # (n, 3) [m]
+    axes: Array  # (n, 3), unit vectors in the joint's own frame
+    prismatic: tuple[bool, ...]  # whether a joint slides along its axis
+    inertias: Array  # (n, 10), in the order of `INERTIAL`
+    gravity: Array  # (3,), acceleration in the base's frame [m/s²]
+    # joints that move and are left out; they stand at 0. Not known of a robot that was read from JSON
     locked: tuple[str, ...] = ()
+    # how far each joint may move by the URDF's limits [rad or m]; None: not known
     spans: tuple[float, ...] | None = None
 
     @property

@@ -22,40 +22,19 @@ _NOTHING = 1e-6  # of a column: what the parameters follow but for rounding
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Share:
-    """What a few further columns explain.
+    """What a few further columns explain."""
 
-    Attributes
-    ----------
-    share : float
-        Of the weighted squared residuals, each stretch with the values that the others give.
-    certainty : float
-        That fall over its standard error, by the scatter over the stretches.
-    values, errors : ndarray, shape (columns,)
-        With errors clustered over stretches of motion; of a column that the parameters follow 0 and infinity.
-    wald : float
-        Squared values in terms of their errors, per column: 1 by chance.
-    """
-
+    # of the weighted squared residuals, each stretch with the values that the others give
     share: float
-    certainty: float
-    values: Array
+    certainty: float  # that fall over its standard error, by the scatter over the stretches
+    values: Array  # (columns,); 0 of a column that the parameters follow
+    # clustered over stretches of motion; infinite of a column that the parameters follow
     errors: Array
-    wald: float
+    wald: float  # squared values in terms of their errors, per column: 1 by chance
 
 
 class LookedRows:
-    """Rows of some pieces.
-
-    Parameters
-    ----------
-    balance : Balance
-    fit : Fit
-        Of it.
-    pieces : collection of int
-        Numbers of pieces.
-    free : bool
-        Whether parameters at a bound may leave it. Default False.
-    """
+    """Rows of some pieces of a balance and its fit; with `free`, parameters at a bound may leave it."""
 
     def __init__(
         self, balance: Balance, fit: Fit, pieces: Collection[int], free: bool = False

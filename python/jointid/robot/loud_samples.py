@@ -22,15 +22,9 @@ _SINGULAR = 1e-9  # of the weights: a sample whose neighbours are all loud
 def quiet_velocity(velocity: Array, noise: Array) -> Array:
     """Return a velocity whose loud samples follow their quiet neighbours, where these do not contradict them.
 
-    A velocity with little noise is returned as it is. A parabola is fitted to the samples on both sides, weighted
-    by their noise. At a reversal or where a joint breaks away, it differs from the sample by more than noise does,
-    and the sample stays.
-
-    Parameters
-    ----------
-    velocity : ndarray, shape (samples,)
-    noise : ndarray, shape (samples,)
-        Standard deviation of each.
+    A velocity with little noise is returned as it is. A parabola is fitted to the samples on both sides, weighted by
+    their noise, a standard deviation of each. At a reversal or where a joint breaks away, it differs from the sample by
+    more than noise does, and the sample stays.
     """
     usual = float(np.median(noise))
     loud = np.flatnonzero(noise > _LOUD * usual)

@@ -27,22 +27,7 @@ def shaped_term(model: str) -> _core.Term | None:
 def friction_models(
     model: object, names: Sequence[str], usual: Sequence[str] | None = None
 ) -> list[str]:
-    """Return the text of each joint's model.
-
-    Parameters
-    ----------
-    model : Model, str, mapping or None
-        One for all, or by joints' names.
-    names : sequence of str
-        Of the joints.
-    usual : sequence of str, optional
-        Models of joints for which none is given. Default: "auto".
-
-    Raises
-    ------
-    InputError
-        No such joint, or a model that is not known here.
-    """
+    """Return the text of each joint's model, from one for all or a mapping; joints without one have the `usual` one."""
     if isinstance(model, Mapping) and not (model and set(model) <= set(FIELDS)):
         for name in model:
             if name not in names:

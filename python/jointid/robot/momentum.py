@@ -19,20 +19,10 @@ Spatial = tuple[Array, Array]  # linear part at the frame's origin, angular part
 
 
 def columns_of(tree: LinkTree, position: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the columns of momentum and of force, for each joint and each link that it carries.
+    """Return the columns of momentum and of force, (pairs, 10, samples), in the order of `LinkTree.pairs`.
 
-    Parameters
-    ----------
-    tree : LinkTree
-    position, velocity : ndarray, shape (n, samples)
-        [rad or m], [rad/s or m/s]
-
-    Returns
-    -------
-    momentum : ndarray, shape (pairs, 10, samples)
-        In the order of `LinkTree.pairs`: the joint's momentum by the link's inertial parameters.
-    force : ndarray, shape (pairs, 10, samples)
-        The same of ``∂T/∂q - ∂U/∂q``: the momentum's rate is the torque plus this.
+    They are by the link's inertial parameters. The force is ``∂T/∂q - ∂U/∂q``: the momentum's rate is the torque plus
+    this.
     """
     samples = position.shape[1]
     pairs = tree.pairs

@@ -25,57 +25,30 @@ _STILL = 8.0  # standard deviations that the velocity of a short standstill reac
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Motion:
-    """Motion and torque of a robot's joints, all at the joints; rows are joints, in the robot's order.
+    """Motion and torque of a robot's joints, all at the joints; rows are joints, in the robot's order: (n, samples)."""
 
-    Attributes
-    ----------
-    time : ndarray, shape (samples,)
-        [s]
-    position, velocity, torque : ndarray, shape (n, samples)
-    velocity_noise : ndarray, shape (n,)
-        Usual standard deviation of each velocity.
-    motor_position, motor_velocity : ndarray, shape (n, samples)
-        Of the motors, divided by their gear ratios, counted from their own zero.
-    moving : ndarray of bool, shape (n, samples - 1)
-        Intervals between samples in which a joint moves, and the recording has no gap. Where noise may hide a
-        short standstill, it does not count as moving: friction has any value there.
-    motor_moving : ndarray of bool, shape (n, samples - 1)
-        The same of the motors.
-    wished : ndarray, shape (n,)
-        Duration of a window that the noise of each velocity asks for [s].
-    at_motor : bool
-        Whether positions were recorded at the motors.
-    torque_held : bool
-        Whether a torque holds from its sample to the next one, as a command does; else it is straight between them.
-    """
-
-    time: Array
+    time: Array  # (samples,) [s]
     position: Array
     velocity: Array
     torque: Array
-    velocity_noise: Array
+    velocity_noise: Array  # (n,), usual standard deviation of each velocity
+    # of the motors, divided by their gear ratios, counted from their own zero
     motor_position: Array
-    motor_velocity: Array
+    motor_velocity: Array  # the same
+    # (n, samples - 1): the joint moves between two samples, without a gap. Where noise may hide a short standstill,
+    # it does not count as moving: friction has any value there.
     moving: Flags
-    motor_moving: Flags
-    wished: Array
-    at_motor: bool
+    motor_moving: Flags  # the same of the motors
+    wished: Array  # (n,), duration of a window that the noise of each velocity asks for [s]
+    at_motor: bool  # whether positions were recorded at the motors
+    # whether a torque holds from its sample to the next one, as a command does; otherwise it is straight between them
     torque_held: bool = False
 
     @classmethod
     def of(
         cls, recording: RobotRecording, robot: Robot, min_speed: Array, mask_standstill: bool = True
     ) -> Motion:
-        """Return the motion of a recording.
-
-        Parameters
-        ----------
-        recording : RobotRecording
-        robot : Robot
-        min_speed : ndarray, shape (n,)
-            Below it a joint's friction is not used [rad/s or m/s].
-        mask_standstill : bool
-        """
+        """Return the motion of a recording; below its `min_speed` [rad/s or m/s] a joint's friction is not used."""
         coupling = robot.couplings
         position, torque, at_motor = signals_of(recording, robot)
         found = [_derived(recording, row, robot.names[k]) for k, row in enumerate(position)]

@@ -83,14 +83,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
 
 
 def named_error(error: SmallError, names: Sequence[str]) -> Finding:
-    """The finding that a fact is somewhat wrong.
-
-    Parameters
-    ----------
-    error : SmallError
-    names : sequence of str
-        Of the joints.
-    """
+    """The finding that a fact is somewhat wrong."""
     title, details, evidence, advice = _WORDED[error.kind](
         error, "" if error.joint is None else names[error.joint]
     )

@@ -30,19 +30,7 @@ def moved_zeros(
     motions: Mapping[int, Motion],
     inertial: Array,
 ) -> Array:
-    """Change of each row's integral per change of each joint's zero, shape (rows, n).
-
-    Parameters
-    ----------
-    tree : LinkTree
-    balance : Balance
-    rows : LookedRows
-        Of some of its pieces.
-    motions : mapping of int to Motion
-        These pieces, by number.
-    inertial : ndarray, shape (10 n,)
-        Inertial parameters of all links.
-    """
+    """Change of each row's integral per change of each joint's zero, (rows, n); the motions are the rows' pieces."""
     n = len(tree.names)
 
     def changes(motion: Motion) -> list[tuple[Array, Array]]:
@@ -67,13 +55,7 @@ def tilted_gravity(
     inertial: Array,
     ways: Array,
 ) -> Array:
-    """Change of each row's integral per further gravity along each of some ways, shape (rows, ways).
-
-    Parameters
-    ----------
-    ways : ndarray, shape (ways, 3)
-        In the base's frame.
-    """
+    """Change of each row's integral per further gravity along each of some ways, (ways, 3) in the base's frame."""
 
     def changes(motion: Motion) -> list[tuple[Array, Array]]:
         still = np.zeros_like(motion.velocity)

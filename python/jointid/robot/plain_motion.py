@@ -31,29 +31,15 @@ _SHORTEST = 40  # of these: less is no motion
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PlainSignals:
-    """A stretch of a recording on an even clock, all at the joints; rows are joints.
+    """A stretch of a recording on an even clock, all at the joints; rows are joints: (n, samples)."""
 
-    Attributes
-    ----------
-    position, velocity, torque : ndarray, shape (n, samples)
-        The velocity is the filtered position's slope. The position counts from the recording's own zeros.
-    recorded : ndarray, shape (n, samples) or None
-        The velocity in the recording.
-    step : float
-        [s]
-    period : float
-        The moving average that fits the recording's rate [s].
-    whole : ndarray of bool, shape (samples,)
-        Where no gap is near.
-    """
-
-    position: Array
-    velocity: Array
+    position: Array  # counted from the recording's own zeros
+    velocity: Array  # slope of the filtered position
     torque: Array
-    recorded: Array | None
-    step: float
-    period: float
-    whole: Flags
+    recorded: Array | None  # the velocity in the recording
+    step: float  # [s]
+    period: float  # the moving average that fits the recording's rate [s]
+    whole: Flags  # (samples,), where no gap is near
 
 
 def plain_signals(recordings: Sequence[RobotRecording], robot: Robot) -> list[PlainSignals]:
@@ -133,21 +119,9 @@ def velocity_of(run: RobotRecording, robot: Robot, at_motor: bool) -> Array | No
 def link_columns(
     robot: Robot, position: Array, velocity: Array, step: float, directions: Array
 ) -> Array:
-    """Torques of all joints by changes of the links' inertial parameters.
+    """Torques of all joints by changes of the links' inertial parameters, shape (n, columns, samples).
 
-    Parameters
-    ----------
-    robot : Robot
-    position, velocity : ndarray, shape (n, samples)
-        As of `PlainSignals`.
-    step : float
-        [s]
-    directions : ndarray, shape (10 n, columns)
-
-    Returns
-    -------
-    ndarray, shape (n, columns, samples)
-        The momentum's slope less the force of motion and gravity.
+    They are the momentum's slope less the force of motion and gravity; `step` is in s, `directions` is (10 n, columns).
     """
     offsets = np.array(robot.zero_offsets or (0.0,) * robot.n)[:, None]
     momentum, force = columns_of(robot.tree, position + offsets, velocity)

@@ -31,26 +31,13 @@ _AS_GOOD = 1.05  # a residual with another delay, which the rows cannot tell fro
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Block:
-    """Rows of one joint.
+    """Rows of one joint."""
 
-    Attributes
-    ----------
-    labels : tuple of (joint or None, str)
-        Of the columns.
-    matrix : ndarray, shape (rows, columns)
-    targets : ndarray, shape (rows, delays)
-        The torque less what is known of it.
-    stretch : ndarray of int, shape (rows,)
-        Of time: one observation.
-    size : float
-        Root mean square of the torque.
-    """
-
-    labels: tuple[Label, ...]
-    matrix: Array
-    targets: Array
-    stretch: Whole
-    size: float
+    labels: tuple[Label, ...]  # of the columns
+    matrix: Array  # (rows, columns)
+    targets: Array  # (rows, delays), the torque less what is known of it
+    stretch: Whole  # (rows,), of time: one observation
+    size: float  # root mean square of the torque
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -65,24 +52,13 @@ class _Rows:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Columns:
-    """What a regression is to determine.
-
-    Attributes
-    ----------
-    robot : Robot
-    inertia : InertiaColumns
-    slowest : ndarray, shape (n,)
-        Speed of each joint below which there are no rows.
-    models : sequence of str
-        One a joint.
-    made : dict
-        Columns by signals, width and least speeds, once they were made.
-    """
+    """What a regression is to determine."""
 
     robot: Robot
     inertia: InertiaColumns
-    slowest: Array
-    models: Sequence[str]
+    slowest: Array  # (n,), speed of each joint below which there are no rows
+    models: Sequence[str]  # one a joint
+    # columns by signals, width and least speeds, once they were made
     made: dict[tuple[int, int, tuple[float, ...]], list[_Rows]] = field(default_factory=dict)
 
     def blocks(

@@ -33,38 +33,20 @@ _CHANGES = np.array([moments_of(each) for each in np.eye(10)])
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PossibleBodies:
-    """Links that can be.
+    """Links that can be."""
 
-    Attributes
-    ----------
-    inertial : ndarray, shape (links, 10)
-    distance : float
-        Of their base parameters from the given ones, in standard errors.
-    by_chance : bool
-        Whether so large a distance may be chance.
-    """
-
-    inertial: Array
-    distance: float
-    by_chance: bool
+    inertial: Array  # (links, 10)
+    distance: float  # of their base parameters from the given ones, in standard errors
+    by_chance: bool  # whether so large a distance may be chance
 
 
 def nearest_possible(
     wanted: Array, base: Array, precision: Array, urdf: Array, discs: Array
 ) -> PossibleBodies:
-    """Return possible links with given base parameters.
+    """Return the possible links nearest to the base parameters `wanted`, which are `base` times inertial parameters.
 
-    Parameters
-    ----------
-    wanted : ndarray, shape (count,)
-        Base parameters.
-    base : ndarray, shape (count, 10 n)
-        How they follow from the links' inertial parameters.
-    precision : ndarray, shape (count, count)
-        Inverse of their covariance; positive definite.
-    urdf : ndarray, shape (n, 10)
-    discs : ndarray, shape (10 n, motors)
-        What a unit of inertia of motors adds to the links that cannot be told from these: the URDF's links lack it.
+    `precision` is the inverse of their covariance, positive definite. A column of `discs`, (10 n, motors), is what a
+    unit of a motor's inertia adds to links that cannot be told from it: the URDF's links lack it.
     """
     start = _as_bodies(urdf)
     search = _Search(
@@ -124,23 +106,13 @@ def _with_base(inertial: Array, wanted: Array, base: Array, sizes: Array) -> Arr
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Search:
-    """Damped Newton steps; the variables are the links' parameters, and behind them the motors' inertias.
+    """Damped Newton steps; the variables are the links' parameters, and behind them the motors' inertias."""
 
-    Attributes
-    ----------
-    urdf : ndarray, shape (n, 10)
-    wanted : ndarray, shape (count,)
-    base : ndarray, shape (count, variables)
-    precision : ndarray, shape (count, count)
-    usual : ndarray, shape (motors,)
-        Sizes of the motors' inertias.
-    """
-
-    urdf: Array
-    wanted: Array
-    base: Array
-    precision: Array
-    usual: Array
+    urdf: Array  # (n, 10)
+    wanted: Array  # (count,)
+    base: Array  # (count, variables)
+    precision: Array  # (count, count)
+    usual: Array  # (motors,), sizes of the motors' inertias
 
     def minimum(self, at: Array, weight: float) -> Array:
         """The minimum with one weight of the divergence."""

@@ -24,38 +24,22 @@ _SHORTEST = 0.05  # [m]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prior:
-    """A normal distribution of the base parameters.
+    """A normal distribution of the base parameters."""
 
-    Attributes
-    ----------
-    mean : ndarray, shape (base,)
-    root : ndarray, shape (base, base)
-        Takes differences from the mean to unit variance.
-    urdf : ndarray, shape (10 n,)
-        Inertial parameters.
-    gain : ndarray, shape (10 n, base)
-        The smallest change of the inertial parameters per change of the base parameters, in terms of their sizes.
-    of_links : ndarray, shape (base, 10 n)
-        Base parameters by the links' inertial parameters.
-    """
-
-    mean: Array
-    root: Array
-    urdf: Array
+    mean: Array  # (base,)
+    root: Array  # (base, base), takes differences from the mean to unit variance
+    urdf: Array  # (10 n,), inertial parameters
+    # (10 n, base), smallest change of the inertial parameters per change of the base parameters, in terms of their
+    # sizes
     gain: Array
-    of_links: Array
+    of_links: Array  # (base, 10 n), base parameters by the links' inertial parameters
 
     @classmethod
     def of(cls, robot: Robot, combined: Array, free: Sequence[int]) -> Self | None:
         """Return the prior, or None where the URDF has no masses.
 
-        Parameters
-        ----------
-        robot : Robot
-        combined : ndarray, shape (base, 10 n + rotors)
-            Base parameters by the links' and the free rotors' parameters.
-        free : sequence of int
-            Motors with a free rotor inertia.
+        `combined`, (base, 10 n + rotors), is base parameters by those of links and free rotors; `free` are the rotors'
+        motors.
         """
         urdf = robot.tree.inertias.ravel()
         mass = robot.tree.inertias[:, 0]

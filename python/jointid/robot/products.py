@@ -23,27 +23,13 @@ _NOTHING = 1e-13  # of the largest eigenvalue: rounding
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Products:
-    """Columns and target of all joints.
+    """Columns and target of all joints."""
 
-    Attributes
-    ----------
-    blocks : tuple of ndarray, shape (rows of the joint, columns + 1)
-        Scaled columns of each joint's rows, the target last.
-    places : tuple of ndarray of int
-        Numbers of each joint's rows.
-    folds : tuple of ndarray of int
-        Stretch of time of each of them.
-    norms : ndarray, shape (columns + 1,)
-        Lengths of the columns and of the target, by which they are divided.
-    sums : ndarray, shape (FOLDS, joints, columns + 1, columns + 1)
-        Products, by stretch and joint.
-    """
-
-    blocks: tuple[Array, ...]
-    places: tuple[Whole, ...]
-    folds: tuple[Whole, ...]
-    norms: Array
-    sums: Array
+    blocks: tuple[Array, ...]  # scaled columns of each joint's rows, the target last
+    places: tuple[Whole, ...]  # numbers of each joint's rows
+    folds: tuple[Whole, ...]  # stretch of time of each of them
+    norms: Array  # lengths of the columns and of the target, by which they are divided
+    sums: Array  # (FOLDS, joints, columns + 1, columns + 1), products by stretch and joint
 
     @classmethod
     def of(cls, blocks: list[Array], places: list[Whole], rows: Rows) -> Self:
@@ -75,17 +61,7 @@ class Products:
         return np.array([place.size for place in self.places])
 
     def with_columns(self, added: dict[int, Array]) -> Array:
-        """Return the products with further columns, which stand before the target.
-
-        Parameters
-        ----------
-        added : dict of int to ndarray, shape (rows of the joint, columns)
-            Joint → its own further columns; no other joint has them.
-
-        Returns
-        -------
-        ndarray, shape (FOLDS, joints, size, size)
-        """
+        """Return the products with further columns of some joints before the target, (FOLDS, joints, size, size)."""
         count = sum(each.shape[1] for each in added.values())
         old = self.columns
         size = old + count + 1

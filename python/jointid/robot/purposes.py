@@ -48,12 +48,7 @@ def torques_of(
 ) -> Torques:
     """Return how large torques are in the recorded motion: a joint's, or all, each in units of its residual.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Of all parameters, as `RobotEstimate.free` has them.
-    joint : int, optional
-        Default: all joints.
+    The names are of all parameters, as `RobotEstimate.free` has them.
     """
     rows = balance.rows
     mine = np.full(rows.joint.size, True) if joint is None else rows.joint == joint

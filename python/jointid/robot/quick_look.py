@@ -23,14 +23,10 @@ _WHOLE = 0.9  # of a window of one joint, what the others' windows have to hold
 
 
 def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[float, float]:
-    """Return two relative residuals, with the URDF's inertias and linear friction.
+    """Return the relative residual of all joints' torques together, and the root mean square of the joints' own.
 
-    Returns
-    -------
-    whole : float
-        Of all joints' torques together.
-    usual : float
-        Root mean square of the joints' own: what is wrong at the wrist does not drown in the shoulder's torque.
+    The fits have the URDF's inertias and linear friction. By the second, what is wrong at the wrist does not drown in
+    the shoulder's torque.
     """
     look = looked_at(robot, motions, duration)
     if look is None:
@@ -45,30 +41,17 @@ def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[f
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Look:
-    """The fit of friction alone.
-
-    Attributes
-    ----------
-    balance : Balance
-    residual : ndarray, shape (rows,)
-    held : tuple of (int, str)
-        Joint and name of friction that would be negative.
-    """
+    """The fit of friction alone."""
 
     balance: Balance
-    residual: Array
-    held: tuple[tuple[int, str], ...]
+    residual: Array  # (rows,)
+    held: tuple[tuple[int, str], ...]  # joint and name of friction that would be negative
 
     def of_motors(self, couplings: Array) -> tuple[Array, Array]:
         """Return residuals and torques of each motor in each window, (n, windows); NaN where there is none.
 
         Torques at the motors do not depend on the couplings that are given; a motor's needs the rows of all joints with
-        which it turns, in the same window.
-
-        Parameters
-        ----------
-        couplings : ndarray, shape (n, n)
-            Of the robot of this look.
+        which it turns, in the same window. `couplings` are those of the robot of this fit.
         """
         rows, n = self.balance.rows, len(couplings)
         windows = max(summing.windows.edges.size for summing in self.balance.summings)

@@ -21,22 +21,7 @@ _MOST = {
 
 
 def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[float]) -> LinkTree:
-    """Return the links that some joints of a URDF move; its other joints stand at zero.
-
-    Parameters
-    ----------
-    path : Path
-    joints : sequence of str, optional
-        Default: all that move.
-    gravity : sequence of float
-        In the base's frame [m/s²].
-
-    Raises
-    ------
-    InputError
-        pinocchio is not installed, the file cannot be read or is no URDF, it has no such joint, the joints are in
-        another order than the URDF's, or a joint has several degrees of freedom.
-    """
+    """Return the links that some joints of a URDF move, by default all; its other joints stand at zero."""
     try:
         import pinocchio
     except ModuleNotFoundError:

@@ -28,37 +28,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RobotDraws:
-    """The fit's sums over quarters of blocks: what is drawn from. No recording is kept.
-
-    Attributes
-    ----------
-    cells : Cells
-    block : float
-        Length of a block [s].
-    lower, upper : ndarray, shape (p,)
-        Bounds of the parameters, in the order of `RobotEstimate.parameters`' labels.
-    values : ndarray, shape (p,)
-    labels : tuple of (int or None, str)
-    """
+    """The fit's sums over quarters of blocks: what is drawn from. No recording is kept."""
 
     cells: Cells
-    block: float
-    lower: Array
-    upper: Array
+    block: float  # length [s]
+    lower: Array  # bounds of the parameters, in the order of `RobotEstimate.parameters`' labels
+    upper: Array  # the same
     values: Array
     labels: tuple[tuple[int | None, str], ...]
 
     @classmethod
     def of(cls, balance: Balance, fit: Fit, known: Known) -> Self:
-        """Return the sums of a fit.
-
-        Parameters
-        ----------
-        balance : Balance
-        fit : Fit
-        known : Known
-            What is known beforehand of the parameters; further ones stand behind them.
-        """
+        """Return the sums of a fit; what is known beforehand of further parameters stands behind its own."""
         rows = balance.rows
         weight = 1.0 / fit.scatter[rows.joint]
         length = segment_length(rows.start, rows.stop, rows.piece)

@@ -26,32 +26,17 @@ _FINE: Array = 0.001 * np.arange(-4.0, 5.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Looked:
-    """What a second look found.
+    """What a second look found."""
 
-    Attributes
-    ----------
-    values, errors, spread : mapping of (joint, name) to float
-        Of the first setting, with errors clustered over stretches; how far the other settings are from it.
-    torque : mapping of int to ndarray
-        Filtered torque of the joints that were looked at, with given inertias taken away.
-    matrix : mapping of int to (labels, ndarray)
-        Its columns.
-    size : mapping of int to float
-        Root mean square of the joint's torque.
-    delay : ndarray, shape (n,)
-        That the look took away by itself [s].
-    recorded : bool
-        Whether the recorded velocity explained clearly more.
-    """
-
-    values: dict[Label, float]
-    errors: dict[Label, float]
-    spread: dict[Label, float]
+    values: dict[Label, float]  # of the first setting
+    errors: dict[Label, float]  # clustered over stretches
+    spread: dict[Label, float]  # how far the other settings are from the value
+    # filtered torque of the joints that were examined, with given inertias taken away
     torque: dict[int, Array]
-    matrix: dict[int, tuple[tuple[Label, ...], Array]]
-    size: dict[int, float]
-    delay: Array
-    recorded: bool
+    matrix: dict[int, tuple[tuple[Label, ...], Array]]  # its columns
+    size: dict[int, float]  # root mean square of the joint's torque
+    delay: Array  # (n,), that the second look took away by itself [s]
+    recorded: bool  # whether the recorded velocity explained clearly more
 
 
 def looked_again(
@@ -63,22 +48,10 @@ def looked_again(
     delay: Array,
     other: Array,
 ) -> Looked:
-    """Look at a robot's torques.
+    """Return a plain fit of a robot's torques, without rows below the speeds `slowest`.
 
-    Parameters
-    ----------
-    signals : sequence of PlainSignals
-    robot : Robot
-    mode : str
-        Of the inertia.
-    slowest : ndarray, shape (n,)
-        Speed of each joint below which its shaped term matters, or that a call leaves out.
-    models : sequence of str
-        One a joint.
-    delay : ndarray, shape (n,)
-        That a call states [s].
-    other : ndarray, shape (n,)
-        That the identification took away: where these rows cannot tell it from their own, values differ by so much.
+    `delay` is what a call states of each torque, `other` what the identification took away [s]: where these rows cannot
+    tell it from their own, values differ by so much.
     """
     columns = inertia_columns(robot, mode)
     every = Columns(robot, columns, slowest, models)

@@ -34,17 +34,10 @@ _APART = 1e-5  # of logarithms on both sides of a shape, for a slope
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapedTerms:
-    """Columns of the terms with a shape parameter of some joints.
-
-    Attributes
-    ----------
-    balance : Balance
-    terms : mapping of int to Term
-        By joint.
-    """
+    """Columns of the terms with a shape parameter of some joints."""
 
     balance: Balance
-    terms: Mapping[int, _core.Term]
+    terms: Mapping[int, _core.Term]  # by joint
 
     @classmethod
     def of(cls, balance: Balance, models: Sequence[str]) -> Self:
@@ -119,24 +112,14 @@ class ShapedTerms:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapedSolution:
-    """A solution with shapes.
+    """A solution with shapes."""
 
-    Attributes
-    ----------
-    solution : Solution
-        Its values: the fixed columns', then the coefficient of each joint's shaped term, as scaled.
-    logs : ndarray
-        Logarithms of the shapes.
-    at_bound : ndarray of bool
-        Shapes at a bound of their range, or of a term that a bound holds at 0.
-    sums : ndarray
-        Products with the columns of shaped terms, by stretch and joint.
-    """
-
+    # values of the fixed columns, then the coefficient of each joint's shaped term, as scaled
     solution: Solution
-    logs: Array
+    logs: Array  # of the shapes
+    # shapes at a bound of their range, or of a term that a bound holds at 0
     at_bound: NDArray[np.bool_]
-    sums: Array
+    sums: Array  # products with the columns of shaped terms, by stretch and joint
 
 
 def solved_with_shapes(
@@ -146,18 +129,9 @@ def solved_with_shapes(
     known: Known,
     start: Sequence[float] | None = None,
 ) -> ShapedSolution:
-    """Return the best values of linear parameters and shapes.
+    """Return the best values of linear parameters and shapes; `products`, `least` and `known` are of the fixed columns.
 
-    Parameters
-    ----------
-    shaped : ShapedTerms
-    products : Products
-        Of the fixed columns.
-    least : ndarray, shape (parameters,)
-    known : Known
-        Of the fixed columns' parameters beforehand.
-    start : sequence of float, optional
-        Logarithms of the shapes to begin with. Default: from a grid.
+    The search begins at `start`, logarithms of the shapes, or on a grid.
     """
     plain = solved(products, least, known)
     if not shaped.joints:

@@ -23,19 +23,7 @@ _FEWEST = 8  # samples
 
 
 def torque_shift(shift: object, robot: Robot) -> Array:
-    """Return the torque's delay of each joint [s].
-
-    Parameters
-    ----------
-    shift : mapping
-        As `identify_robot` takes it.
-    robot : Robot
-
-    Raises
-    ------
-    InputError
-        Another signal than "torque", no such joint, or not a number of at most 1 s.
-    """
+    """Return the torque's delay of each joint [s] from a `shift` of `identify_robot`, or name what is wrong with it."""
     if not isinstance(shift, Mapping):
         checked_shift(shift)
     assert isinstance(shift, Mapping)
@@ -83,17 +71,10 @@ def told_shift(delay: Array, robot: Robot) -> dict[str, float | dict[str, float]
 
 
 def without_delay(recording: RobotRecording, robot: Robot, delay: Array) -> RobotRecording:
-    """Return a recording whose torques are moved to the positions' clock.
+    """Return a recording with torques moved to the positions' clock; delays [s] are of motors' torques, where recorded.
 
     Torques are interpolated linearly between their samples, which for a held torque is the mean over the interval.
     Samples at the ends, where a moved torque is not known, are left out.
-
-    Parameters
-    ----------
-    recording : RobotRecording
-    robot : Robot
-    delay : ndarray, shape (n,)
-        [s]; of the motors' torques, where these are recorded.
     """
     if not delay.any():
         return recording

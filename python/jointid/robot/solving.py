@@ -22,16 +22,10 @@ _ALIKE = 1e-10  # of the largest singular value: smaller ones are rounding
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Known:
-    """What is known of the parameters beforehand: rows of unit variance beside those of the recording.
+    """What is known of the parameters beforehand: rows of unit variance beside those of the recording."""
 
-    Attributes
-    ----------
-    matrix : ndarray, shape (rows, parameters)
-    wanted : ndarray, shape (rows,)
-    """
-
-    matrix: Array
-    wanted: Array
+    matrix: Array  # (rows, parameters)
+    wanted: Array  # (rows,)
 
     @classmethod
     def nothing(cls, count: int) -> Self:
@@ -55,33 +49,16 @@ class Known:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Solution:
-    """Values of a bounded, weighted least-squares problem.
+    """Values of a bounded, weighted least-squares problem."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (parameters,)
-        As scaled.
-    at_bound : ndarray of bool, shape (parameters,)
-    scatter : ndarray, shape (joints,)
-        Root mean square of each joint's residuals, in units of the target's length.
-    """
-
-    values: Array
-    at_bound: NDArray[np.bool_]
+    values: Array  # (parameters,), as scaled
+    at_bound: NDArray[np.bool_]  # (parameters,)
+    # (joints,), root mean square of each one's residuals, in units of the target's length
     scatter: Array
 
 
 def solved(products: Products, least: Array, known: Known) -> Solution:
-    """Return the values that fit best, with the weight of each joint from its own residuals.
-
-    Parameters
-    ----------
-    products : Products
-    least : ndarray, shape (parameters,)
-        Lower bounds.
-    known : Known
-        Of the parameters beforehand.
-    """
+    """Return the values above lower bounds that fit best, with the weight of each joint from its own residuals."""
     sums = products.sums.sum(axis=0)
     said = known.scaled(products.norms)
     scatter = scatter_of(sums[:, -1, -1], products.counts)
@@ -97,12 +74,7 @@ def solved(products: Products, least: Array, known: Known) -> Solution:
 def bounded(product: Array, least: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return the least-squares values above lower bounds, and which are at them.
 
-    Parameters
-    ----------
-    product : ndarray, shape (parameters + 1, parameters + 1)
-        Products of the columns and, last, of the target.
-    least : ndarray, shape (parameters,)
-        0 or minus infinity, which no scale changes.
+    `product` is of the columns and, last, the target; bounds are 0 or minus infinity, which no scale changes.
     """
     count = least.size
     present = np.flatnonzero(np.diag(product)[:count] > 0.0)

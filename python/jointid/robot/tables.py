@@ -120,14 +120,7 @@ def text_summary(estimate: RobotEstimate) -> str:
 
 
 def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
-    """The estimate as text.
-
-    Parameters
-    ----------
-    estimate : RobotEstimate
-    action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
-    """
+    """The estimate as text; `action` words the advice of a finding."""
     lines = [f"jointid robot estimate — {estimate.robot.name}; value ± standard error", ""]
     lines += [*estimate.verdict.lines(), ""]
     lines += [*aligned([head(estimate), *rows(estimate)]), ""]

@@ -41,39 +41,23 @@ _MOVES = 0.05  # [rad or m]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Factor:
-    """What one joint's rows say of its torque: its factor on the URDF's, and squared residuals over its torque.
-
-    Attributes
-    ----------
-    value : float
-    left, without, given : float
-        With the factor, without the links, and with a factor of 1.
-    sure : bool
-        Whether the links explain enough to say it.
-    """
+    """What one joint's rows say of its torque: its factor on the URDF's, and squared residuals over its torque."""
 
     value: float
-    left: float
-    without: float
-    given: float
+    left: float  # residual with the factor
+    without: float  # residual without the links
+    given: float  # residual with a factor of 1
 
     @property
     def sure(self) -> bool:
+        """Whether the links explain enough to say it."""
         return self.left < _SEEN * self.without and self.left < CLEAR**2
 
 
 def wrong_torques(
     recordings: Sequence[RobotRecording], signals: Sequence[PlainSignals], robot: Robot
 ) -> Finding | None:
-    """Return the blocking finding of torques, or positions, that are not what they are taken for.
-
-    Parameters
-    ----------
-    recordings : sequence of RobotRecording
-    signals : sequence of PlainSignals
-        Of them.
-    robot : Robot
-    """
+    """Return the blocking finding of torques, or positions, that are not what they are taken for."""
     if not signals:
         return None
     blocks = _blocks(signals, robot)

@@ -14,27 +14,11 @@ _IMPOSSIBLE = "impossible_inertia"
 
 
 def judged_robot(estimate: RobotEstimate) -> Verdict:
-    """Judge a robot's estimate by its findings.
+    """Judge a robot's estimate by its findings; parameters are named as in `RobotEstimate.free`.
 
     Not usable: a blocking finding, or a joint of whose windows less than 90 % of the variance is explained; for
     compensation and simulation also a friction on its bound that may be more than a tenth of its joint's; for
-    simulation also links that no body can be. Usable with care: a warning. Usable: else.
-
-    Parameters
-    ----------
-    estimate : RobotEstimate
-
-    Returns
-    -------
-    Verdict
-        Parameters are named as in `RobotEstimate.free`.
-
-    Examples
-    --------
-    >>> robot = jid.Robot.from_urdf("arm.urdf")
-    >>> found = jid.identify_robot(jid.load_robot("arm.csv"), robot, inertia="free")
-    >>> found.verdict.level in ("usable", "usable with care", "not usable")
-    True
+    simulation also links that no body can be. Usable with care: a warning. Otherwise usable.
     """
     every = (*_objections(estimate), *_unexplained(estimate))
     objections = [each for each in every if each.code != _IMPOSSIBLE]

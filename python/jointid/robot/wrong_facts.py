@@ -32,34 +32,21 @@ _SLOW = 0.02  # of a peak speed: standing still, for a quick look
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WrongFact:
-    """A fact that fits clearly better than the given one.
+    """A fact that fits clearly better than the given one."""
 
-    Attributes
-    ----------
-    kind : str
-        "swapped_joints", "swapped_torques", "wrong_sign", "wrong_torque_sign", "wrong_motion_sign" or
-        "wrong_coupling".
-    joints : tuple of str
-    coupling : float or None
-        What the matrix should have in the row of the first joint, at the second.
-    before, after : float
-        Of the joints whose residual it changes most, with the URDF's inertias: residual over measured torque.
-    robot : Robot
-        With the fact as it should be.
-    order, torque_order : ndarray of int or None
-        Columns of the recording, if they should be exchanged: of positions, and of torques.
-    others : tuple of WrongFact
-        The same coupling with another factor, or the sign of another joint, which is nearly as good.
-    """
-
+    # "swapped_joints", "swapped_torques", "wrong_sign", "wrong_torque_sign", "wrong_motion_sign" or "wrong_coupling"
     kind: str
     joints: tuple[str, ...]
+    # what the matrix should have in the row of the first joint, at the second
     coupling: float | None
+    # residual over measured torque of the joints that it changes most, with the URDF's inertias
     before: float
-    after: float
-    robot: Robot
+    after: float  # the same with the fact as it should be
+    robot: Robot  # with the fact as it should be
+    # columns of the positions in the recording, if they should be exchanged
     order: NDArray[np.int64] | None = None
-    torque_order: NDArray[np.int64] | None = None
+    torque_order: NDArray[np.int64] | None = None  # the same of the torques
+    # the same coupling with another factor, or the sign of another joint, which is nearly as good
     others: tuple[WrongFact, ...] = ()
 
 
@@ -86,17 +73,7 @@ class _Looked:
 def wrong_fact(
     robot: Robot, motions: Sequence[Motion], duration: float, suspects: Sequence[int]
 ) -> WrongFact | None:
-    """Return the one fact about some joints that explains most if it is otherwise, or None.
-
-    Parameters
-    ----------
-    robot : Robot
-    motions : sequence of Motion
-    duration : float
-        Of the windows [s].
-    suspects : sequence of int
-        Joints whose balance is poor.
-    """
+    """Return the one fact about joints with a poor balance that explains most if it is otherwise, or None."""
     thin = [thinned(motion) for motion in motions]
     given = {mode: _look(robot, thin, duration, mode) for mode in (URDF, FREE)}
     falls = []

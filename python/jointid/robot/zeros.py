@@ -27,19 +27,11 @@ _CLEARLY = 0.5  # of the misfit without any: what all of them together have to r
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Zeros:
-    """Zero offsets that were looked for.
+    """Zero offsets that were looked for."""
 
-    Attributes
-    ----------
-    offsets : tuple of float
-        [rad]; all 0 where no others fit clearly better.
-    before, after : float
-        Relative residual of all joints with the URDF's inertias, without and with them.
-    """
-
-    offsets: tuple[float, ...]
-    before: float
-    after: float
+    offsets: tuple[float, ...]  # [rad]; all 0 where no others fit clearly better
+    before: float  # relative residual of all joints with the URDF's inertias, without the offsets
+    after: float  # the same with them
 
     @property
     def found(self) -> bool:
