@@ -17,10 +17,10 @@ from simulated_servo import (
 import jointid as jid
 from jointid.servo.findings import findings_of
 from jointid.servo.layout import LAYOUTS
-from jointid.servo.solving import Sought
+from jointid.servo.solving import Unknowns
 
 TRUTH = Truth()
-DIVIDED = Sought(
+DIVIDED = Unknowns(
     layout=LAYOUTS["coulomb_viscous"],
     separable=True,
     load_friction=True,

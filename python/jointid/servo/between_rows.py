@@ -41,11 +41,11 @@ def voltages(
     error = run.gain * (wanted - np.interp(seen, run.time, run.position))
     beyond = np.abs(run.duty) >= UNSATURATED * loop.saturation
     # Where the duty is limited, the loop says by how much it is short of the limit's end.
-    asked = np.where(
+    command = np.where(
         beyond, np.sign(run.duty) * np.maximum(np.abs(error), np.abs(run.duty)), run.duty
     )
-    late = asked + run.gain * (np.interp(seen - 0.5 * row, run.time, run.reference) - wanted)
+    late = command + run.gain * (np.interp(seen - 0.5 * row, run.time, run.reference) - wanted)
     change = np.clip(late, -loop.saturation, loop.saturation) - np.clip(
-        asked, -loop.saturation, loop.saturation
+        command, -loop.saturation, loop.saturation
     )
     return even, np.interp(times, stamps, change * run.supply) * driven

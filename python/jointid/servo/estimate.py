@@ -123,7 +123,7 @@ class ServoEstimate(Shown):
     @property
     def identified(self) -> Joint:
         """The joint with what was identified: motor, inertia and friction."""
-        from jointid.servo.described import identified_joint
+        from jointid.servo.joint_from_estimate import identified_joint
 
         return identified_joint(self)
 

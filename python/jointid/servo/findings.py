@@ -12,7 +12,7 @@ from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.finding_types import TYPES
 from jointid.servo.layout import LAYOUTS, MOTOR
-from jointid.servo.solving import Sought
+from jointid.servo.solving import Unknowns
 
 _VAGUE = 0.25  # half of an interval, of the value
 _POOR = 0.35  # of the load's torque
@@ -20,10 +20,10 @@ _OTHER_RUNS = Action("record", text="more runs, with other gains and motions")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
-def findings_of(estimate: ServoEstimate, sought: Sought) -> tuple[Finding, ...]:
+def findings_of(estimate: ServoEstimate, unknowns: Unknowns) -> tuple[Finding, ...]:
     """Return the findings, the most severe first."""
     found = [
-        *_inseparable(estimate, sought),
+        *_inseparable(estimate, unknowns),
         *_not_sensed(estimate),
         *_poor_fit(estimate),  # before its effects
         *_at_bound(estimate),
@@ -32,17 +32,17 @@ def findings_of(estimate: ServoEstimate, sought: Sought) -> tuple[Finding, ...]:
     return tuple(sorted(found, key=lambda each: _RANK[each.severity]))
 
 
-def _inseparable(estimate: ServoEstimate, sought: Sought) -> Iterator[Finding]:
-    if sought.divided:
+def _inseparable(estimate: ServoEstimate, unknowns: Unknowns) -> Iterator[Finding]:
+    if unknowns.divided:
         return
-    linear = estimate.parameters[sought.layout.linear]
+    linear = estimate.parameters[unknowns.layout.linear]
     total = estimate["back_emf"] + linear.value
     yield TYPES["inseparable_back_emf"].finding(
         f"only the sum of back-EMF and {linear.meaning} is known, {total:.3g} {linear.unit}",
         Action("record", text="runs in which the torque is switched off while the load swings"),
         Action("inspect", text="the winding's resistance, and state it in the joint's drive"),
         details="the motor is driven throughout, so both brake alike; k_t and R are not identifiable, only k_t / R; "
-        f"{percent(sought.share)} of the sum is taken as back-EMF, {_chosen(estimate)}",
+        f"{percent(unknowns.share)} of the sum is taken as back-EMF, {_chosen(estimate)}",
         parameters=("back_emf", linear.name, *MOTOR),
         evidence={"sum": Measured(total, linear.unit)},
     )

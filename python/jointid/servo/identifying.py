@@ -23,7 +23,7 @@ from jointid.servo.layout import DEFAULT_MODEL, HELD, KNOWN, LAYOUTS, LOAD_FRICT
 from jointid.servo.resampling import drawn, units_of
 from jointid.servo.row_lead import lead_of
 from jointid.servo.signals import ServoSignals, signals_of
-from jointid.servo.solving import Sought, fixed_point, weights
+from jointid.servo.solving import Unknowns, fixed_point, weights
 from jointid.servo.tables import parameters_of
 from jointid.servo.windows import SLOWEST, WINDOW, ServoGrid, grid_of
 
@@ -108,34 +108,34 @@ def identify_servo(
         return _usable(grid, window, slowest)
 
     grid = grid_with(window)
-    sought = _sought(joint, grid, layout, load_friction=load_friction)
-    values = _fitted(grid, sought)
-    if not sought.divided:
-        sought, values = _divided(joint, runs, grid, sought, values)
+    unknowns = _unknowns(joint, grid, layout, load_friction=load_friction)
+    values = _fitted(grid, unknowns)
+    if not unknowns.divided:
+        unknowns, values = _divided(joint, runs, grid, unknowns, values)
     moved: dict[str, Array] = {}
     filled = grid.with_load(grid.side(values))
-    if sought.held and not _shown(_products_of_units(grid, filled), sought, values, seed):
+    if unknowns.held and not _shown(_products_of_units(grid, filled), unknowns, values, seed):
         moved["command"] = values
-        sought = replace(sought, held=False)
-        values = _fitted(grid, sought, np.append(values[:HELD], 0.0))
+        unknowns = replace(unknowns, held=False)
+        values = _fitted(grid, unknowns, np.append(values[:HELD], 0.0))
         filled = grid.with_load(grid.side(values))
     each = _products_of_units(grid, filled)
-    others = drawn(each, sought, values, draws, seed) if draws else np.empty((0, len(values)))
+    others = drawn(each, unknowns, values, draws, seed) if draws else np.empty((0, len(values)))
     if draws:
         # What runs drawn anew cannot show, because all of them have it: the windows' length, and the rows' lead.
-        moved["windows"] = _fitted(grid_with(2.0 * window), sought, values)
-        moved["lag"] = _fitted(grid.with_lead(runs, joint, shift + _LEAD_ERROR), sought, values)
+        moved["windows"] = _fitted(grid_with(2.0 * window), unknowns, values)
+        moved["lag"] = _fitted(grid.with_lead(runs, joint, shift + _LEAD_ERROR), unknowns, values)
     durations = grid.integrals(np.ones(len(grid.velocity)))[:, 0]
     residual = filled @ weights(values) / durations
     measured = grid.columns[:, KNOWN] / durations
     estimate = ServoEstimate(
         joint=joint,
-        parameters=parameters_of(values, others, sought, len(each), moved),
+        parameters=parameters_of(values, others, unknowns, len(each), moved),
         model=layout.model,
         draws=others[:, :HELD],
         values=values[:HELD],
         load_friction=load_friction,
-        separable=sought.separable,
+        separable=unknowns.separable,
         lead=shift,
         lead_found=found_lead is not None,
         command_lag=0.5 * _row(runs) * float(values[HELD]) if grid.late.any() else None,
@@ -151,7 +151,7 @@ def identify_servo(
         findings=(),
         seconds=0.0,
     )
-    found = findings_of(estimate, sought)
+    found = findings_of(estimate, unknowns)
     return replace(estimate, findings=found, seconds=time.perf_counter() - started)
 
 
@@ -167,32 +167,32 @@ def _usable(grid: ServoGrid, window: float, slowest: float) -> ServoGrid:
     return grid
 
 
-def _fitted(grid: ServoGrid, sought: Sought, start: Array | None = None) -> Array:
+def _fitted(grid: ServoGrid, unknowns: Unknowns, start: Array | None = None) -> Array:
     """Return the parameters, shape (size,), from a solution of nearly the same if there is one."""
 
     def products_of(side: Array | None) -> Array:
         filled = grid.columns if side is None else grid.with_load(side)
         return filled.T @ filled
 
-    return fixed_point(grid.side, products_of, sought, start)
+    return fixed_point(grid.side, products_of, unknowns, start)
 
 
 def _divided(
-    joint: Joint, runs: Sequence[ServoSignals], grid: ServoGrid, sought: Sought, values: Array
-) -> tuple[Sought, Array]:
-    """Return what is sought with the share of back-EMF, and the parameters with it."""
+    joint: Joint, runs: Sequence[ServoSignals], grid: ServoGrid, unknowns: Unknowns, values: Array
+) -> tuple[Unknowns, Array]:
+    """Return the unknowns with the share of back-EMF, and the parameters with it."""
     for _ in range(_DIVISIONS):
-        share = share_of(joint, runs, sought.layout, values)
-        if share == sought.share:
+        share = share_of(joint, runs, unknowns.layout, values)
+        if share == unknowns.share:
             break
-        sought = replace(sought, share=share)
-        values = _fitted(grid, sought, values)
-    return sought, values
+        unknowns = replace(unknowns, share=share)
+        values = _fitted(grid, unknowns, values)
+    return unknowns, values
 
 
-def _shown(products: Array, sought: Sought, values: Array, seed: int) -> bool:
+def _shown(products: Array, unknowns: Unknowns, values: Array, seed: int) -> bool:
     """Return whether runs drawn anew agree that the command is held between rows; it is not assumed else."""
-    held = drawn(products, sought, values, _DECIDING, seed)[:, HELD]
+    held = drawn(products, unknowns, values, _DECIDING, seed)[:, HELD]
     return bool(np.quantile(held, _DOUBT) > 0.0)
 
 
@@ -210,7 +210,7 @@ def _row(runs: Sequence[ServoSignals]) -> float:
     return float(np.median([np.median(np.diff(run.time)) for run in runs]))
 
 
-def _sought(joint: Joint, grid: ServoGrid, layout: Layout, *, load_friction: bool) -> Sought:
+def _unknowns(joint: Joint, grid: ServoGrid, layout: Layout, *, load_friction: bool) -> Unknowns:
     driven = grid.driven[grid.start]
     fixed = {
         name: float(parameter.value)
@@ -221,7 +221,7 @@ def _sought(joint: Joint, grid: ServoGrid, layout: Layout, *, load_friction: boo
         fixed["inertia"] = joint.reflected_inertia
     k_t = joint.torque_constant
     assert joint.voltage is not None
-    return Sought(
+    return Unknowns(
         layout=layout,
         separable=bool(0.0 < driven.mean() < 1.0),
         load_friction=load_friction and LOAD_FRICTION.name not in fixed,

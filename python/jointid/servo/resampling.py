@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.servo.layout import DRIVEN, LINEAR_COLUMN
-from jointid.servo.solving import Sought, solved
+from jointid.servo.solving import Unknowns, solved
 from jointid.servo.windows import ServoGrid
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ def units_of(grid: ServoGrid) -> NDArray[np.int64]:
     return np.asarray(np.unique(key, return_inverse=True)[1], dtype=np.int64)
 
 
-def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int) -> Array:
+def drawn(products: Array, unknowns: Unknowns, values: Array, draws: int, seed: int) -> Array:
     """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, size).
 
     `products` is (units, columns, columns); each set starts from `values`, the solution of all units.
@@ -34,7 +34,7 @@ def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int)
     count = len(products)
     generator = np.random.default_rng(seed)
     times = generator.multinomial(count, np.full(count, 1.0 / count), size=draws).astype(float)
-    if sought.separable and sought.layout.linear and not sought.motor_known:
+    if unknowns.separable and unknowns.layout.linear and not unknowns.motor_known:
         # Without a unit that turns freely, or without one that is driven, a set divides nothing.
         driven, turned = (products[:, each, each] for each in (DRIVEN, LINEAR_COLUMN))
         free = turned - driven > _SOME * turned
@@ -42,4 +42,4 @@ def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int)
             (times[:, free].sum(axis=1) > 0.0) & (times[:, driven > 0.0].sum(axis=1) > 0.0)
         ]
     sums = np.tensordot(times, products, axes=1)
-    return solved(sums, sought, np.tile(values, (len(sums), 1)))
+    return solved(sums, unknowns, np.tile(values, (len(sums), 1)))

@@ -19,14 +19,14 @@ _SETTLED = 1e-9  # relative change
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Sought:
-    """What is sought, and what is known of it."""
+class Unknowns:
+    """The parameters that are identified, and what is known of them."""
 
     layout: Layout
     # whether some windows are driven and some are not: divides back-EMF from friction in proportion to speed
     separable: bool
     load_friction: bool  # whether friction grows with the gear's torque
-    held: bool  # whether it is sought how the command moves between rows; otherwise it moves evenly
+    held: bool  # whether it is identified how the command moves between rows; otherwise it moves evenly
     torque_constant: float | None  # k_t at the output [N·m/A]
     resistance: float | None  # [Ω]
     fixed: Mapping[str, float]  # known values of parameters
@@ -47,18 +47,18 @@ class Sought:
 
     @property
     def loaded(self) -> bool:
-        """Whether friction of the load is sought or known."""
+        """Whether friction of the load is identified or known."""
         return self.load_friction or LOAD_FRICTION.name in self.fixed
 
 
-def solved(products: Array, sought: Sought, start: Array) -> Array:
+def solved(products: Array, unknowns: Unknowns, start: Array) -> Array:
     """Return the parameters that minimise the squared residual, shape (m, size); `products` is (m, columns, columns).
 
     The signs of the gear's torque are held. Columns that are products of parameters are formed with `start`, (m, size).
     """
     found = start
-    for _ in range(_PASSES if _turns(sought) else 1):
-        last, found = found, _linear(products, sought, found)
+    for _ in range(_PASSES if _turns(unknowns) else 1):
+        last, found = found, _linear(products, unknowns, found)
         if np.allclose(found, last, rtol=_SETTLED, atol=0.0):
             break
     return found
@@ -67,7 +67,7 @@ def solved(products: Array, sought: Sought, start: Array) -> Array:
 def fixed_point(
     side_of: Callable[[Array], Array],
     products_of: Callable[[Array | None], Array],
-    sought: Sought,
+    unknowns: Unknowns,
     start: Array | None = None,
 ) -> Array:
     """Return the parameters, once the signs of the gear's torque have settled, shape (size,).
@@ -76,25 +76,25 @@ def fixed_point(
     Without `start`, the iteration begins at the solution without friction of the load.
     """
     if start is None:
-        start = _without_load(products_of(None)[None], sought)
+        start = _without_load(products_of(None)[None], unknowns)
     found = start[None]
-    if not sought.loaded:
-        return np.asarray(solved(products_of(None)[None], sought, found)[0])
+    if not unknowns.loaded:
+        return np.asarray(solved(products_of(None)[None], unknowns, found)[0])
     last = None
     for _ in range(_PASSES):
         side = side_of(found[0])
         if last is not None and np.array_equal(side, last):
             break
         last = side
-        found = solved(products_of(side)[None], sought, found)
+        found = solved(products_of(side)[None], unknowns, found)
     return np.asarray(found[0])
 
 
-def _without_load(products: Array, sought: Sought) -> Array:
+def _without_load(products: Array, unknowns: Unknowns) -> Array:
     """Return the parameters without friction of the load, whose column needs the motor's torque."""
-    fixed = {name: value for name, value in sought.fixed.items() if name != LOAD_FRICTION.name}
-    plain = replace(sought, load_friction=False, held=False, fixed=fixed)
-    return np.asarray(solved(products, plain, np.zeros((1, len(sought.layout.names) + 1)))[0])
+    fixed = {name: value for name, value in unknowns.fixed.items() if name != LOAD_FRICTION.name}
+    plain = replace(unknowns, load_friction=False, held=False, fixed=fixed)
+    return np.asarray(solved(products, plain, np.zeros((1, len(unknowns.layout.names) + 1)))[0])
 
 
 def weights(values: Array) -> Array:
@@ -103,19 +103,19 @@ def weights(values: Array) -> Array:
     return np.asarray(columns[0] @ values - target[0])
 
 
-def _turns(sought: Sought) -> bool:
-    """Whether a column depends on what is sought."""
-    return sought.loaded or sought.held or sought.resistance is not None
+def _turns(unknowns: Unknowns) -> bool:
+    """Whether a column depends on unknowns."""
+    return unknowns.loaded or unknowns.held or unknowns.resistance is not None
 
 
-def _linear(products: Array, sought: Sought, last: Array) -> Array:
+def _linear(products: Array, unknowns: Unknowns, last: Array) -> Array:
     """One solution of each, with the columns that depend on the parameters formed with the last ones."""
-    names, found = sought.layout.names, np.zeros(last.shape)
+    names, found = unknowns.layout.names, np.zeros(last.shape)
     columns, target = balance(last)
-    fixed = dict(sought.fixed)
-    if not sought.load_friction:
+    fixed = dict(unknowns.fixed)
+    if not unknowns.load_friction:
         fixed.setdefault(LOAD_FRICTION.name, 0.0)
-    k_t, resistance = sought.torque_constant, sought.resistance
+    k_t, resistance = unknowns.torque_constant, unknowns.resistance
     if k_t is not None and resistance is not None:
         fixed |= {"torque_per_voltage": k_t / resistance, "back_emf": k_t * k_t / resistance}
     free = [index for index, name in enumerate(names) if name not in fixed]
@@ -127,11 +127,11 @@ def _linear(products: Array, sought: Sought, last: Array) -> Array:
     if tied is not None:
         columns[:, :, TORQUE] += tied[:, None] * columns[:, :, BACK_EMF]
         free.remove(BACK_EMF)
-    elif not sought.divided:
+    elif not unknowns.divided:
         free.remove(BACK_EMF)  # one column for both; divided below
     for name, value in fixed.items():
         target -= value * columns[:, :, names.index(name)]
-    if sought.held:
+    if unknowns.held:
         free.append(HELD)
     found[:, free] = _chosen(products, columns[:, :, free], target)
     for name, value in fixed.items():
@@ -148,8 +148,8 @@ def _linear(products: Array, sought: Sought, last: Array) -> Array:
     if tied is not None:
         torque = found[:, TORQUE]
         found[:, BACK_EMF] = torque * (tied if resistance is None else torque * resistance)
-    elif not sought.divided:
-        found[:, BACK_EMF] = sought.share * found[:, LINEAR]
+    elif not unknowns.divided:
+        found[:, BACK_EMF] = unknowns.share * found[:, LINEAR]
         found[:, LINEAR] -= found[:, BACK_EMF]
     return found
 

@@ -17,7 +17,7 @@ from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.layout import BACK_EMF, HELD, LOAD_FRICTION, MOTOR, TERMS, TORQUE
-from jointid.servo.solving import Sought
+from jointid.servo.solving import Unknowns
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ _MEANING = {
 def parameters_of(
     values: Array,
     draws: Array,
-    sought: Sought,
+    unknowns: Unknowns,
     units: int,
     moved: Mapping[str, Array],
 ) -> dict[str, ParameterEstimate]:
@@ -41,20 +41,20 @@ def parameters_of(
 
     `moved` has the parameters by other windows and another lead.
     """
-    facts = zip(MOTOR, (sought.torque_constant, sought.resistance), strict=True)
+    facts = zip(MOTOR, (unknowns.torque_constant, unknowns.resistance), strict=True)
     given = {name: fact for name, fact in facts if fact is not None}
-    known = {*sought.fixed, *given}
+    known = {*unknowns.fixed, *given}
     if len(given) == len(MOTOR):
         known |= {"torque_per_voltage", "back_emf"}
-    undivided = () if sought.divided else ("back_emf", sought.layout.linear, *MOTOR)
+    undivided = () if unknowns.divided else ("back_emf", unknowns.layout.linear, *MOTOR)
     # Few units: the spread of the draws is short by this, and the quantile is Student's.
     short = math.sqrt(units / max(units - 1.0, 1.0))
     quantile = float(_core.student_quantile(0.975, float(max(units - 1, 1))))
     own, sets = _with_motor(values[None])[0], _with_motor(draws)
     others = {part: _with_motor(other[None])[0] for part, other in moved.items()}
     found = {}
-    for k, name in enumerate((*sought.layout.names, *MOTOR)):
-        if name == LOAD_FRICTION.name and not sought.loaded:
+    for k, name in enumerate((*unknowns.layout.names, *MOTOR)):
+        if name == LOAD_FRICTION.name and not unknowns.loaded:
             continue
         value = given.get(name, own[k])
         systematic = {part: abs(float(other[k]) - float(own[k])) for part, other in others.items()}

@@ -21,13 +21,13 @@ def judged_servo(estimate: ServoEstimate) -> Verdict:
     usable. Compensation needs friction and what turns a torque into a duty, simulation all values.
     """
     objections = [*_objections(estimate)]
-    asked = tuple(estimate.parameters)
+    names = tuple(estimate.parameters)
     bounded = [replace(each, blocking=True) for each in objections if each.code == "at_bound"]
     needed = [each for each in bounded if _COMPENSATED.intersection(each.parameters)]
     uses = {
-        "compensation": use_by([*objections, *needed], asked, _COMPENSATED.__contains__),
-        "simulation": use_by([*objections, *bounded], asked, lambda _: True),
-        "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
+        "compensation": use_by([*objections, *needed], names, _COMPENSATED.__contains__),
+        "simulation": use_by([*objections, *bounded], names, lambda _: True),
+        "monitoring": use_by(to_changes(objections, estimate.parameters), names, lambda _: True),
     }
     return concluded(uses, objections, {})
 
@@ -40,13 +40,13 @@ def _objections(estimate: ServoEstimate) -> Iterable[Objection]:
             blocking=found.severity == "blocking",
             parameters=tuple(name for name in found.parameters if name in estimate.parameters),
         )
-    sought = [p for p in estimate.parameters.values() if p.vary and p.at_bound is None]
-    if sought and all(p.stderr is None for p in sought):
+    free = [p for p in estimate.parameters.values() if p.vary and p.at_bound is None]
+    if free and all(p.stderr is None for p in free):
         yield Objection(
             code="errors",
             reason="errors were not asked for, so the accuracy of the values is not known",
             blocking=False,
-            parameters=tuple(p.name for p in sought),
+            parameters=tuple(p.name for p in free),
         )
     explained = 1.0 - estimate.relative_residual**2
     if not explained >= EXPLAINED:

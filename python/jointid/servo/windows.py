@@ -1,4 +1,4 @@
-"""The torque balance of a servo over windows, with every column linear in what is sought.
+"""The torque balance of a servo over windows, with every column linear in what is unknown.
 
 Over a window, with the load's inertia and gravity known, without any acceleration:
 
