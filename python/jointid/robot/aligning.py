@@ -12,11 +12,11 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import rounded, two_digits
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.attempt import Asked, Attempt, attempted
+from jointid.robot.attempt import Attempt, Request, attempted
 from jointid.robot.delays import TorqueDelay, torque_delay
 from jointid.robot.finding_types import TYPES
 from jointid.robot.robot import Robot
-from jointid.robot.shifts import told_shift, torque_shift
+from jointid.robot.shifts import shift_option, torque_shift
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ _HALF = 0.2  # of a sample period: so near to half a period early, a torque is o
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Aligned:
+class Alignment:
     """An identification on one clock."""
 
     attempt: Attempt
@@ -36,15 +36,15 @@ class Aligned:
 
 
 def aligned(
-    recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, shift: object
-) -> Aligned:
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, shift: object
+) -> Alignment:
     """Return the identification without the torque's delay, and what is left of it.
 
     Without a `shift`, the delays that are certain are taken away.
     """
     delay = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
-    attempt = attempted(recordings, robot, asked, delay)
-    left = torque_delay(attempt.balance, attempt.fit, attempt.looks)
+    attempt = attempted(recordings, robot, request, delay)
+    left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
     for _ in range(_TURNS if shift is None else 0):
         step = left.taken if left.certain else _short(delay, left)
         if np.abs(step).max() < _SMALL:
@@ -53,21 +53,21 @@ def aligned(
             # A torque does not come before its motion: then the position is late, as a coarse one is.
             break
         delay = delay + step
-        attempt = attempted(recordings, robot, asked, delay)
-        left = torque_delay(attempt.balance, attempt.fit, attempt.looks)
-    return Aligned(attempt=attempt, left=left, chosen=shift is None)
+        attempt = attempted(recordings, robot, request, delay)
+        left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
+    return Alignment(attempt=attempt, left=left, chosen=shift is None)
 
 
-def delays_told(found: Aligned) -> Iterator[Finding]:
+def delay_findings(found: Alignment) -> Iterator[Finding]:
     """Findings of the delay that was taken away, and of what is certain and left."""
     attempt, left = found.attempt, found.left
     if found.chosen and attempt.delay.any():
-        yield _told("delay_removed", attempt.delay, found)
+        yield _delay_finding("delay_removed", attempt.delay, found)
     if left.certain and np.abs(left.taken).max() >= _SMALL:
-        yield _told("signal_lag", np.zeros_like(left.taken), found)
+        yield _delay_finding("signal_lag", np.zeros_like(left.taken), found)
 
 
-def _told(code: str, away: Array, found: Aligned) -> Finding:
+def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
     attempt, left = found.attempt, found.left
     names, period = attempt.robot.names, _period(attempt)
     which = away if away.any() else left.taken
@@ -98,7 +98,7 @@ def _told(code: str, away: Array, found: Aligned) -> Finding:
     whole = attempt.delay + left.taken
     advice: tuple[Action, ...] = ()
     early = -float(whole[0]) / period
-    if alike and abs(early - 0.5) < _HALF and not next(iter(attempt.looks.values())).torque_held:
+    if alike and abs(early - 0.5) < _HALF and not next(iter(attempt.excerpts.values())).torque_held:
         text = "if the torque is a command that is held between samples"
         advice = (Action("call", {"torque_hold": "zoh"}, text=text, function="load_robot"),)
     if away.any():
@@ -110,7 +110,7 @@ def _told(code: str, away: Array, found: Aligned) -> Finding:
     else:
         after = " after the stated shift" if attempt.delay.any() else ""
         details.append(f"this delay is left{after} and biases the values")
-        shift = {"shift": told_shift(whole, attempt.robot)}
+        shift = {"shift": shift_option(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
         if not alike:
             text = "the delays; without a stated shift, each joint's delay is found and removed"
@@ -128,4 +128,4 @@ def _short(delay: Array, left: TorqueDelay) -> Array:
 
 
 def _period(attempt: Attempt) -> float:
-    return float(np.median(np.diff(next(iter(attempt.looks.values())).time)))
+    return float(np.median(np.diff(next(iter(attempt.excerpts.values())).time)))

@@ -35,10 +35,10 @@ def answer_of_comparison(
     """Return the winner with each joint's model and values, in at most 7 lines and one for each joint."""
     estimate, winner = found.estimate, found.winner
     others = sorted((row for row in found.rows if row != winner), key=lambda row: row.score)
-    beside = f", next {others[0].name} {_score(others[0])}" if others else ""
+    runner_up = f", next {others[0].name} {_score(others[0])}" if others else ""
     lines = [
         f"{estimate.robot.name or 'robot'}: {winner.name} of {len(found.rows)} candidates, {estimate.verdict.level}",
-        cut(f"  held-out residual {_score(winner)}{beside}"),
+        cut(f"  held-out residual {_score(winner)}{runner_up}"),
         *_joints(estimate, found.models),
         *findings(estimate.findings, action, _FINDINGS, saved),
     ]

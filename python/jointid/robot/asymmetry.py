@@ -11,8 +11,8 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.joint.model import AUTO
 from jointid.robot.attempt import Attempt
+from jointid.robot.excerpt_rows import ExcerptRows
 from jointid.robot.finding_types import TYPES, titled
-from jointid.robot.looked_rows import LookedRows
 from jointid.robot.models import modelled, terms_of
 from jointid.robot.parameters import DIFFERENCE, VISCOUS
 
@@ -22,9 +22,9 @@ _LARGE = 0.03  # of the viscous friction
 _EXPLAINED = 0.1  # of the squared residual
 
 
-def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
+def asymmetry_findings(attempt: Attempt) -> Iterator[Finding]:
     """Findings of joints whose viscous friction clearly differs between the directions."""
-    rows = LookedRows(attempt.balance, attempt.fit, attempt.looks)
+    rows = ExcerptRows(attempt.balance, attempt.fit, attempt.excerpts)
     for joint, (name, found) in enumerate(attempt.estimate.joints.items()):
         keys = [term.key for term in terms_of(found.model)]
         if DIFFERENCE in found.parameters or VISCOUS.key not in keys:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from jointid.base.errors import InputError
 from jointid.joint.model import AUTO
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.asked import duration_of
 from jointid.robot.balance import Balance, balance_of
 from jointid.robot.choice import certainty, with_shapes
 from jointid.robot.conclusion import concluded
@@ -21,6 +20,7 @@ from jointid.robot.inertia import basis_of, inertia_columns
 from jointid.robot.models import PLAIN, SHAPED, is_asymmetric, modelled, name_of
 from jointid.robot.motion import Motion, part_of
 from jointid.robot.products import Products
+from jointid.robot.request import duration_of
 from jointid.robot.resampling import RobotDraws
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
@@ -36,7 +36,7 @@ _LOOKS = 4  # recordings by whose beginnings facts are judged
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Asked:
+class Request:
     """What a call asks for besides recordings and robot."""
 
     inertia: str
@@ -44,7 +44,7 @@ class Asked:
     windows: float | None
     slowest: Array  # (n,), least speeds
     mask_standstill: bool
-    beside: tuple[str, ...] = ()  # further modes of inertia that the balance is to hold
+    further_modes: tuple[str, ...] = ()  # further modes of inertia that the balance is to hold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -57,14 +57,14 @@ class Attempt:
     fit: Fit
     balance: Balance
     # the beginnings of some recordings, by the number of their piece in the balance
-    looks: Mapping[int, Motion]
+    excerpts: Mapping[int, Motion]
     duration: float  # of the windows [s]
     zeros: Zeros | None  # None where they are given
     runs: tuple[int, ...]  # the recording of each piece
 
 
 def attempted(
-    recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, delay: Array
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, delay: Array
 ) -> Attempt:
     """Return the identification of recordings on even clocks, with a delay of each torque taken away [s]."""
     runs = [without_delay(run, robot, delay) for run in recordings]
@@ -75,19 +75,21 @@ def attempted(
     def motion(place: int) -> Motion:
         number, low, high = pieces[place]
         part = part_of(runs[number], low, high)
-        return Motion.of(part, robot, asked.slowest, asked.mask_standstill)
+        return Motion.of(part, robot, request.slowest, request.mask_standstill)
 
-    looks = {place: motion(place) for place in firsts}
+    excerpts = {place: motion(place) for place in firsts}
     total = sum(run.duration for run in runs)
-    duration = duration_of(asked.windows, list(looks.values()), total)
+    duration = duration_of(request.windows, list(excerpts.values()), total)
     zeros = None
     if robot.zero_offsets is None:
-        zeros = zeros_of(robot, list(looks.values()), duration)
+        zeros = zeros_of(robot, list(excerpts.values()), duration)
         if zeros.found:
             robot = replace(robot, zero_offsets=zeros.offsets)
-            looks = {place: motion(place) for place in firsts}
-    every = (looks[place] if place in looks else motion(place) for place in range(len(pieces)))
-    basis = np.hstack([basis_of(robot, mode) for mode in (asked.inertia, *asked.beside)])
+            excerpts = {place: motion(place) for place in firsts}
+    every = (
+        excerpts[place] if place in excerpts else motion(place) for place in range(len(pieces))
+    )
+    basis = np.hstack([basis_of(robot, mode) for mode in (request.inertia, *request.further_modes)])
     balance = balance_of(robot, every, duration, basis)
     if not balance.rows.torque.size:
         raise InputError(
@@ -96,14 +98,14 @@ def attempted(
             value=runs[0].name,
             remedy="if one does, look for late time stamps or lost rows",
         )
-    estimate, fit = _solved(robot, balance, asked.inertia, duration, asked.models, numbers)
+    estimate, fit = _solved(robot, balance, request.inertia, duration, request.models, numbers)
     return Attempt(
         robot=robot,
         delay=delay,
         estimate=estimate,
         fit=fit,
         balance=balance,
-        looks=looks,
+        excerpts=excerpts,
         duration=duration,
         zeros=zeros,
         runs=tuple(numbers),

@@ -16,15 +16,15 @@ from jointid.estimate.wording import percent_with_error
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.aligning import aligned
-from jointid.robot.asked import least_speeds, recordings_of
-from jointid.robot.attempt import Asked, Attempt, fitted
+from jointid.robot.attempt import Attempt, Request, fitted
 from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
-from jointid.robot.held_out import blocks_of, part_of_balance, told_by
+from jointid.robot.held_out import blocks_of, part_of_balance, predicted_torque
 from jointid.robot.identifying import identify_robot
 from jointid.robot.inertia import MODES, Inertia
 from jointid.robot.models import MODELS, PLAIN, SHAPED, friction_models, name_of
+from jointid.robot.request import least_speeds, recordings_of
 from jointid.robot.robot import Robot
-from jointid.robot.shifts import Shift, told_shift
+from jointid.robot.shifts import Shift, shift_option
 from jointid.robot.stamps import all_on_even_clocks
 
 Array = NDArray[np.float64]
@@ -88,15 +88,15 @@ def compare_robot_models(
     every = _models(models, robot)
     count = whole_number("folds", folds, 2, 1000)
     slowest = least_speeds(min_speed, robot)
-    asked = Asked(
+    request = Request(
         inertia=modes[0],
         models=(PLAIN,) * robot.n,
         windows=windows,
         slowest=slowest,
         mask_standstill=mask_standstill,
-        beside=modes[1:],
+        further_modes=modes[1:],
     )
-    attempt = aligned(all_on_even_clocks(given), robot, asked, shift).attempt
+    attempt = aligned(all_on_even_clocks(given), robot, request, shift).attempt
     blocks = blocks_of(attempt.balance.rows, attempt.runs, count)
     rows, left_out = [], {}
     for mode in modes:
@@ -123,7 +123,7 @@ def compare_robot_models(
         windows=attempt.duration,
         min_speed=slowest.tolist(),
         mask_standstill=mask_standstill,
-        shift=told_shift(attempt.delay, attempt.robot),
+        shift=shift_option(attempt.delay, attempt.robot),
     )
     several = len(given) > 1
     return RobotComparison(
@@ -176,7 +176,7 @@ def _row(attempt: Attempt, mode: Inertia, model: str, blocks: Whole) -> Compared
     for fold in range(len(scores)):
         fit, _ = fitted(robot, part_of_balance(balance, blocks != fold), mode, models)
         held = part_of_balance(balance, blocks == fold)
-        missed = held.rows.torque - told_by(fit, held)
+        missed = held.rows.torque - predicted_torque(fit, held)
         for joint, place in enumerate(held.places):
             measured = float(np.linalg.norm(held.rows.torque[place]))
             if measured > 0.0:

@@ -12,13 +12,13 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import number, percent
-from jointid.robot.attempt import Asked, Attempt
+from jointid.robot.attempt import Attempt, Request
 from jointid.robot.finding_types import TYPES
 from jointid.robot.models import shaped_term
 from jointid.robot.parameters import JOINT_FRICTION
 from jointid.robot.plain_motion import PlainSignals
 from jointid.robot.result import RobotJoint
-from jointid.robot.second_look import SETTINGS, Looked, looked_again
+from jointid.robot.second_look import SETTINGS, SecondLook, filtered_fit
 
 Array = NDArray[np.float64]
 
@@ -98,20 +98,23 @@ class CrossCheck:
 
 
 def cross_checked(
-    signals: Sequence[PlainSignals], attempt: Attempt, asked: Asked, stated: Array | None
+    signals: Sequence[PlainSignals],
+    attempt: Attempt,
+    request: Request,
+    requested_delay: Array | None,
 ) -> CrossCheck:
-    """Return the second look at signals as they were recorded; `stated` is the torques' delay that a call names [s]."""
+    """Return the second look at signals as they were recorded, with the delay of the torques that a call names [s]."""
     robot, estimate = attempt.robot, attempt.estimate
     if not signals:
         return CrossCheck(reason="the recording is too short")
     joints = list(estimate.joints.values())
-    look = looked_again(
+    look = filtered_fit(
         signals,
         robot,
         estimate.inertia,
-        np.maximum([_past_shape(joint) for joint in joints], asked.slowest),
+        np.maximum([_past_shape(joint) for joint in joints], request.slowest),
         [joint.model for joint in joints],
-        np.zeros(robot.n) if stated is None else stated,
+        np.zeros(robot.n) if requested_delay is None else requested_delay,
         attempt.delay,
     )
     if not look.matrix:
@@ -144,7 +147,7 @@ def _past_shape(joint: RobotJoint) -> float:
     return float(speed) if _core.friction_basis(term.key, [speed], [value])[0] < _GONE else np.inf
 
 
-def _compared(attempt: Attempt, look: Looked, joint: int, name: str) -> Compared:
+def _compared(attempt: Attempt, look: SecondLook, joint: int, name: str) -> Compared:
     p = list(attempt.estimate.joints.values())[joint].parameters[name]
     value, stderr = p.value, p.stderr or 0.0
     if joint not in look.matrix:
@@ -172,7 +175,7 @@ def _compared(attempt: Attempt, look: Looked, joint: int, name: str) -> Compared
     )
 
 
-def _residuals(attempt: Attempt, look: Looked) -> Iterator[tuple[str, tuple[float, float]]]:
+def _residuals(attempt: Attempt, look: SecondLook) -> Iterator[tuple[str, tuple[float, float]]]:
     """Each joint's residual over its torque with both sets of values."""
     fit = attempt.fit
     places = {label: place for place, label in enumerate(fit.labels)}

@@ -1,8 +1,8 @@
 """The torque's delay against the position: the shift that the balances of all joints ask for.
 
 The integral of a shifted torque over a window changes with the shift by the torque's difference between the window's
-ends: one more column, beside all parameters of the fit. Each joint says by itself how late its torque is; what they say
-alike is the delay of all, and its error is at least what their scatter shows.
+ends: one more column, besides all parameters of the fit. Each joint says by itself how late its torque is; what they
+say alike is the delay of all, and its error is at least what their scatter shows.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance import Balance
+from jointid.robot.excerpt_rows import ExcerptRows
 from jointid.robot.fit import Fit
 from jointid.robot.integrals import torque_integrals
-from jointid.robot.looked_rows import LookedRows
 from jointid.robot.motion import Motion
 
 Array = NDArray[np.float64]
@@ -58,7 +58,7 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
 
     The motions are some of the balance's pieces, by number.
     """
-    rows = LookedRows(balance, fit, motions)
+    rows = ExcerptRows(balance, fit, motions)
     torque = _Shifted(rows, balance, motions)
     n = fit.scatter.size
     measured = torque(np.zeros(n))
@@ -133,7 +133,7 @@ def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, F
 class _Shifted:
     """Integrals of the torques of some pieces at any shift."""
 
-    def __init__(self, rows: LookedRows, balance: Balance, motions: Mapping[int, Motion]) -> None:
+    def __init__(self, rows: ExcerptRows, balance: Balance, motions: Mapping[int, Motion]) -> None:
         self._count, self._motions, self._summings = rows.kept.size, motions, balance.summings
         self._places = [
             (piece, joint, rows.places(piece, joint))

@@ -16,7 +16,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.attempt import Asked, Attempt, attempted
+from jointid.robot.attempt import Attempt, Request, attempted
 from jointid.robot.error_candidates import ZERO, SmallError, refined, small_errors
 from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.findings import doubtful_joints
@@ -55,7 +55,7 @@ class _Corrected:
 
 
 def diagnosed(
-    recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, attempt: Attempt
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
 ) -> Diagnosis:
     """Return an attempt's findings: the given facts that are wrong first, and without what only follows from them.
 
@@ -64,7 +64,7 @@ def diagnosed(
     causes: list[Finding] = []
     last = attempt
     for _ in range(_MOST):
-        found = _corrected(recordings, robot, asked, last)
+        found = _corrected(recordings, robot, request, last)
         if found is None:
             break
         causes.append(found.finding)
@@ -81,22 +81,22 @@ def diagnosed(
 
 
 def _corrected(
-    recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, attempt: Attempt
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
 ) -> _Corrected | None:
     """The fact that explains most, if it is corrected: what the identification without it leaves decides."""
     found = []
     small = [
-        _without_error(each, recordings, robot, asked, attempt) for each in small_errors(attempt)
+        _without_error(each, recordings, robot, request, attempt) for each in small_errors(attempt)
     ]
     if small:
         left = [_misfit(each.attempt) for each in small]
         found.append(small[-1] if left[0] - left[-1] > _SIMPLER else small[0])
     suspects = doubtful_joints(attempt.estimate)
-    looks = list(attempt.looks.values())
-    wrong = wrong_fact(attempt.robot, looks, attempt.duration, suspects) if suspects else None
+    excerpts = list(attempt.excerpts.values())
+    wrong = wrong_fact(attempt.robot, excerpts, attempt.duration, suspects) if suspects else None
     if wrong is not None:
         signs = [
-            _without_fact(each, recordings, robot, asked, attempt)
+            _without_fact(each, recordings, robot, request, attempt)
             for each in (wrong, *wrong.others)
         ]
         # Friction takes power away: that decides where a coupling's sign hardly shows.
@@ -111,14 +111,14 @@ def _without_error(
     error: SmallError,
     recordings: Sequence[RobotRecording],
     robot: Robot,
-    asked: Asked,
+    request: Request,
     attempt: Attempt,
 ) -> _Corrected:
     for turn in range(_REFINED):
         # Quarter turns of the zeros that were found stay open, unless it is a zero that is wrong.
         zeros = error.robot.zero_offsets if error.kind == ZERO else robot.zero_offsets
         other = replace(error.robot, zero_offsets=zeros)
-        without = attempted(recordings, other, asked, attempt.delay)
+        without = attempted(recordings, other, request, attempt.delay)
         again = refined(error, without) if turn < _REFINED - 1 else None
         if again is None:
             break
@@ -135,12 +135,12 @@ def _without_fact(
     wrong: WrongFact,
     recordings: Sequence[RobotRecording],
     robot: Robot,
-    asked: Asked,
+    request: Request,
     attempt: Attempt,
 ) -> _Corrected:
     other = replace(wrong.robot, zero_offsets=robot.zero_offsets)
     runs = [_reordered(run, robot, wrong) for run in recordings]
-    without = attempted(runs, other, asked, attempt.delay)
+    without = attempted(runs, other, request, attempt.delay)
     before, after = (_left(each) for each in (attempt, without))
     shown = int(np.argmax(before / after))
     measured = replace(wrong, before=float(before[shown]), after=float(after[shown]))

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.attempt import Attempt
+from jointid.robot.excerpt_rows import ExcerptRows, Share
 from jointid.robot.inertia import FREE, SCALED, moment_columns
-from jointid.robot.looked_rows import LookedRows, Share
 from jointid.robot.perturbed import moved_zeros, tilted_gravity
 from jointid.robot.robot import Robot
 
@@ -141,11 +141,11 @@ def tilts(gravity: Array) -> Array:
 def _shares(attempt: Attempt) -> Iterator[tuple[str, int | None, Share]]:
     """What each possible error explains, with its kind and joint."""
     robot, balance, fit = attempt.robot, attempt.balance, attempt.fit
-    rows = LookedRows(balance, fit, attempt.looks, free=True)
-    mechanics = (robot.tree, balance, rows, attempt.looks, fit.inertial)
+    rows = ExcerptRows(balance, fit, attempt.excerpts, free=True)
+    mechanics = (robot.tree, balance, rows, attempt.excerpts, fit.inertial)
     if np.linalg.norm(robot.tree.gravity) > 0.0:
-        ways = tilts(robot.tree.gravity)
-        yield TILT, None, rows.share(tilted_gravity(*mechanics, ways))
+        axes = tilts(robot.tree.gravity)
+        yield TILT, None, rows.share(tilted_gravity(*mechanics, axes))
     zeros = moved_zeros(*mechanics)
     for joint in np.flatnonzero(~np.array(robot.tree.prismatic)).tolist():
         yield ZERO, joint, rows.share(zeros[:, joint : joint + 1])

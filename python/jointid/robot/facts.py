@@ -1,4 +1,4 @@
-"""What is known of a robot beside its URDF, from a file."""
+"""What is known of a robot besides its URDF, from a file."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ _MOSTLY = 0.35
 _VAGUE = 0.25  # a standard error, of the value
 _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
 _POOR = 0.15  # of the torque
-_DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
+_DOUBTFUL = 0.05  # of the torque: worth an inspection of the given facts
 _LEFT_OUT = "such motion says nothing about friction and is left out"
 RANK = {"blocking": 0, "warning": 1, "info": 2}
 

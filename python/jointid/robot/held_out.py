@@ -61,7 +61,7 @@ def part_of_balance(balance: Balance, kept: Flags) -> Balance:
     )
 
 
-def told_by(fit: Fit, balance: Balance) -> Array:
+def predicted_torque(fit: Fit, balance: Balance) -> Array:
     """Return the integrals of torque that a fit tells of a balance, which it need not have seen."""
     places = {balance.labels[place]: place for place in balance.columns_of(fit.models)}
     total = fit.columns.known(balance)

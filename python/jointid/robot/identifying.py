@@ -14,11 +14,10 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import check_flag
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.aligning import aligned, delays_told
-from jointid.robot.asked import least_speeds, recordings_of
-from jointid.robot.assumed import assumptions_told
-from jointid.robot.asymmetry import asymmetry_told
-from jointid.robot.attempt import Asked, attempted
+from jointid.robot.aligning import aligned, delay_findings
+from jointid.robot.assumptions import assumption_findings
+from jointid.robot.asymmetry import asymmetry_findings
+from jointid.robot.attempt import Request, attempted
 from jointid.robot.cross_check import CrossCheck, cross_checked, disagreement, slow_motion
 from jointid.robot.diagnosis import diagnosed
 from jointid.robot.findings import RANK
@@ -27,9 +26,10 @@ from jointid.robot.models import friction_models
 from jointid.robot.naming import turned_zeros
 from jointid.robot.physical_inertia import impossible_links, with_possible_bodies
 from jointid.robot.plain_motion import plain_signals
+from jointid.robot.request import least_speeds, recordings_of
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
-from jointid.robot.shifts import Shift, told_shift, torque_shift
+from jointid.robot.shifts import Shift, shift_option, torque_shift
 from jointid.robot.stamps import all_on_even_clocks
 from jointid.robot.torque_check import wrong_torques
 from jointid.robot.unexamined_causes import unexamined
@@ -111,45 +111,47 @@ def identify_robot(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
         )
     check_flag("", "mask_standstill", mask_standstill)
-    asked = Asked(
+    request = Request(
         inertia=inertia,
         models=tuple(friction_models(model, robot.names, robot.models)),
         windows=windows,
         slowest=least_speeds(min_speed, robot),
         mask_standstill=mask_standstill,
     )
-    stated = None if shift is None else torque_shift(shift, robot)
+    requested_delay = None if shift is None else torque_shift(shift, robot)
     signals = plain_signals(recorded, robot)
     runs, given = all_on_even_clocks(recorded), robot
     wrong = wrong_torques(recorded, signals, robot)
     if (
         wrong is not None
     ):  # neither delays nor facts are tried: all that they show would follow from this
-        attempt = attempted(runs, robot, asked, np.zeros(robot.n) if stated is None else stated)
+        attempt = attempted(
+            runs, robot, request, np.zeros(robot.n) if requested_delay is None else requested_delay
+        )
         estimate, check = attempt.estimate, CrossCheck(reason="see the blocking finding")
-        assumed = assumptions_told(runs, given, attempt)
+        assumed = assumption_findings(runs, given, attempt)
         findings = (wrong, *(each for each in assumed if each.severity == "info"))
     else:
-        found = aligned(runs, robot, asked, shift)
+        found = aligned(runs, robot, request, shift)
         attempt = found.attempt
         estimate = attempt.estimate
         if inertia == FREE:
             estimate = with_possible_bodies(estimate, attempt.fit)
-        diagnosis = diagnosed(runs, given, asked, attempt)
-        check = cross_checked(signals, attempt, asked, stated)
+        diagnosis = diagnosed(runs, given, request, attempt)
+        check = cross_checked(signals, attempt, request, requested_delay)
         if check.agrees is False and diagnosis.corrected is not attempt:
             other = plain_signals(diagnosis.recordings, diagnosis.corrected.robot)
-            again = cross_checked(other, diagnosis.corrected, asked, stated)
+            again = cross_checked(other, diagnosis.corrected, request, requested_delay)
             check = replace(check, explained=bool(again.agrees))
         findings = (
             *disagreement(check, slow_motion(signals)),
-            *assumptions_told(runs, given, attempt),
-            *delays_told(found),
+            *assumption_findings(runs, given, attempt),
+            *delay_findings(found),
             *diagnosis.findings,
             *impossible_links(estimate),
         )
         plain = all(each.severity == "info" for each in findings)
-        uneven = [*asymmetry_told(attempt)] if plain else []  # else it may follow from that
+        uneven = [*asymmetry_findings(attempt)] if plain else []  # else it may follow from that
         rest = unexamined(attempt.estimate, diagnosis.corrected.estimate)
         findings = (*findings, *(uneven or rest))
         if attempt.zeros is not None and attempt.zeros.found:
@@ -160,9 +162,9 @@ def identify_robot(
         "inertia": inertia,
         "window_duration": attempt.duration,
         "zero_offsets": list(robot.zero_offsets or (0.0,) * robot.n),
-        "min_speed": [float(each) for each in asked.slowest],
+        "min_speed": [float(each) for each in request.slowest],
         "mask_standstill": mask_standstill,
-        "shift": told_shift(attempt.delay, robot),
+        "shift": shift_option(attempt.delay, robot),
         "version": _core.__version__,
         "recordings": [run.name for run in runs],
     }

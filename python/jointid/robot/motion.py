@@ -39,7 +39,7 @@ class Motion:
     # it does not count as moving: friction has any value there.
     moving: Flags
     motor_moving: Flags  # the same of the motors
-    wished: Array  # (n,), duration of a window that the noise of each velocity asks for [s]
+    noise_window: Array  # (n,), duration of a window that the noise of each velocity asks for [s]
     at_motor: bool  # whether positions were recorded at the motors
     # whether a torque holds from its sample to the next one, as a command does; otherwise it is straight between them
     torque_held: bool = False
@@ -92,7 +92,7 @@ class Motion:
             motor_moving=of_motors,
             at_motor=at_motor,
             torque_held=recording.torque_hold == "zoh",
-            wished=np.array([masked.wished(each) for each in joints]),
+            noise_window=np.array([masked.noise_window(each) for each in joints]),
         )
 
 
@@ -195,7 +195,7 @@ class _Mask:
         except InputError:  # it never moves: the others may
             return np.zeros(self.time.size - 1, dtype=bool)
 
-    def wished(self, recording: _core.Recording) -> float:
+    def noise_window(self, recording: _core.Recording) -> float:
         try:
             return _core.window_duration(recording, _UNKNOWNS, self.standstill)
         except InputError:

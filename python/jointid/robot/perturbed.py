@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance import Balance
+from jointid.robot.excerpt_rows import ExcerptRows
 from jointid.robot.link_tree import LinkTree
-from jointid.robot.looked_rows import LookedRows
 from jointid.robot.momentum import columns_of
 from jointid.robot.motion import Motion
 
@@ -26,7 +26,7 @@ _NEAR = 1e-3  # [rad or m]
 def moved_zeros(
     tree: LinkTree,
     balance: Balance,
-    rows: LookedRows,
+    rows: ExcerptRows,
     motions: Mapping[int, Motion],
     inertial: Array,
 ) -> Array:
@@ -50,20 +50,21 @@ def moved_zeros(
 def tilted_gravity(
     tree: LinkTree,
     balance: Balance,
-    rows: LookedRows,
+    rows: ExcerptRows,
     motions: Mapping[int, Motion],
     inertial: Array,
-    ways: Array,
+    axes: Array,
 ) -> Array:
-    """Change of each row's integral per further gravity along each of some ways, (ways, 3) in the base's frame."""
+    """Change of each row's integral per further gravity along each of some axes, (axes, 3) in the base's frame."""
 
     def changes(motion: Motion) -> list[tuple[Array, Array]]:
         still = np.zeros_like(motion.velocity)
         return [
-            _mechanics(replace(tree, gravity=way), motion.position, still, inertial) for way in ways
+            _mechanics(replace(tree, gravity=axis), motion.position, still, inertial)
+            for axis in axes
         ]
 
-    return _integrated(balance, rows, motions, changes, len(ways))
+    return _integrated(balance, rows, motions, changes, len(axes))
 
 
 def _mechanics(
@@ -81,7 +82,7 @@ def _mechanics(
 
 def _integrated(
     balance: Balance,
-    rows: LookedRows,
+    rows: ExcerptRows,
     motions: Mapping[int, Motion],
     changes: Callable[[Motion], list[tuple[Array, Array]]],
     count: int,

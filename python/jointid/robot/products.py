@@ -52,7 +52,7 @@ class Products:
 
     @property
     def columns(self) -> int:
-        """How many columns there are beside the target."""
+        """How many columns there are besides the target."""
         return self.norms.size - 1
 
     @property

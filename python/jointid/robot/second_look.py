@@ -25,7 +25,7 @@ _FINE: Array = 0.001 * np.arange(-4.0, 5.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Looked:
+class SecondLook:
     """What a second look found."""
 
     values: dict[Label, float]  # of the first setting
@@ -39,7 +39,7 @@ class Looked:
     recorded: bool  # whether the recorded velocity explained clearly more
 
 
-def looked_again(
+def filtered_fit(
     signals: Sequence[PlainSignals],
     robot: Robot,
     mode: str,
@@ -47,7 +47,7 @@ def looked_again(
     models: Sequence[str],
     delay: Array,
     other: Array,
-) -> Looked:
+) -> SecondLook:
     """Return a plain fit of a robot's torques, without rows below the speeds `slowest`.
 
     `delay` is what a call states of each torque, `other` what the identification took away [s]: where these rows cannot
@@ -85,7 +85,7 @@ def looked_again(
         label: max((abs(each[label] - value) for each in others if label in each), default=0.0)
         for label, value in values.items()
     }
-    return Looked(
+    return SecondLook(
         values=values,
         errors=errors,
         spread=spread,

@@ -60,7 +60,7 @@ def torque_shift(shift: object, robot: Robot) -> Array:
     return np.full(robot.n, checked_shift({"torque": given}).get("torque", 0.0))
 
 
-def told_shift(delay: Array, robot: Robot) -> dict[str, float | dict[str, float]]:
+def shift_option(delay: Array, robot: Robot) -> dict[str, float | dict[str, float]]:
     """Return delays as a call takes them: one for all joints if they are alike, else by name."""
     if not delay.any():
         return {}

@@ -22,7 +22,7 @@ _ALIKE = 1e-10  # of the largest singular value: smaller ones are rounding
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Known:
-    """What is known of the parameters beforehand: rows of unit variance beside those of the recording."""
+    """What is known of the parameters beforehand: rows of unit variance, besides those of the recording."""
 
     matrix: Array  # (rows, parameters)
     wanted: Array  # (rows,)
@@ -100,12 +100,14 @@ def _above_zero(left: Array, right: Array, limited: NDArray[np.bool_]) -> Array:
     others, wanted = left[:, ~limited], left[:, limited]
     basis, sizes, _ = np.linalg.svd(others, full_matrices=False)
     basis = basis[:, sizes > _ALIKE * max(sizes, default=0.0)]
-    beside = wanted - basis @ (basis.T @ wanted)
+    unexplained = wanted - basis @ (basis.T @ wanted)
     # A column that the others explain has no value of its own.
-    length, before = np.linalg.norm(beside, axis=0), np.linalg.norm(wanted, axis=0)
-    beside[:, length <= _ALIKE * before] = 0.0
+    length, before = np.linalg.norm(unexplained, axis=0), np.linalg.norm(wanted, axis=0)
+    unexplained[:, length <= _ALIKE * before] = 0.0
     values = np.zeros(left.shape[1])
-    values[limited], _ = _core.non_negative_least_squares(beside, right - basis @ (basis.T @ right))
+    values[limited], _ = _core.non_negative_least_squares(
+        unexplained, right - basis @ (basis.T @ right)
+    )
     rest = right - wanted @ values[limited]
     values[~limited] = np.linalg.lstsq(others, rest, rcond=_ALIKE)[0]
     return values

@@ -1,6 +1,6 @@
 """Whether the torques are torques at all: one sign, one factor, a magnitude, degrees; before anything else is tried.
 
-The torques are regressed on what the URDF's links need, beside friction, a rotor and an offset of each joint. Such a
+The torques are regressed on what the URDF's links need, besides friction, a rotor and an offset of each joint. Such a
 fault makes every later finding a consequence, so that it is the only one.
 """
 

@@ -1,4 +1,4 @@
-"""Causes that no look at a robot examines: where a joint's residual is no noise, one of them may be at work."""
+"""Causes that nothing examines for a robot: where a joint's residual is no noise, one of them may be at work."""
 
 from __future__ import annotations
 

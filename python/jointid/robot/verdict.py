@@ -22,12 +22,12 @@ def judged_robot(estimate: RobotEstimate) -> Verdict:
     """
     every = (*_objections(estimate), *_unexplained(estimate))
     objections = [each for each in every if each.code != _IMPOSSIBLE]
-    asked = tuple(estimate.parameters)
-    bounded = [*held_on_bounds(estimate.findings, asked)]
+    names = tuple(estimate.parameters)
+    bounded = [*held_on_bounds(estimate.findings, names)]
     uses = {
-        "compensation": use_by([*objections, *bounded], asked, _is_friction),
-        "simulation": use_by([*every, *bounded], asked, lambda _: True),
-        "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
+        "compensation": use_by([*objections, *bounded], names, _is_friction),
+        "simulation": use_by([*every, *bounded], names, lambda _: True),
+        "monitoring": use_by(to_changes(objections, estimate.parameters), names, lambda _: True),
     }
     return concluded(uses, [*every, *bounded], estimate.within)
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from jointid.robot.inertia import FREE, URDF
 from jointid.robot.motion import Motion
 from jointid.robot.parameters import LINEAR_FRICTION
-from jointid.robot.quick_look import looked_at, thinned
+from jointid.robot.quick_fit import quick_fit_of, thinned
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ _BETTER = (
 _BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
 _CLEARLY = 0.05  # by which it has to be better than the next
 _LEAST = 0.01  # of a motor's torque: less residual does not decide
-_SLOW = 0.02  # of a peak speed: standing still, for a quick look
+_SLOW = 0.02  # of a peak speed: standing still, for a quick fit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,7 +62,7 @@ class _Trial:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Looked:
+class _MotorFit:
     """Residuals and torques of each motor in each window, and how much friction would be negative."""
 
     residual: Array
@@ -75,12 +75,12 @@ def wrong_fact(
 ) -> WrongFact | None:
     """Return the one fact about joints with a poor balance that explains most if it is otherwise, or None."""
     thin = [thinned(motion) for motion in motions]
-    given = {mode: _look(robot, thin, duration, mode) for mode in (URDF, FREE)}
+    given = {mode: _motor_fit(robot, thin, duration, mode) for mode in (URDF, FREE)}
     falls = []
     for trial in _trials(robot, thin, set(suspects)):
         # What a coupling changes is as small as the errors of a light wrist's inertias.
         mode = FREE if trial.kind == "wrong_coupling" else URDF
-        was, other = given[mode], _look(trial.robot, trial.motions, duration, mode)
+        was, other = given[mode], _motor_fit(trial.robot, trial.motions, duration, mode)
         if was is None or other is None:
             continue
         before, after = _relative(was, other)
@@ -126,27 +126,29 @@ def wrong_fact(
         for each in (trial, *same)
     ]
     if trial.kind == "wrong_sign":
-        beside = [(each, [other for other in found if other is not each]) for each in found]
-        found = [replace(each, others=tuple(rest)) for each, rest in beside]
+        rivals = [(each, [other for other in found if other is not each]) for each in found]
+        found = [replace(each, others=tuple(rest)) for each, rest in rivals]
     return replace(found[0], others=tuple(found[1:]))
 
 
-def _look(robot: Robot, motions: Sequence[Motion], duration: float, mode: str) -> _Looked | None:
-    look = looked_at(robot, motions, duration, mode)
-    if look is None:
+def _motor_fit(
+    robot: Robot, motions: Sequence[Motion], duration: float, mode: str
+) -> _MotorFit | None:
+    fit = quick_fit_of(robot, motions, duration, mode)
+    if fit is None:
         return None
     couplings = robot.couplings if motions[0].at_motor else np.eye(robot.n)
-    residual, torque = look.of_motors(couplings)
-    held = sum(name in LINEAR_FRICTION for _, name in look.held)
-    return _Looked(residual=residual, torque=torque, held=held)
+    residual, torque = fit.of_motors(couplings)
+    held = sum(name in LINEAR_FRICTION for _, name in fit.held)
+    return _MotorFit(residual=residual, torque=torque, held=held)
 
 
-def _relative(given: _Looked, other: _Looked) -> tuple[Array, Array]:
+def _relative(given: _MotorFit, other: _MotorFit) -> tuple[Array, Array]:
     """Each motor's residual over its torque in the windows that two fits have in common."""
     common = np.isfinite(given.residual) & np.isfinite(other.residual)
     found = []
-    for look in (given, other):
-        both = (look.residual, look.torque)
+    for fit in (given, other):
+        both = (fit.residual, fit.torque)
         left, size = (np.linalg.norm(np.where(common, each, 0.0), axis=1) for each in both)
         found.append(np.maximum(left / np.where(size > 0.0, size, 1.0), _LEAST))
     return found[0], found[1]
@@ -180,15 +182,15 @@ def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator
         sign = np.ones(n)
         sign[i] = -1.0
         turned = [_remade(each, robot, sign=sign) for each in motions]
-        ways = tuple((sign * (robot.directions or 1.0)).tolist())
-        other = replace(robot, directions=ways)
+        directions = tuple((sign * (robot.directions or 1.0)).tolist())
+        other = replace(robot, directions=directions)
         yield _Trial(kind="wrong_sign", joints=(i,), robot=other, motions=turned)
         scales = tuple((sign * (robot.torque_scales or 1.0)).tolist())
         pushed = [_remade(each, robot, torque_sign=sign) for each in motions]
         other = replace(robot, torque_scales=scales)
         yield _Trial(kind="wrong_torque_sign", joints=(i,), robot=other, motions=pushed)
         moved = [_remade(each, robot, torque_sign=sign) for each in turned]
-        other = replace(robot, directions=ways, torque_scales=scales)
+        other = replace(robot, directions=directions, torque_scales=scales)
         yield _Trial(kind="wrong_motion_sign", joints=(i,), robot=other, motions=moved)
     for i, j in np.argwhere(robot.couplings - np.diag(np.diag(robot.couplings))).tolist():
         matrix = robot.couplings.copy()

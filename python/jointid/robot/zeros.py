@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.motion import Motion
-from jointid.robot.quick_look import misfits, thinned
+from jointid.robot.quick_fit import misfits, thinned
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""A quick look at a robot's balance: fewer samples, the URDF's inertias."""
+"""A quick fit of a robot's balance: fewer samples, the URDF's inertias."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[f
     The fits have the URDF's inertias and linear friction. By the second, what is wrong at the wrist does not drown in
     the shoulder's torque.
     """
-    look = looked_at(robot, motions, duration)
-    if look is None:
+    fit = quick_fit_of(robot, motions, duration)
+    if fit is None:
         return 0.0, 0.0
-    rows = look.balance.rows
-    left = np.bincount(rows.joint, look.residual**2, robot.n)
+    rows = fit.balance.rows
+    left = np.bincount(rows.joint, fit.residual**2, robot.n)
     power = np.bincount(rows.joint, rows.torque**2, robot.n)
     known = power > 0.0
     usual = float(np.sqrt(np.mean(left[known] / power[known])))
@@ -40,7 +40,7 @@ def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[f
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Look:
+class QuickFit:
     """The fit of friction alone."""
 
     balance: Balance
@@ -70,9 +70,9 @@ class Look:
         return found[0], found[1]
 
 
-def looked_at(
+def quick_fit_of(
     robot: Robot, motions: Sequence[Motion], duration: float, mode: str = URDF
-) -> Look | None:
+) -> QuickFit | None:
     """Return the fit with linear friction and the URDF's inertias, or free ones; None where nothing moves."""
     balance = balance_of(robot, motions, duration, basis_of(robot, mode))
     rows = balance.rows
@@ -88,7 +88,7 @@ def looked_at(
     solution = solved(products, least, Known.nothing(products.columns))
     values = solution.values * (products.norms[-1] / products.norms[:-1])
     held = [balance.labels[place] for place, at in zip(kept, solution.at_bound, strict=False) if at]
-    return Look(balance=balance, residual=wanted - table[:, :-1] @ values, held=tuple(held))
+    return QuickFit(balance=balance, residual=wanted - table[:, :-1] @ values, held=tuple(held))
 
 
 def thinned(motion: Motion) -> Motion:

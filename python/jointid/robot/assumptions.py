@@ -19,7 +19,7 @@ _DEGREES = 180.0 / np.pi
 _NEAR = 0.1  # of a logarithm: so near to degrees, a ratio is that of degrees
 
 
-def assumptions_told(
+def assumption_findings(
     recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
 ) -> Iterator[Finding]:
     """Findings of what was assumed: joints in order, joints that stand, no gravity, and the positions' unit.
@@ -62,12 +62,12 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
 def _units(
     recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
 ) -> Iterator[Finding]:
-    looks = list(attempt.looks.values())
+    excerpts = list(attempt.excerpts.values())
     spans = robot.tree.spans or (np.inf,) * robot.n
     for joint, name in enumerate(robot.names):
         if robot.tree.prismatic[joint]:
             continue
-        moved = max(float(np.ptp(look.position[joint])) for look in looks)
+        moved = max(float(np.ptp(each.position[joint])) for each in excerpts)
         ratio = _of_velocity(recordings, robot, joint)
         far = moved > _FAR * spans[joint]
         apart = ratio is not None and abs(abs(np.log(ratio)) - np.log(_DEGREES)) < _NEAR

@@ -1,4 +1,4 @@
-"""Rows of the pieces of a recording that are looked at, weighted, and what a fit's parameters cannot follow of them."""
+"""Rows of some pieces of a recording, weighted, and what a fit's parameters cannot follow of them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Share:
     wald: float  # squared values in terms of their errors, per column: 1 by chance
 
 
-class LookedRows:
+class ExcerptRows:
     """Rows of some pieces of a balance and its fit; with `free`, parameters at a bound may leave it."""
 
     def __init__(

@@ -44,8 +44,8 @@ def least_speeds(
         for name in min_speed:
             if name not in robot.names:
                 raise InputError("the robot has no such joint", argument="min_speed", value=name)
-        stated = [min_speed.get(name, 0.0) for name in robot.names]
-        given = np.array([float(each) if is_finite(each) else np.nan for each in stated])
+        speeds = [min_speed.get(name, 0.0) for name in robot.names]
+        given = np.array([float(each) if is_finite(each) else np.nan for each in speeds])
     else:
         try:
             given = np.asarray(min_speed, dtype=np.float64)
@@ -80,5 +80,5 @@ def duration_of(windows: float | None, motions: Sequence[Motion], total: float) 
             )
         return float(duration)
     # The noisiest joint does not decide for the others: longer windows blur their reversals.
-    wished = max(float(np.median(motion.wished)) for motion in motions)
-    return min(max(wished, total / _ENOUGH), _LONGEST)
+    longest = max(float(np.median(motion.noise_window)) for motion in motions)
+    return min(max(longest, total / _ENOUGH), _LONGEST)
