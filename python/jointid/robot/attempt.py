@@ -26,7 +26,7 @@ from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.shaped_terms import ShapedTerms, solved_with_shapes
 from jointid.robot.shifts import without_delay
-from jointid.robot.solving import Known, solved
+from jointid.robot.solving import PriorRows, solved
 from jointid.robot.zeros import Zeros, zeros_of
 
 Array = NDArray[np.float64]
@@ -120,45 +120,47 @@ def _solved(
     models: Sequence[str],
     runs: Sequence[int],
 ) -> tuple[RobotEstimate, Fit]:
-    fit, known = fitted(robot, balance, mode, models)
+    fit, prior = fitted(robot, balance, mode, models)
     estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
-    return replace(estimate, draws=RobotDraws.of(balance, fit, known)), fit
+    return replace(estimate, draws=RobotDraws.of(balance, fit, prior)), fit
 
 
-def fitted(robot: Robot, balance: Balance, mode: str, models: Sequence[str]) -> tuple[Fit, Known]:
+def fitted(
+    robot: Robot, balance: Balance, mode: str, models: Sequence[str]
+) -> tuple[Fit, PriorRows]:
     """Return the values of all parameters, and what was known of them beforehand; the balance must hold the mode."""
     chosen = [joint for joint, model in enumerate(models) if name_of(model) == AUTO]
     models = _renamed(models, chosen, SHAPED)
     columns = inertia_columns(robot, mode)
     kept = balance.columns_of(models, columns.dropped)
-    wanted = balance.rows.torque - columns.known(balance)
+    target = balance.rows.torque - columns.known(balance)
     inertial = columns.columns(balance)
     blocks = [
         np.column_stack(
             [
                 balance.matrix[place][:, kept],
                 inertial[place],
-                wanted[place],
+                target[place],
             ]
         )
         for place in balance.places
     ]
     products = Products.of(blocks, list(balance.places), balance.rows)
     least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
-    known = columns.beforehand(len(kept))
-    if known.wanted.size:
-        _, known = certainty(products, solved(products, least, known), known)
+    prior = columns.prior_rows(len(kept))
+    if prior.target.size:
+        _, prior = certainty(products, solved(products, least, prior), prior)
     shaped = ShapedTerms.of(balance, models)
-    found = solved_with_shapes(shaped, products, least, known)
+    found = solved_with_shapes(shaped, products, least, prior)
     if chosen:
-        needed = with_shapes(found, products, shaped, known)
+        needed = with_shapes(found, products, shaped, prior)
         models = _renamed(models, [joint for joint in chosen if joint not in needed], PLAIN)
         left = ShapedTerms.of(balance, models)
         if left.joints != shaped.joints:
             start = [float(found.logs[shaped.joints.index(joint)]) for joint in left.joints]
             shaped = left
-            found = solved_with_shapes(shaped, products, least, known, start)
-    return Fit.of(balance, columns, models, products, shaped, found), known
+            found = solved_with_shapes(shaped, products, least, prior, start)
+    return Fit.of(balance, columns, models, products, shaped, found), prior
 
 
 def _renamed(models: Sequence[str], joints: Collection[int], name: str) -> list[str]:

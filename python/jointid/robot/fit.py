@@ -73,7 +73,7 @@ class Fit:
             jacobian[mine, first + number] = shaped.column(joint, shape)
             by_shape = values[first + number] * shaped.slope(joint, shape) / shape
             jacobian[mine, linear + number] = by_shape
-        wanted = balance.rows.torque - columns.known(balance)
+        target = balance.rows.torque - columns.known(balance)
         return cls(
             models=tuple(models),
             labels=tuple(every),
@@ -85,7 +85,7 @@ class Fit:
             ),
             at_bound=np.append(found.solution.at_bound, found.at_bound),
             jacobian=jacobian,
-            residual=wanted - jacobian[:, :linear] @ values,
+            residual=target - jacobian[:, :linear] @ values,
             scatter=found.solution.scatter * products.norms[-1],
             columns=columns,
             inertial=columns.inertial(values[len(labels) : first]),

@@ -13,7 +13,7 @@ from jointid.robot.link_tree import INERTIAL, INERTIAL_UNITS
 from jointid.robot.momentum import columns_of
 from jointid.robot.prior import Prior
 from jointid.robot.robot import Robot
-from jointid.robot.solving import Known
+from jointid.robot.solving import PriorRows
 
 Array = NDArray[np.float64]
 
@@ -51,13 +51,13 @@ class InertiaColumns:
             return self.prior.completed(values)
         return np.asarray(self.given + self.directions @ values)
 
-    def beforehand(self, others: int) -> Known:
+    def prior_rows(self, others: int) -> PriorRows:
         """Return what the prior says of the parameters, behind so many others."""
         if self.prior is None:
-            return Known.nothing(others + len(self.names))
+            return PriorRows.nothing(others + len(self.names))
         empty = np.zeros((len(self.names), others))
-        return Known(
-            matrix=np.hstack([empty, self.prior.root]), wanted=self.prior.root @ self.prior.mean
+        return PriorRows(
+            matrix=np.hstack([empty, self.prior.root]), target=self.prior.root @ self.prior.mean
         )
 
     def columns(self, balance: Balance) -> Array:

@@ -14,7 +14,7 @@ from jointid.robot.models import PLAIN
 from jointid.robot.motion import Motion
 from jointid.robot.products import Products
 from jointid.robot.robot import Robot
-from jointid.robot.solving import Known, solved
+from jointid.robot.solving import PriorRows, solved
 
 Array = NDArray[np.float64]
 
@@ -81,14 +81,14 @@ def quick_fit_of(
     columns = inertia_columns(robot, mode)
     # A rotor's inertia that no motion separates from the links' would make the columns dependent.
     kept = balance.columns_of((PLAIN,) * robot.n, columns.dropped)
-    wanted = rows.torque - columns.known(balance)
-    table = np.column_stack([balance.matrix[:, kept], columns.columns(balance), wanted])
+    target = rows.torque - columns.known(balance)
+    table = np.column_stack([balance.matrix[:, kept], columns.columns(balance), target])
     products = Products.of([table[place] for place in balance.places], list(balance.places), rows)
     least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
-    solution = solved(products, least, Known.nothing(products.columns))
+    solution = solved(products, least, PriorRows.nothing(products.columns))
     values = solution.values * (products.norms[-1] / products.norms[:-1])
     held = [balance.labels[place] for place, at in zip(kept, solution.at_bound, strict=False) if at]
-    return QuickFit(balance=balance, residual=wanted - table[:, :-1] @ values, held=tuple(held))
+    return QuickFit(balance=balance, residual=target - table[:, :-1] @ values, held=tuple(held))
 
 
 def thinned(motion: Motion) -> Motion:

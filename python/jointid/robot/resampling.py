@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from jointid.robot.balance import Balance, Rows
     from jointid.robot.fit import Fit
     from jointid.robot.result import RobotEstimate
-    from jointid.robot.solving import Known
+    from jointid.robot.solving import PriorRows
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class RobotDraws:
     labels: tuple[tuple[int | None, str], ...]
 
     @classmethod
-    def of(cls, balance: Balance, fit: Fit, known: Known) -> Self:
+    def of(cls, balance: Balance, fit: Fit, prior: PriorRows) -> Self:
         """Return the sums of a fit; what is known beforehand of further parameters stands behind its own."""
         rows = balance.rows
         weight = 1.0 / fit.scatter[rows.joint]
@@ -53,16 +53,16 @@ class RobotDraws:
             gradient[number] = -np.einsum(
                 "ij,i->j", part, fit.residual[first:last] * weight[first:last]
             )
-        sure = known.padded(count - known.matrix.shape[1])
-        missed = sure.matrix @ fit.values - sure.wanted
+        prior = prior.padded(count - prior.matrix.shape[1])
+        missed = prior.matrix @ fit.values - prior.target
         lower, upper = np.array(fit.bounds).T
         return cls(
             cells=Cells(
                 square=square,
                 gradient=gradient,
                 starts=starts,
-                sure_square=sure.matrix.T @ sure.matrix,
-                sure_gradient=sure.matrix.T @ missed,
+                sure_square=prior.matrix.T @ prior.matrix,
+                sure_gradient=prior.matrix.T @ missed,
             ),
             block=length,
             lower=lower,

@@ -20,7 +20,7 @@ from jointid.robot.integrals import interval_means
 from jointid.robot.models import shaped_term
 from jointid.robot.parameters import least_of
 from jointid.robot.products import Products, powers, weighted
-from jointid.robot.solving import Known, Solution, bounded, scatter_of, solved
+from jointid.robot.solving import PriorRows, Solution, bounded, scatter_of, solved
 
 Array = NDArray[np.float64]
 
@@ -126,14 +126,14 @@ def solved_with_shapes(
     shaped: ShapedTerms,
     products: Products,
     least: Array,
-    known: Known,
+    prior: PriorRows,
     start: Sequence[float] | None = None,
 ) -> ShapedSolution:
-    """Return the best values of linear parameters and shapes; `products`, `least` and `known` are of the fixed columns.
+    """Return the best values of linear parameters and shapes; `products`, `least` and `prior` are of the fixed columns.
 
     The search begins at `start`, logarithms of the shapes, or on a grid.
     """
-    plain = solved(products, least, known)
+    plain = solved(products, least, prior)
     if not shaped.joints:
         nothing = np.zeros(0)
         return ShapedSolution(
@@ -145,7 +145,7 @@ def solved_with_shapes(
         norms=shaped.norms,
         bounds=np.log([shaped.bounds(joint) for joint in shaped.joints]).reshape(-1, 2),
         least=np.append(least, shaped.least),
-        known=known.padded(len(shaped.joints)).scaled(
+        prior_product=prior.padded(len(shaped.joints)).scaled(
             np.concatenate([products.norms[:-1], shaped.norms, products.norms[-1:]])
         ),
     )
@@ -187,7 +187,7 @@ class _Search:
     norms: Array
     bounds: Array
     least: Array
-    known: Array
+    prior_product: Array
 
     def sums(self, logs: Array, *, slopes: bool) -> Array:
         """Products with the columns of shaped terms; their slopes, if asked for, stand behind all of them."""
@@ -239,7 +239,7 @@ class _Search:
         linear = np.append(np.arange(first + count), by_joint.shape[-1] - 1)
         slopes = first + count + np.arange(count)
         whole = weighted(by_joint, scatter)
-        product = whole[np.ix_(linear, linear)] + self.known
+        product = whole[np.ix_(linear, linear)] + self.prior_product
         values, held = bounded(product, self.least)
         full = np.append(values, -1.0)
         sizes = values[first:]

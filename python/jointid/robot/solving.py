@@ -21,29 +21,29 @@ _ALIKE = 1e-10  # of the largest singular value: smaller ones are rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Known:
+class PriorRows:
     """What is known of the parameters beforehand: rows of unit variance, besides those of the recording."""
 
     matrix: Array  # (rows, parameters)
-    wanted: Array  # (rows,)
+    target: Array  # (rows,)
 
     @classmethod
     def nothing(cls, count: int) -> Self:
         """Nothing is known of so many parameters."""
-        return cls(matrix=np.zeros((0, count)), wanted=np.zeros(0))
+        return cls(matrix=np.zeros((0, count)), target=np.zeros(0))
 
-    def padded(self, count: int) -> Known:
+    def padded(self, count: int) -> PriorRows:
         """The same, with further parameters of which nothing is known."""
-        more = np.zeros((len(self.wanted), count))
-        return Known(matrix=np.hstack([self.matrix, more]), wanted=self.wanted)
+        more = np.zeros((len(self.target), count))
+        return PriorRows(matrix=np.hstack([self.matrix, more]), target=self.target)
 
-    def tightened(self, factor: float) -> Known:
+    def tightened(self, factor: float) -> PriorRows:
         """The same, as many times as certain."""
-        return Known(matrix=factor * self.matrix, wanted=factor * self.wanted)
+        return PriorRows(matrix=factor * self.matrix, target=factor * self.target)
 
     def scaled(self, norms: Array) -> Array:
         """Its products, for columns and a target that are divided by these lengths."""
-        rows = np.column_stack([self.matrix * (norms[-1] / norms[:-1]), self.wanted])
+        rows = np.column_stack([self.matrix * (norms[-1] / norms[:-1]), self.target])
         return np.asarray(rows.T @ rows)
 
 
@@ -57,14 +57,14 @@ class Solution:
     scatter: Array
 
 
-def solved(products: Products, least: Array, known: Known) -> Solution:
+def solved(products: Products, least: Array, prior: PriorRows) -> Solution:
     """Return the values above lower bounds that fit best, with the weight of each joint from its own residuals."""
     sums = products.sums.sum(axis=0)
-    said = known.scaled(products.norms)
+    prior_product = prior.scaled(products.norms)
     scatter = scatter_of(sums[:, -1, -1], products.counts)
     values, at_bound = np.zeros(least.size), np.zeros(least.size, dtype=bool)
     for _ in range(_ROUNDS):
-        values, at_bound = bounded(weighted(sums, scatter) + said, least)
+        values, at_bound = bounded(weighted(sums, scatter) + prior_product, least)
         before, scatter = scatter, scatter_of(powers(sums, values), products.counts)
         if np.all(np.abs(scatter - before) <= _SETTLED * before):
             break
