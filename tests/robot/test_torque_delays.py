@@ -48,14 +48,14 @@ def worst(found: jid.RobotEstimate, ran: Run) -> float:
     return far
 
 
-def told(found: jid.RobotEstimate, code: str) -> list[Finding]:
+def findings_of(found: jid.RobotEstimate, code: str) -> list[Finding]:
     return [each for each in found.findings if each.code == code]
 
 
 @pytest.mark.parametrize("delay", [3e-3, pytest.param(10e-3, marks=pytest.mark.slow)])
 def test_a_late_torque_is_found_and_taken_away(ran: Run, delay: float) -> None:
     found = identified(late(ran, [delay] * JOINTS))
-    (said,) = told(found, "delay_removed")
+    (said,) = findings_of(found, "delay_removed")
     assert said.severity == "info"
     assert said.evidence["lag"].value == pytest.approx(delay, abs=3e-4)
     assert found.settings["shift"]["torque"] == pytest.approx(delay, abs=3e-4)
@@ -68,13 +68,13 @@ def test_one_late_joint_is_told_from_the_others(ran: Run) -> None:
     (shift,) = found.settings["shift"].values()
     assert list(shift) == ["joint_3"]
     assert shift["joint_3"] == pytest.approx(0.005, abs=1e-3)
-    assert "joint_3" in str(told(found, "delay_removed")[0])
+    assert "joint_3" in str(findings_of(found, "delay_removed")[0])
 
 
 def test_a_clean_log_has_no_delay(ran: Run) -> None:
     found = identified(late(ran, [0.0] * JOINTS))
     assert found.settings["shift"] == {}
-    assert not told(found, "delay_removed")
+    assert not findings_of(found, "delay_removed")
 
 
 def test_a_given_delay_is_taken_away_and_no_other(ran: Run) -> None:
@@ -84,7 +84,7 @@ def test_a_given_delay_is_taken_away_and_no_other(ran: Run) -> None:
     assert given.warnings == ()
     assert worst(given, ran) < 0.02
     kept = identified(recording, shift={})
-    (said,) = told(kept, "signal_lag")
+    (said,) = findings_of(kept, "signal_lag")
     (advice, *_) = said.advice
     assert advice.arguments["shift"]["torque"] == pytest.approx(0.006, abs=1e-3)
     assert worst(kept, ran) > worst(given, ran)
@@ -129,5 +129,5 @@ def test_noise_of_the_positions_is_no_early_torque(
     arm = run(random_arm(seed), random_motion(seed, duration=duration))
     noisy = recorded(arm, Sensors(position_noise=noise, velocity_delay=None), seed)
     found = jid.identify_robot(noisy, jid.Robot.from_urdf(URDF))
-    assert not told(found, "signal_lag")
-    assert not told(found, "delay_removed")
+    assert not findings_of(found, "signal_lag")
+    assert not findings_of(found, "delay_removed")

@@ -32,7 +32,7 @@ from jointid.robot.zeros import Zeros, zeros_of
 Array = NDArray[np.float64]
 
 _PIECE = 120_000  # samples of a long recording that are looked at at once
-_LOOKS = 4  # recordings by whose beginnings facts are judged
+_EXCERPTS = 4  # recordings by whose beginnings facts are judged
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -70,7 +70,7 @@ def attempted(
     runs = [without_delay(run, robot, delay) for run in recordings]
     pieces = _pieces(runs)
     numbers = [number for number, _, _ in pieces]
-    firsts = [numbers.index(number) for number in range(len(runs))][:_LOOKS]
+    firsts = [numbers.index(number) for number in range(len(runs))][:_EXCERPTS]
 
     def motion(place: int) -> Motion:
         number, low, high = pieces[place]

@@ -61,7 +61,7 @@ class Compared:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrossCheck:
-    """The second look beside a robot's identification.
+    """The second look at a robot's identification.
 
     Attributes
     ----------

@@ -151,7 +151,8 @@ def identify_robot(
             *impossible_links(estimate),
         )
         plain = all(each.severity == "info" for each in findings)
-        uneven = [*asymmetry_findings(attempt)] if plain else []  # else it may follow from that
+        # With another finding, a difference of the directions may follow from that.
+        uneven = [*asymmetry_findings(attempt)] if plain else []
         rest = unexamined(attempt.estimate, diagnosis.corrected.estimate)
         findings = (*findings, *(uneven or rest))
         if attempt.zeros is not None and attempt.zeros.found:

@@ -1,4 +1,4 @@
-"""Velocities whose noise is loud at some samples, taken from the quiet ones beside them.
+"""Velocities whose noise is loud at some samples, taken from their quiet neighbours.
 
 The velocity of noisy positions is smoothed over as many samples as the motion lets be seen. By chance, some samples
 have far fewer, and up to a hundred times the usual noise. Noise at the ends of windows draws every inertia that is

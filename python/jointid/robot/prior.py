@@ -51,7 +51,7 @@ class Prior:
         spread = combined * scale
         covariance = spread @ spread.T
         root = np.linalg.inv(np.linalg.cholesky(covariance))
-        # What a rotor has that no motion separates is told as the links', so that they explain all of the torque.
+        # What a rotor has that no motion separates counts as the links', so that they explain all of the torque.
         alone = combined[:, : urdf.size] * sizes.ravel()
         gain = (alone * sizes.ravel()).T @ np.linalg.inv(alone @ alone.T)
         return cls(

@@ -61,7 +61,7 @@ def torque_shift(shift: object, robot: Robot) -> Array:
 
 
 def shift_option(delay: Array, robot: Robot) -> dict[str, float | dict[str, float]]:
-    """Return delays as a call takes them: one for all joints if they are alike, else by name."""
+    """Return delays as a call takes them: one for all joints if they are alike, otherwise by name."""
     if not delay.any():
         return {}
     if np.all(delay == delay[0]):

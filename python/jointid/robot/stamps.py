@@ -19,7 +19,7 @@ _SEEN = 0.01  # periods: less jitter than this does no harm
 
 
 def on_even_clock(recording: RobotRecording) -> RobotRecording:
-    """Return the recording with even stamps, if its positions say that it was sampled evenly; else itself.
+    """Return the recording with even stamps, if its positions say that it was sampled evenly; otherwise itself.
 
     A host that stamps what it receives is late by another time each sample, and the derived velocities are
     wrong by as much. Samples that were truly uneven, or of which some are lost, keep their stamps.

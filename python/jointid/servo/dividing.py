@@ -26,7 +26,7 @@ _STEP = 5e-3  # s
 
 
 def share_of(joint: Joint, runs: Sequence[ServoSignals], layout: Layout, solution: Array) -> float:
-    """Return the share of back-EMF whose free swing is nearest to those of all others; a half without gravity.
+    """Return the share of back-EMF with the free swing nearest to those of all other shares; a half without gravity.
 
     The load is let go where it pulls hardest in the runs, for as long as the longest run. Of the solution's back-EMF
     and its friction in proportion to the speed only the sum is used.

@@ -191,7 +191,7 @@ def _divided(
 
 
 def _shown(products: Array, unknowns: Unknowns, values: Array, seed: int) -> bool:
-    """Return whether runs drawn anew agree that the command is held between rows; it is not assumed else."""
+    """Return whether runs drawn anew agree that the command is held between rows; otherwise it is not assumed."""
     held = drawn(products, unknowns, values, _DECIDING, seed)[:, HELD]
     return bool(np.quantile(held, _DOUBT) > 0.0)
 

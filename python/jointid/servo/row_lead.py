@@ -1,4 +1,4 @@
-"""Rows whose values were read one after the other: how much older the position is than the duty beside it."""
+"""Rows whose values were read one after the other: how much older the position is than the duty of its row."""
 
 from __future__ import annotations
 

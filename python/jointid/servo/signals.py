@@ -126,7 +126,7 @@ def _of_full_voltage(duty: Array, place: str) -> Array:
 
 
 def _supply(recording: Recording, drive: VoltageDrive, place: str) -> Array:
-    """Return the supply: what the joint states, else what was logged."""
+    """Return the supply: what the joint states, otherwise what was logged."""
     if drive.supply is not None:
         return np.full(len(recording.time), drive.supply)
     if "supply" not in recording.extra:

@@ -172,7 +172,7 @@ def _part(
         "velocity": velocity,
         "voltage": voltage,
         "late": late,
-        # The slope of a span is a weighted mean of the velocity; what stands beside it is taken as the same mean.
+        # The slope of a span is a weighted mean of the velocity; gravity is taken as the same mean.
         "gravity": smoothed(gravity, _REACH),
         "driven": driven,
         "sign": sign,
