@@ -32,7 +32,7 @@ QUESTIONS: Mapping[str, tuple[tuple[str, ...], str]] = {
     ),
     "what does this finding mean": (
         ("index.html", "gallery/index.html", "gallery/reversed_sign.html"),
-        "Flip the sign of the column that is wrong",
+        "Flip the sign of the wrong column",
     ),
     "how do I move my joint": (("index.html", "how_to/move_my_joint.html"), "jointid design"),
     "is it safe to run": (("index.html", "how_to/is_it_safe.html"), "was ever connected"),
