@@ -1,6 +1,7 @@
 """What is proposed for a foreign log has evidence: a header's unit or words, or numbers; else it is asked for."""
 
 import re
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -164,3 +165,13 @@ def test_info_names_as_unknown_only_what_it_did_not_read(
     path = log(tmp_path / "a.csv", header, TIME, ANGLE, EFFORT, np.ones(N))
     assert main(["info", path, *options]) == 0
     assert "columns not recognised: knee[Pack]:state\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("header", ["par_mNm", "couple_moteur [Nm]"])
+def test_a_unit_alone_shows_a_torque(
+    header: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(tmp_path / "a.csv", f"tiempo_s,angulo_rad,{header}", TIME, ANGLE, EFFORT)
+    code, said = answer(["identify", path], capsys)
+    assert code == 2
+    assert main(["identify", path, *shlex.split(said.partition("load with ")[2])]) == 0

@@ -293,7 +293,7 @@ def _torque(
         unit_stated = [k for k in possible if understood(table.headers[k]).unit is not None]
         likely = _likely(table, signal, possible) or unit_stated
         if likely:
-            return {signal: _best(table, signal, likely, Candidates())[0]}
+            return {signal: min(likely, key=lambda k: _doubts(plain(table.headers[k])))}
     return {}
 
 
