@@ -80,3 +80,31 @@ def test_a_side_needs_the_ratio_and_a_name(tmp_path: Path) -> None:
     loaded = jid.load(path, side={"velocity": "motor"}, gear_ratio=100.0)
     np.testing.assert_allclose(loaded.velocity, SPEED, atol=1e-7)
     np.testing.assert_allclose(loaded.position, ANGLE, atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("factor", "header", "options"),
+    [
+        (1.0, "position_rad", ["--gear-ratio", "50"]),
+        (50.0, "motor_position_1_rad", ["--gear-ratio", "50"]),
+        (50.0, "motor_position_1_rad", []),
+    ],
+)
+def test_a_motors_torque_of_the_wrong_sign_is_turned_by_what_is_pasted(
+    factor: float,
+    header: str,
+    options: list[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = tmp_path / "a.csv"
+    torque = "motor_torque_1_mNm" if "1" in header else "motor_torque_mNm"
+    table = np.column_stack([TIME, ANGLE * factor, -20.0 * TORQUE])
+    np.savetxt(path, table, delimiter=",", header=f"time_s,{header},{torque}", comments="")
+    assert main(["identify", str(path), "--model", "coulomb_viscous", *options]) == 0
+    said = capsys.readouterr().out
+    found = re.search(r"wrong sign\n  do: jointid (identify .*)", said)
+    assert found is not None
+    assert main(shlex.split(found[1])) == 0
+    coulomb = float(capsys.readouterr().out.partition("coulomb ")[2].split()[0])
+    assert coulomb == pytest.approx(3.0 if options else 0.06, rel=0.02)

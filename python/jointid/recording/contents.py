@@ -22,11 +22,12 @@ from jointid.recording.matching import match_columns
 from jointid.recording.plausibility import too_large
 from jointid.recording.reading import MOTION, read_values, with_remedy
 from jointid.recording.signals import FloatArray, check_signals
+from jointid.recording.sides import READ_FROM
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
 
 Rows = npt.NDArray[np.intp]
-_FLIPPED = frozenset({"torque", "sensor"})
+_FLIPPED = frozenset({"torque", "motor_torque", "sensor"})
 """Signals that a finding advises to read with the other sign, for which it needs the factor to SI."""
 
 
@@ -125,7 +126,8 @@ class Contents:
         if self.table.saved is None:
             fields["metadata"] = {**self._metadata(), **(clock.notes if clock else {})}
         elif isinstance(saved := fields.get("metadata"), Mapping):  # its columns are in SI
-            fields["metadata"] = {name: each for name, each in saved.items() if name != "scale"}
+            of_file = ("scale", READ_FROM)
+            fields["metadata"] = {name: each for name, each in saved.items() if name not in of_file}
         units = {name: column.shown for name, (column, _) in self.extra.items() if column.shown}
         if units and isinstance(fields.get("metadata", {}), Mapping):
             fields["metadata"] = {**fields.get("metadata", {}), UNITS_KEY: units}

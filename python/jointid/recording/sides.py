@@ -12,6 +12,8 @@ from jointid.recording.header_words import AT_THE_LINK
 JOINT, MOTOR = "joint", "motor"
 SIDES = (JOINT, MOTOR)
 _MOTION = ("position", "velocity", "reference")
+READ_FROM = "torque_read_from"
+"""Entry of the metadata: the signal that became the torque, where it is another one."""
 
 
 def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
@@ -69,6 +71,7 @@ def at_joint(
     torque, motor_torque = result.get("torque"), result.get("motor_torque")
     if side == MOTOR and torque is None and motor_torque is not None:
         torque, motor_torque = motor_torque, None
+        metadata[READ_FROM] = "motor_torque"
     if gear_ratio is None:
         if side == MOTOR:
             metadata["side"] = MOTOR
@@ -81,6 +84,7 @@ def at_joint(
             torque = torque * gear_ratio
         if motor_torque is not None and torque is None:
             torque, motor_torque = motor_torque * gear_ratio, None
+            metadata[READ_FROM] = "motor_torque"
     result |= {"torque": torque, "motor_torque": motor_torque, "metadata": metadata}
     return result
 

@@ -16,6 +16,7 @@ from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_adv
 from jointid.identification.warnings.velocity import REVERSED_SIGN
 from jointid.problem.magnitude import is_magnitude, is_one_sided
 from jointid.problem.recordings import output_torque
+from jointid.recording.sides import READ_FROM
 
 WRONG_SCALE = FindingType(
     code="wrong_scale",
@@ -104,7 +105,8 @@ def _flip_the_torque(evidence: Evidence) -> tuple[Action, ...]:
     """The sign of the gear ratio is that of a torque on the motor's side; another is flipped as it is read."""
     joint = evidence.joint
     if all(run.torque is not None for run in evidence.recordings):
-        return (_flipped(evidence, "torque"),)
+        read_from = evidence.recordings[0].metadata.get(READ_FROM, "torque")
+        return (_flipped(evidence, str(read_from)),)
     if joint is None or any(run.torque is not None for run in evidence.recordings):
         return ()
     return (Action("call", {"gear_ratio": -joint.gear_ratio}, function="Joint"),)
