@@ -108,3 +108,48 @@ def test_a_motors_torque_of_the_wrong_sign_is_turned_by_what_is_pasted(
     assert main(shlex.split(found[1])) == 0
     coulomb = float(capsys.readouterr().out.partition("coulomb ")[2].split()[0])
     assert coulomb == pytest.approx(3.0 if options else 0.06, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("position", "torque"),
+    [("motor_angle_deg", "motor_torque_mNm"), ("Motorwinkel [deg]", "Motormoment [mNm]")],
+)
+def test_a_motors_angle_is_proposed_as_the_motors(
+    position: str, torque: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "a.csv"
+    table = np.column_stack([TIME, np.degrees(ANGLE) * 50.0, 20.0 * TORQUE])
+    np.savetxt(path, table, delimiter=",", header=f"time_s,{position},{torque}", comments="")
+    line = ["identify", str(path), "--model", "coulomb_viscous", "--gear-ratio", "50"]
+    assert main(line) == 2
+    said = capsys.readouterr().err
+    assert main([*line, *shlex.split(said.partition("load with ")[2])]) == 0
+    shown = capsys.readouterr().out
+    assert float(shown.partition("coulomb ")[2].split()[0]) == pytest.approx(3.0, rel=0.02)
+    joint = tmp_path / "joint.toml"
+    assert main(["new", str(joint), str(path), "--gear-ratio", "50"]) == 0
+    assert "--side position=motor" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "cured"),
+    [
+        ([], "--side position=motor"),
+        (["--side", "position=motor", "--unit", "position=rad"], "--unit position=deg"),
+    ],
+)
+def test_a_stated_degree_that_is_too_fast_is_the_motors_or_overridden(
+    options: list[str], cured: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "a.csv"
+    table = np.column_stack([TIME, np.degrees(ANGLE) * 50.0, TORQUE / 50.0])
+    header = "time_s,motor_angle_deg,motor_torque_Nm"
+    np.savetxt(path, table, delimiter=",", header=header, comments="")
+    column = ["--column", "position=motor_angle_deg", "--gear-ratio", "50"]
+    assert main(["identify", str(path), "--model", "coulomb_viscous", *column, *options]) == 0
+    found = re.search(r"the motor would turn .*\n  do: jointid (.*)", capsys.readouterr().out)
+    assert found is not None
+    assert cured in found[1]
+    assert main(shlex.split(found[1])) == 0
+    coulomb = float(capsys.readouterr().out.partition("coulomb ")[2].split()[0])
+    assert coulomb == pytest.approx(3.0, rel=0.02)

@@ -45,7 +45,8 @@ def test_parquet(tmp_path: Path) -> None:
     assert loaded.time.tolist() == [k / 1000 for k in range(N)]
     np.testing.assert_allclose(loaded.position, np.deg2rad(ANGLE), rtol=1e-6)
     assert loaded.signals == ("time", "position", "velocity", "torque")
-    assert (loaded.name, dict(loaded.metadata)) == ("run", {})
+    scale = {"position": np.pi / 180.0}
+    assert (loaded.name, dict(loaded.metadata)) == ("run", {"scale": scale})
     assert len(load(path, where={"run": "a"})) == 9
 
 

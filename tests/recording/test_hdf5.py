@@ -75,7 +75,7 @@ def test_vectors_at_any_depth_with_units(tmp_path: Path) -> None:
     np.testing.assert_allclose(loaded.position, np.deg2rad(ANGLE), rtol=1e-6)
     assert loaded.torque is not None
     np.testing.assert_allclose(loaded.torque, SPEED / 1000.0, rtol=1e-15)
-    assert dict(loaded.metadata) == {"scale": {"torque": 1e-3}}
+    assert dict(loaded.metadata) == {"scale": {"position": np.pi / 180.0, "torque": 1e-3}}
     assert (
         load(path, columns={"torque": "log/drive/enabled"}, units={"torque": "Nm"}).torque
         is not None

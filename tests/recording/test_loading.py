@@ -47,7 +47,9 @@ def test_headers_are_recognised(header: str, signal: str, factor: float, tmp_pat
     assert loaded.velocity_derived == (signal != "velocity")
     expected = np.array(column(2)) * factor
     np.testing.assert_allclose(getattr(loaded, signal), expected, rtol=1e-14)
-    kept = signal in ("torque", "sensor") and factor != 1.0  # to read it with the other sign
+    kept = (
+        signal in ("torque", "motor_torque", "sensor") and factor != 1.0
+    )  # to read it with the other sign
     assert dict(loaded.metadata) == ({"scale": {signal: factor}} if kept else {})
     assert loaded.name == "run"
 

@@ -33,7 +33,8 @@ def test_vectors_of_a_mat_file(options: dict[str, Any], tmp_path: Path) -> None:
     assert loaded.signals == ("time", "position", "velocity")  # a lone number is no signal
     np.testing.assert_allclose(loaded.position, np.deg2rad(ANGLE))
     assert loaded.velocity.tobytes() == SPEED.tobytes()
-    assert (loaded.name, dict(loaded.metadata)) == ("run", {"assumed_units": ["time"]})
+    read = {"assumed_units": ["time"], "scale": {"position": np.pi / 180.0}}
+    assert (loaded.name, dict(loaded.metadata)) == ("run", read)
 
 
 def test_integers_and_logicals(tmp_path: Path) -> None:

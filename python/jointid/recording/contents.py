@@ -21,14 +21,14 @@ from jointid.recording.extra import UNITS_KEY, ExtraColumn, extra_columns
 from jointid.recording.matching import match_columns
 from jointid.recording.plausibility import too_large
 from jointid.recording.reading import MOTION, read_values, with_remedy
-from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.sides import READ_FROM
+from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
 
 Rows = npt.NDArray[np.intp]
-_FLIPPED = frozenset({"torque", "motor_torque", "sensor"})
-"""Signals that a finding advises to read with the other sign, for which it needs the factor to SI."""
+_FACTOR_SAID = frozenset({"position", "torque", "motor_torque", "sensor"})
+"""Signals of which a finding needs the factor to SI: for the other sign, or to know that degrees were converted."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -240,7 +240,7 @@ class Contents:
             if column.unit is None and column.scale is None and signal != "sensor"
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
-        for signal in _FLIPPED & self.found.keys():
+        for signal in _FACTOR_SAID & self.found.keys():
             unit = self.found[signal].unit
             if unit is not None and unit.factor != 1.0:
                 scaled[signal] = unit.factor

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -59,8 +59,19 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         )
         return
     signals = ("position",) if recording.velocity_derived else ("position", "velocity")
-    advice = [degrees_advice(recording, signals)]
     details = "or the gear ratio is wrong"
+    if evidence.joint is not None and "motor_speed" in measured and _is_converted(recording):
+        sides = {"side": dict.fromkeys(signals, "motor"), "gear_ratio": evidence.joint.gear_ratio}
+        yield IMPLAUSIBLE_UNITS.finding(
+            f"{seen}: the position is probably the motor's",
+            Action("call", sides, "if it is the motor's", "load"),
+            Action("inspect", text="the unit of the position and the gear ratio"),
+            details=details,
+            evidence=measured,
+            severity=severity,
+        )
+        return
+    advice = [degrees_advice(recording, signals)]
     if whole:
         details = "or in counts of the encoder, as all positions are whole numbers; " + details
         scale = dict.fromkeys(signals, ...)
@@ -93,6 +104,13 @@ def _of_many_turns(recording: Recording, *, agrees: bool) -> Severity:
 def _of_the_motor(recording: Recording) -> bool:
     """Whether the position is that of a motor without a known gear ratio, which may turn often."""
     return recording.metadata.get("side") == "motor"
+
+
+def _is_converted(recording: Recording) -> bool:
+    """Whether the position was converted to radians, by a header's unit or by a factor: it is in degrees no more."""
+    scale, stated = (recording.metadata.get(name) for name in ("scale", "stated_sides"))
+    of_motor = isinstance(stated, Mapping) and stated.get("position") == "motor"
+    return isinstance(scale, Mapping) and "position" in scale and not of_motor
 
 
 def _slow_stamps(recording: Recording) -> Finding | None:

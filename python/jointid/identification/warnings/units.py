@@ -1,9 +1,9 @@
-"""What to do where degrees were taken for radians: state a unit that no header states, never overrule a stated one."""
+"""What to do where degrees were taken for radians: state a unit that no header states, never overrule a header's."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from jointid.base.advice import Action
 from jointid.identification.warnings.check import FindingType
@@ -13,8 +13,8 @@ IMPLAUSIBLE_UNITS = FindingType(
     code="implausible_units",
     severity="blocking",
     meaning="degrees seem to be read as radians: the motion is too fast or too wide, or velocity or inertia is off by "
-    "a factor near 57.3. Or the time is not in seconds, or a current above 100 A or a torque above 5 kN·m has no "
-    "stated unit. Info: a wide motion in a stated unit",
+    "a factor near 57.3. Or the motor's angle is taken for the joint's. Or the time is not in seconds, or a current "
+    "above 100 A or a torque above 5 kN·m has no stated unit. Info: a wide motion in a stated unit",
     advice="state the unit of position, velocity, time, current or torque when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
@@ -70,8 +70,11 @@ def degrees_advice(recording: Recording, signals: Sequence[str]) -> Action:
     """How to read signals that seem to be in degrees."""
     assumed = recording.metadata.get("assumed_units")
     unstated = [name for name in signals if isinstance(assumed, list | tuple) and name in assumed]
-    if unstated:
-        units = {name: _DEGREES[name] for name in unstated}
+    overridden = recording.metadata.get("overridden_units")
+    units = {name: _DEGREES[name] for name in unstated}
+    if isinstance(overridden, Mapping):
+        units |= {name: overridden[name] for name in signals if name in overridden}
+    if units:
         return Action("call", {"units": units}, function="load")
     text = "the header or program that states radians; correct it, or convert the values"
     return Action("inspect", text=text)
