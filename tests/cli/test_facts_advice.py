@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from jointid.base.advice import Action
+from jointid.base.errors import InputError
 from jointid.cli.advice import words_of_action
 from jointid.cli.facts_advice import words_of_facts
 from jointid.robot.facts import read_facts
@@ -83,3 +84,10 @@ def test_without_a_file_it_names_one(tmp_path: Path) -> None:
 def test_a_delay_for_each_joint_has_no_option() -> None:
     shift = {"torque": {"elbow": 0.002}}
     assert words_of_action(Action("call", {"shift": shift}), "identify") == ""
+
+
+def test_a_misspelt_fact_is_answered_with_the_fact(tmp_path: Path) -> None:
+    path = tmp_path / "robot.toml"
+    path.write_text("gear_ratio = [32, 45]\n")
+    with pytest.raises(InputError, match=r"gear_ratio: .*; did you mean 'gear_ratios'"):
+        read_facts(path)

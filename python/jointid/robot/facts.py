@@ -8,6 +8,7 @@ from typing import Any
 from jointid.base.errors import InputError
 from jointid.base.schema import Plain, TableOf
 from jointid.base.toml_file import read_toml
+from jointid.joint.checks import suggestion
 
 KEYS = (
     *("joints", "gear_ratios", "couplings", "rotor_inertias", "zero_offsets", "zero_offsets_deg"),
@@ -26,10 +27,7 @@ def read_facts(path: Path) -> dict[str, Any]:
     for key in found:
         if key not in KEYS:
             raise InputError(
-                f"unknown; the facts of a robot are {', '.join(KEYS)}",
-                argument=key,
-                value=found[key],
-                place=path.name,
+                f"there is no such key; {suggestion(key, KEYS)}", argument=key, place=path.name
             )
     if isinstance(found.get("joints"), dict):
         found |= _of_joints(found.pop("joints"), path.name)
