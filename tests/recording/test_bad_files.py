@@ -258,6 +258,8 @@ def test_what_is_wrong_with_the_arguments(tmp_path: Path) -> None:
         path, columns={"torqe": 1}
     )
     assert "units: 'pos' is not a signal" in refusal(path, units={"pos": "deg"})
+    said = refusal(path, columns={"motor_position": "position_rad"})
+    assert "did you mean 'position' or load with side={'position': 'motor'}" in said
     assert "columns.position is 1.5: a header or" in refusal(path, columns={"position": 1.5})
     assert "kind is 'x'" in refusal(path, kind="x")
     assert "torque_hold is 'x'" in refusal(path, torque_hold="x")

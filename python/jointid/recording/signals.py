@@ -89,10 +89,15 @@ def check_signal_name(name: object, argument: str) -> None:
     """
     if name not in SIGNALS:
         close = closest(name, SIGNALS)
+        of_motor = Action("call", {"side": {close: "motor"}}, "if it is the motor's", "load")
+        sided = close in ("position", "velocity") and "motor" in str(name).casefold()
         raise InputError(
             f"{name!r} is not a signal",
             argument=argument,
-            remedy=f"did you mean {close!r}" if close else f"signals are {', '.join(SIGNALS)}",
+            remedy=(
+                f"did you mean {close!r}" if close else f"signals are {', '.join(SIGNALS)}",
+                *([of_motor] if sided else []),
+            ),
         )
 
 
