@@ -24,7 +24,13 @@ if TYPE_CHECKING:
 
 _LIMITS = ("position", "velocity", "torque", "current")
 # By option: how a reading is changed by an advice.
-_READING = {"columns": "column", "units": "unit", "scale": "scale", "where": "where"}
+_READING = {
+    "columns": "column",
+    "units": "unit",
+    "scale": "scale",
+    "where": "where",
+    "side": "side",
+}
 _ASKED = ("gear_ratio", "torque_constant", "rotor_inertia", *_LIMITS[:3])
 _OF_LIMIT = "largest "
 
@@ -218,7 +224,7 @@ def _obeyed(arguments: argparse.Namespace, error: InputError) -> str:
 def _reading_options(arguments: argparse.Namespace) -> list[str]:
     """How the recording is read, as options of any command."""
     options: list[str] = []
-    for name in (*_READING.values(), "side", "extra"):
+    for name in (*_READING.values(), "extra"):
         pairs = by_name(name, getattr(arguments, name))
         options += [word for pair in pairs.items() for word in (f"--{name}", "=".join(pair))]
     for name in ("joints", "topic", "group", "rate"):

@@ -293,8 +293,16 @@ def _torque(
         unit_stated = [k for k in possible if understood(table.headers[k]).unit is not None]
         likely = _likely(table, signal, possible) or unit_stated
         if likely:
-            return {signal: min(likely, key=lambda k: _doubts(plain(table.headers[k])))}
+            best = min(likely, key=lambda k: _doubts(plain(table.headers[k])))
+            of_motor = signal == "torque" and _is_of_motor(table.headers[best])
+            return {"motor_torque" if of_motor else signal: best}
     return {}
+
+
+def _is_of_motor(header: str) -> bool:
+    """Whether a header names the motor, also as a part of a word (Motorwinkel), and nothing behind the gear."""
+    name = plain(header)
+    return "motor" in name and not any(part in name for part in ("link", "output", "load"))
 
 
 def _number(table: Table, index: int | None) -> str:
@@ -317,6 +325,8 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
                 units[signal] = _unit_of_time(table, index)
     units = {signal: unit for signal, unit in units.items() if unit}
     arguments: dict[str, Any] = {"columns": columns}
+    if "position" in proposed and _is_of_motor(table.headers[proposed["position"]]):
+        arguments["side"] = {"position": "motor"}
     if len(columns) > 1 and units:
         return Action(
             "call",
