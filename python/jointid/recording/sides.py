@@ -64,8 +64,9 @@ def at_joint(
     """
     if side == MOTOR and fields.get("torque") is None:  # its motor torque is then the torque
         other_sides = {name: each for name, each in other_sides.items() if name != "torque"}
-    if any(fields.get(name) is not None for name in other_sides) and gear_ratio is None:
-        raise _on_both_sides(side, other_sides)
+    there = {name: each for name, each in other_sides.items() if fields.get(name) is not None}
+    if there and gear_ratio is None:
+        raise _on_both_sides(side, there)
     result = dict(fields)
     metadata = dict(result.get("metadata") or {})
     torque, motor_torque = result.get("torque"), result.get("motor_torque")
