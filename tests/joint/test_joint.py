@@ -587,6 +587,7 @@ BAD = [
     ("schema = 1", ", line 2: not TOML: Cannot overwrite a value"),
     ("\n[drive\ngear_ratio = 101", ", line 3: not TOML: Expected ']'"),
     ("[drive]\ngear_ratio = ", ", line 3: not TOML: Invalid value"),
+    ("[sensor]\npresent = yes", "write lines like gear_ratio = 101 or present = true"),
     ("[drive]\nname = '''", ", line 3: not TOML: "),
     ("a = " + "[" * 100_000, "nested too deeply"),
     ("[drive]\ngear_ratio = " + "9" * 5000, ", line 3: not TOML: "),

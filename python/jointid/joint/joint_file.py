@@ -328,7 +328,9 @@ def _parsed(text: str, path: Path) -> dict[str, Any]:
             if path.suffix.lower() == ".toml"
             else "a joint file (.toml) or an estimate (.json) is expected here, but this is not TOML",
             place=f"{path}, line {line}",
-            remedy="write lines like gear_ratio = 101" if path.suffix.lower() == ".toml" else (),
+            remedy="write lines like gear_ratio = 101 or present = true"
+            if path.suffix.lower() == ".toml"
+            else (),
         ) from None
 
 
