@@ -78,6 +78,39 @@ def test_units_are_recognised_behind_a_stated_gear_ratio(
     check_cured(path, ["--gear-ratio", "50"], capsys)
 
 
+@pytest.mark.parametrize("wrong", ["time=ms", "position=deg", "velocity=rpm"])
+def test_a_unit_against_the_file_is_taken_back(
+    wrong: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {"time_s": TIME, "position_rad": ANGLE, "velocity_rad_s": SPEED}
+    path = log(tmp_path / "a.csv", **columns, current_A=CURRENT)
+    options = ["--unit", wrong, "--gear-ratio", "50"]
+    check_cured(path, options, capsys)
+
+
+@pytest.mark.parametrize("velocity", [False, True])
+def test_a_position_of_the_motor_in_stated_units_is_named_and_read(
+    velocity: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {"time_s": TIME, "position_deg": 200.0 * np.degrees(ANGLE)}
+    if velocity:
+        columns["velocity_rpm"] = 200.0 * SPEED * 30.0 / np.pi
+    path = log(tmp_path / "a.csv", **columns, motor_torque_mNm=CURRENT * 5e3 / 200.0)
+    text = shown([path, "--gear-ratio", "200"], capsys)
+    assert "the position is probably the motor's" in text
+    check_cured(path, ["--gear-ratio", "200"], capsys)
+
+
+def test_the_sign_of_a_motors_torque_is_flipped_in_its_own_column(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {"time_s": TIME, "position_rad": ANGLE, "motor_torque_mNm": CURRENT * -100.0}
+    path = log(tmp_path / "a.csv", **columns)
+    check_cured(path, ["--gear-ratio", "50"], capsys)
+    assert main(["identify", path, "--gear-ratio", "50", "--scale", "torque=-1"]) == 2
+    assert "did you mean 'motor_torque'?" in capsys.readouterr().err
+
+
 def drive_log(path: Path, header: str, factor: float) -> str:
     """The log with the drive's column in another unit or on another side."""
     columns = {"time_s": TIME, "position_rad": ANGLE, "velocity_rpm": SPEED * 50.0 * 30.0 / np.pi}

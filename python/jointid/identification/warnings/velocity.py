@@ -67,6 +67,14 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
             evidence=scale,
         )
+    elif (stated := _units_against_the_file(recording)) and abs(found.scale - 1.0) > MISMATCH:
+        names = " and ".join(f"{signal} in {unit}" for signal, unit in stated.items())
+        yield VELOCITY_MISMATCH.finding(
+            f"{rate}; the file states {names}",
+            Action("call", {"units": stated}, function="load"),
+            evidence=scale,
+            severity="blocking",
+        )
     elif not suspected and (_near(found.scale, _DEGREE) or _near(found.scale, 1.0 / _DEGREE)):
         which = "velocity" if found.scale < 1.0 else "position"
         factor = max(found.scale, 1.0 / found.scale)
@@ -89,6 +97,19 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             evidence=scale,
             severity="blocking" if wrong else None,
         )
+
+
+def _units_against_the_file(recording: Recording) -> dict[str, str]:
+    """The units that the file states and the call replaces, of a motion; none where the file leaves one open."""
+    assumed, overridden = (
+        recording.metadata.get(name) for name in ("assumed_units", "overridden_units")
+    )
+    moving = {"time", "position", "velocity"}
+    if not isinstance(overridden, Mapping) or (
+        isinstance(assumed, list | tuple) and not moving.isdisjoint(assumed)
+    ):
+        return {}
+    return {signal: str(unit) for signal, unit in overridden.items() if signal in moving}
 
 
 def _stated_facts(recording: Recording, factor: float) -> Iterator[Action]:
