@@ -101,6 +101,25 @@ def test_a_position_of_the_motor_in_stated_units_is_named_and_read(
     check_cured(path, ["--gear-ratio", "200"], capsys)
 
 
+def test_the_ratio_of_a_joint_file_is_named_for_a_log_of_the_motor(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {
+        "time_s": TIME,
+        "motor_position_1_rad": 50.0 * ANGLE,
+        "motor_torque_1_Nm": CURRENT / 10,
+    }
+    path = log(tmp_path / "a.csv", **columns)
+    joint = jid.Joint(gear_ratio=50.0, model=jid.Model.of("coulomb_viscous"))
+    findings = {each.code: each for each in jid.identify(jid.load(path), joint).findings}
+    assert "implausible_units" not in findings  # the motor's speed is not multiplied again
+    found = findings["motor_side"]
+    assert found.severity == "blocking"
+    assert found.advice[0].arguments == {"gear_ratio": 50.0}
+    joint.replace(name="a").save(tmp_path / "joint.toml")
+    check_cured(path, ["--joint", str(tmp_path / "joint.toml")], capsys)
+
+
 def test_the_sign_of_a_motors_torque_is_flipped_in_its_own_column(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

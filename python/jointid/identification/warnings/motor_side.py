@@ -13,7 +13,7 @@ MOTOR_SIDE = FindingType(
     code="motor_side",
     severity="info",
     meaning="no gear ratio is known, so all values are on the motor's side of the gear. Or motor torque or current is "
-    "used with a gear ratio of 1",
+    "used with a gear ratio of 1. Blocking: the joint has a gear ratio, and the log was read without it",
     advice="give the gear ratio; nothing, if the motor's side is meant or the motor has no gear",
 )
 _CLOSE = 0.03  # of the gear ratio
@@ -21,7 +21,15 @@ _RATIO = "motor angle per joint angle"
 
 
 def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
-    if inspected.recording.metadata.get("side") == "motor":
+    at_motor = inspected.recording.metadata.get("side") == "motor"
+    ratio = 1.0 if evidence.joint is None else evidence.joint.gear_ratio
+    if at_motor and ratio != 1.0:
+        yield MOTOR_SIDE.finding(
+            f"the log was read without the gear ratio of {ratio:g}: the values are on the motor's side",
+            Action("call", {"gear_ratio": ratio}, function="load"),
+            severity="blocking",
+        )
+    elif at_motor:
         yield MOTOR_SIDE.finding(
             "no gear ratio is known: the values are on the motor's side",
             Action("call", {"gear_ratio": ...}, _RATIO, "load"),
