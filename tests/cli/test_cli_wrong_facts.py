@@ -101,7 +101,7 @@ def test_a_position_of_the_motor_in_stated_units_is_named_and_read(
     check_cured(path, ["--gear-ratio", "200"], capsys)
 
 
-def test_the_ratio_of_a_joint_file_is_named_for_a_log_of_the_motor(
+def test_a_log_of_the_motor_is_read_with_the_ratio_of_the_joint(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     columns = {
@@ -117,7 +117,9 @@ def test_the_ratio_of_a_joint_file_is_named_for_a_log_of_the_motor(
     assert found.severity == "blocking"
     assert found.advice[0].arguments == {"gear_ratio": 50.0}
     joint.replace(name="a").save(tmp_path / "joint.toml")
-    check_cured(path, ["--joint", str(tmp_path / "joint.toml")], capsys)
+    text = shown([path, "--joint", str(tmp_path / "joint.toml")], capsys)
+    assert "motor_side" not in text
+    assert "  viscous         1.20" in text, text
 
 
 def test_the_sign_of_a_motors_torque_is_flipped_in_its_own_column(

@@ -38,6 +38,7 @@ def load_all(
         With all that is missing, as far as one can see: see `looked_ahead`.
     """
     from jointid.recording.readers.loading import load
+    from jointid.recording.sides import MOTOR
 
     several, ratios = joints_wanted(arguments), gear_ratios(arguments)
     if several is not None and len(several) != 1:
@@ -50,16 +51,20 @@ def load_all(
         raise InputError(
             "one ratio is expected for one joint", argument="gear_ratio", value=arguments.gear_ratio
         )
+    of_file = None if ratios else _ratio_of_file(arguments)
     reading = {
         "joint": several[0] if several else None,
-        "gear_ratio": ratios[0] if ratios else _ratio_of_file(arguments),
+        "gear_ratio": ratios[0] if ratios else of_file if arguments.side else None,
         "drop_copies": arguments.drop_copies,
         "drop_invalid": arguments.drop_invalid,
         **how_to_read(arguments, models),
     }
 
     def read(path: Path, changes: Mapping[str, Any]) -> Recording:
-        recording = load(path, **with_changes(reading, changes))
+        how = with_changes(reading, changes)
+        recording = load(path, **how)
+        if of_file not in (None, 1.0) and recording.metadata.get("side") == MOTOR:
+            recording = load(path, **{**how, "gear_ratio": of_file})
         if usable is not None:
             usable(recording)
         return recording
@@ -84,9 +89,9 @@ def load_all(
 
 
 def _ratio_of_file(arguments: argparse.Namespace) -> float | None:
-    """The gear ratio of the joint file, where --side needs one; None otherwise."""
+    """The gear ratio of the joint file, for signals of the motor; None without such a file."""
     file = getattr(arguments, "joint", None)
-    if not arguments.side or file is None:
+    if file is None:
         return None
     from jointid.joint.joint import Joint
 
