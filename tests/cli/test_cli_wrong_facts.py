@@ -122,16 +122,6 @@ def test_a_log_of_the_motor_is_read_with_the_ratio_of_the_joint(
     assert "  viscous         1.20" in text, text
 
 
-def test_the_sign_of_a_motors_torque_is_flipped_in_its_own_column(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    columns = {"time_s": TIME, "position_rad": ANGLE, "motor_torque_mNm": CURRENT * -100.0}
-    path = log(tmp_path / "a.csv", **columns)
-    check_cured(path, ["--gear-ratio", "50"], capsys)
-    assert main(["identify", path, "--gear-ratio", "50", "--scale", "torque=-1"]) == 2
-    assert "did you mean 'motor_torque'?" in capsys.readouterr().err
-
-
 def drive_log(path: Path, header: str, factor: float) -> str:
     """The log with the drive's column in another unit or on another side."""
     columns = {"time_s": TIME, "position_rad": ANGLE, "velocity_rpm": SPEED * 50.0 * 30.0 / np.pi}

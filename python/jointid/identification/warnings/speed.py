@@ -22,8 +22,9 @@ _SWING = 25.0  # [rad] back and forth: four turns
 
 
 def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
-    gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
     recording, peak = inspected.recording, inspected.found.peak_speed
+    at_motor = _of_the_motor(recording)  # its speed is not multiplied again
+    gear = 1.0 if evidence.joint is None or at_motor else abs(evidence.joint.gear_ratio)
     if (slow := _slow_stamps(recording)) is not None:
         yield slow
         return
