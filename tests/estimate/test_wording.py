@@ -16,6 +16,8 @@ from jointid.estimate.wording import percent_with_error, rounded
         (1234.5, 3e-9, "1234.500"),
         (1e-9, 3e-5, "0"),
         (0.0, 3e-5, "0"),
+        (-0.0003, 1.8, "0.0"),
+        (-3.0, 1800.0, "0"),
     ],
 )
 def test_a_value_has_the_digits_of_its_error(value: float, stderr: float, shown: str) -> None:

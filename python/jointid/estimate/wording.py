@@ -42,7 +42,7 @@ def rounded(value: float, stderr: float) -> str:
     behind = len(error.partition(".")[2])
     if not behind:  # an error of 1700 leaves hundreds
         behind = min(0, 2 - len(error))
-    return f"{round(value, behind):.{max(behind, 0)}f}"
+    return f"{round(value, behind):z.{max(behind, 0)}f}"
 
 
 def percent_with_error(share: float, stderr: float) -> str:

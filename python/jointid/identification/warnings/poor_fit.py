@@ -29,7 +29,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     measured = {"r_squared": Measured(explained)}
     if explained < 0.0 and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains less than the signal's mean (R² = {explained:.2f})",
+            f"the model explains less than the signal's mean (R² = {explained:z.2f})",
             *actions,
             details="the values cannot be used",
             evidence=measured,
