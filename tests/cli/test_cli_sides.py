@@ -155,3 +155,20 @@ def test_a_stated_degree_that_is_too_fast_is_the_motors_or_overridden(
     assert main(shlex.split(found[1])) == 0
     coulomb = float(capsys.readouterr().out.partition("coulomb ")[2].split()[0])
     assert coulomb == pytest.approx(3.0, rel=0.02)
+
+
+def test_the_unit_of_a_motors_torque_is_named_by_the_known_inertia(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "a.csv"
+    table = np.column_stack([TIME, ANGLE, 20.0 * TORQUE])
+    header = "time_s,position_rad,motor_torque"
+    np.savetxt(path, table, delimiter=",", header=header, comments="")
+    line = ["identify", str(path), "--model", "coulomb_viscous", "--gear-ratio", "50"]
+    assert main([*line, "--rotor-inertia", "0.0002"]) == 0
+    found = re.search(r"times the given 0.5\n  do: jointid (.*)", capsys.readouterr().out)
+    assert found is not None
+    assert "--unit motor_torque=mNm" in found[1]
+    assert main(shlex.split(found[1].partition(" (")[0])) == 0
+    coulomb = float(capsys.readouterr().out.partition("coulomb ")[2].split()[0])
+    assert coulomb == pytest.approx(3.0, rel=0.02)

@@ -9,6 +9,7 @@ from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import DRIVE
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
+from jointid.recording.sides import READ_FROM
 from jointid.recording.signals import dimensions
 from jointid.recording.units import UNITS, find_unit
 
@@ -29,6 +30,8 @@ def corrections_of(evidence: Evidence, ratio: float) -> Iterator[Action]:
     signal = next((name for name in DRIVE if getattr(recording, name) is not None), None)
     if signal is None:
         return
+    if signal == "torque":
+        signal = str(recording.metadata.get(READ_FROM, signal))
     if joint is not None and abs(joint.gear_ratio) != 1.0:
         yield from _of_gear(joint, recording, signal, ratio)
     unit = _other_unit(recording, signal, ratio)

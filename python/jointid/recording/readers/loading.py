@@ -107,7 +107,7 @@ def load(
     side : mapping of str to str, optional
         Signal → "motor" or "joint", where a position, velocity, reference or torque is on another side of the gear
         than its header says: ``{"velocity": "motor"}`` beside the joint's position, with `gear_ratio`.
-        Default: by the headers, else the joint's.
+        Default: by the headers of a file that names its joints, otherwise the joint's.
     sample_period : float, optional
         Time between rows [s], for rows that were taken at an even rate; stamps of the file are not read then.
         Default: by the file's time column.
