@@ -103,8 +103,13 @@ def _without_unit(header: str) -> tuple[str, str]:
 
 def words_of(header: str) -> tuple[str, ...]:
     """The words of a header without its unit."""
-    name, _, _ = parsed(re.sub(_CAMEL, "_", header) if find_unit(header) is None else header)
+    name, _, _ = parsed(re.sub(r"[^\W_]+", _single_words, header))
     return tuple(word for word in name.split("_") if word)
+
+
+def _single_words(word: re.Match[str]) -> str:
+    """A word in camel case as several; a unit (mNm, mA) is one word."""
+    return word[0] if find_unit(word[0]) is not None else re.sub(_CAMEL, "_", word[0])
 
 
 def _column(index: int, joint: str, shown: str, pattern: str) -> JointHeader:
