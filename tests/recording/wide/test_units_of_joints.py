@@ -37,3 +37,9 @@ def test_a_motors_torque_is_read_and_turned_alike_in_every_unit(
 def test_a_torque_of_no_side_is_asked_about_in_every_unit(tmp_path: Path) -> None:
     with pytest.raises(jid.InputError, match="does not say on which side of the gear it is"):
         jid.load_robot(log(tmp_path / "a.csv", "torque_{}_mNm"))
+
+
+def test_a_factor_of_a_signal_that_no_joint_has_is_refused(tmp_path: Path) -> None:
+    path = log(tmp_path / "a.csv", "motor_torque_{}_Nm")
+    with pytest.raises(jid.InputError, match="no column is recognised as current"):
+        jid.load_robot(path, scale={"current": 0.001})

@@ -112,12 +112,14 @@ def load_robot(
     wanted = named_extra(extra)
     tables = [JointTable(table, each, columns or {}, wanted) for each in names]
 
+    present = {signal for one in tables for signal, at in one.columns.items() if at is not None}
+
     def contents(one: JointTable) -> Contents:
         return read_contents(
             one,
             columns=one.columns,
-            units=_of_present(units, one),
-            scale=_of_present(scale, one),
+            units=_of_present(units, one, present),
+            scale=_of_present(scale, one, present),
             extra=one.extra,
             kind=kind,
             torque_hold=torque_hold,
@@ -232,11 +234,13 @@ def _wanted(
     return names
 
 
-def _of_present(values: Mapping[str, Any] | None, one: JointTable) -> Mapping[str, Any] | None:
-    """Units and factors of the signals that a joint has: another one may have more."""
+def _of_present(
+    values: Mapping[str, Any] | None, one: JointTable, present: Collection[str]
+) -> Mapping[str, Any] | None:
+    """Units and factors without those of signals that only other joints have; what none has is refused later."""
     if not isinstance(values, Mapping):
         return values
-    absent = {signal for signal in ROBOT_SIGNALS if one.columns.get(signal) is None}
+    absent = {signal for signal in present if one.columns.get(signal) is None}
     return {signal: value for signal, value in values.items() if signal not in absent}
 
 
