@@ -31,6 +31,7 @@ def test_a_motors_torque_is_read_and_turned_alike_in_every_unit(
     assert read.torque is not None
     np.testing.assert_allclose(read.torque[0], [3.0 * factor, 5.0 * factor])
     turned = jid.load_robot(path, scale={"torque": -factor})
+    assert turned.torque is not None
     np.testing.assert_allclose(turned.torque, -read.torque)
 
 
