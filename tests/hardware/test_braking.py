@@ -174,7 +174,7 @@ def test_a_joint_that_gets_faster_is_not_braked_for_long() -> None:
 
 def foresight(**changes: Any) -> Foresight:
     """Of a joint of 2 kg·m² without weight."""
-    joint = MovingJoint(inertia=2.0, dry=10.0, viscous=5.0)
+    joint = MovingJoint(inertia=2.0, dry=10.0, growing=(("viscous", 5.0),))
     within: dict[str, Any] = {"position": (-1.0, 1.0), "torque": 100.0} | changes
     return Foresight(SessionLimits(**within), PERIOD, joint, 0.0)
 

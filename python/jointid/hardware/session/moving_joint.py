@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from jointid import _core
 from jointid.joint.joint import Joint
 
 _BRAKES = 0.9
@@ -22,15 +25,17 @@ class MovingJoint:
     weight, angle : float
         Largest torque of gravity on the link [N·m], and the centre of mass's angle above the horizontal
         at position 0 [rad].
-    dry, viscous : float or None
-        Largest dry friction [N·m] and viscous friction [N·m·s/rad]; None: not known.
+    dry : float or None
+        Largest friction just off rest [N·m]; None: not known.
+    growing : tuple of (str, float)
+        Keys of the terms without shapes that vanish at rest, as viscous friction, and their largest coefficients.
     """
 
     inertia: float
     weight: float = 0.0
     angle: float = 0.0
     dry: float | None = None
-    viscous: float | None = None
+    growing: tuple[tuple[str, float], ...] = ()
 
     @classmethod
     def of(cls, joint: object) -> MovingJoint | None:
@@ -50,7 +55,11 @@ class MovingJoint:
             weight=weight,
             angle=0.0 if link is None else link.angle,
             dry=breakaway(joint),
-            viscous=_largest(values, "viscous"),
+            growing=tuple(
+                (term.key, size)
+                for term, size in _sizes(values)
+                if not (term.at_rest or term.shapes)
+            ),
         )
 
     def braking(self, torque: float) -> tuple[float, float] | None:
@@ -79,17 +88,20 @@ class MovingJoint:
         if self.dry is None:
             return None
         gravity = abs(self.weight * math.cos(position + self.angle))
-        friction = self.dry + (self.viscous or 0.0) * abs(velocity)
+        speed = np.array([abs(velocity)])
+        growing = (size * _core.friction_basis(key, speed, ())[0] for key, size in self.growing)
+        friction = self.dry + float(sum(growing))
         return friction + self.inertia * abs(acceleration) + gravity
 
 
 def breakaway(joint: object) -> float | None:
-    """Return the largest dry friction that a joint states [N·m], of Coulomb and static; None: it is not known."""
+    """Return the largest friction just off rest that a joint states [N·m]; None: its constant part is not known."""
     if not isinstance(joint, Joint):
         return None
-    values = _values(joint)
-    coulomb = _largest(values, "coulomb")
-    return None if coulomb is None else coulomb + (_largest(values, "static") or 0.0)
+    sizes = _sizes(_values(joint))
+    if not any(term.basis == "constant" for term, _ in sizes):
+        return None
+    return float(sum(term.at_rest * size for term, size in sizes))
 
 
 def _values(joint: Joint) -> dict[str, float]:
@@ -101,11 +113,15 @@ def _values(joint: Joint) -> dict[str, float]:
     }
 
 
-def _largest(values: dict[str, float], name: str) -> float | None:
-    """Of a friction coefficient, in either direction."""
-    found = [
-        abs(value)
-        for known, value in values.items()
-        if known in (name, f"{name}_positive", f"{name}_negative")
-    ]
-    return max(found, default=None)
+def _sizes(values: dict[str, float]) -> list[tuple[_core.Term, float]]:
+    """Friction terms with a known value, each with the larger one of its directions; one term of each name."""
+    rows = {
+        t.name: t for t in reversed(_core.terms()) if t.friction and not (t.needs_load or t.side)
+    }
+    found = []
+    for name, term in reversed(rows.items()):
+        sides = (name, f"{name}_positive", f"{name}_negative")
+        known = [abs(values[side]) for side in sides if side in values]
+        if known:
+            found.append((term, max(known)))
+    return found
