@@ -8,8 +8,9 @@ from typing import Any
 
 from nicegui import ui
 
+from jointid import _core
 from jointid.app.desk import COUNTS, Desk
-from jointid.joint.model import ModelName
+from jointid.joint.model import AUTO
 from jointid.recording.plausibility import range_remark
 from jointid.recording.signals import dimensions, shown_unit
 from jointid.recording.units import UNITS, unit_names
@@ -21,12 +22,13 @@ _FACTS = (
     ("torque_constant", "torque constant [N·m/A]"),
     ("inertia", "drive's inertia at the output [kg·m²]"),
 )
-_MODELS: dict[str, str] = {
+_LABELS = {
     "auto": "chosen by the data",
     "coulomb_viscous": "Coulomb and viscous",
     "stribeck": "Stribeck",
     "stribeck_general": "Stribeck, general",
 }
+_MODELS = {name: _LABELS.get(name, name) for name in (AUTO, *_core.model_names())}
 
 
 def columns_step(desk: Desk) -> dict[str, Callable[[], object]]:
@@ -142,6 +144,3 @@ def _facts(desk: Desk) -> None:
             label="friction model",
             on_change=lambda event: desk.choose(event.value),
         ).props("dense id=model")
-
-
-assert set(_MODELS) == set(ModelName.__args__)  # type: ignore[attr-defined]
