@@ -25,18 +25,24 @@ def moved(joint: jid.Joint) -> jid.SimulatedRecording:
     )
 
 
+def summed(model: ModelName, velocity: np.ndarray, *, asymmetric: bool) -> np.ndarray:
+    """Friction of the true values, as the sum of the rows."""
+    values = friction_values(model, asymmetric=asymmetric)
+    total = np.zeros_like(velocity)
+    for key in _core.model_terms(model, asymmetric=asymmetric):
+        term = _core.term(key)
+        shapes = np.array([values[name] for name in term.shapes])
+        total += values[term.name] * _core.friction_basis(key, velocity, shapes)
+    return total
+
+
 @each_side
 @each_model
 def test_the_simulated_friction_is_the_sum_of_the_rows(model: ModelName, asymmetric: bool) -> None:
     joint = joint_of(model, asymmetric=asymmetric)
-    values = friction_values(model, asymmetric=asymmetric)
     recording = moved(joint)
     velocity = recording.truth.signals["velocity"]
-    wanted = np.zeros_like(velocity)
-    for key in _core.model_terms(model, asymmetric=asymmetric):
-        term = _core.term(key)
-        shapes = np.array([values[name] for name in term.shapes])
-        wanted += values[term.name] * _core.friction_basis(key, velocity, shapes)
+    wanted = summed(model, velocity, asymmetric=asymmetric)
     moving = velocity != 0.0
     np.testing.assert_allclose(
         recording.truth.signals["friction"][moving], wanted[moving], atol=1e-9
@@ -55,6 +61,10 @@ def test_what_is_simulated_is_identified_and_shown(
     estimate = jid.identify(moved(joint), free, parameters={"torque_offset": 0.0})
     for name, value in values.items():
         assert estimate.parameters[name].value == pytest.approx(value, rel=3e-3), name
+    speeds = np.array([-2.0, -0.05, 0.05, 2.0])
+    wanted = summed(model, speeds, asymmetric=asymmetric)
+    np.testing.assert_allclose(estimate.friction(speeds).torque, wanted, rtol=3e-3)
+    assert "cross_check" not in {found.code for found in estimate.findings}
     page = tmp_path / "report.html"
     jid.save_report(estimate, page)
     for key in _core.model_terms(model, asymmetric=asymmetric):
@@ -75,4 +85,4 @@ def test_motions_are_designed_for_it(model: ModelName) -> None:
         search=jid.DesignSearch(evaluations=64, rehearsals=10, joints=2),
     )
     assert set(values) <= set(design.parameters)
-    assert all(0.0 < design.parameters[name].relative < math.inf for name in values)
+    assert all(0.0 < design.parameters[name].relative < 20.0 for name in values)
