@@ -14,6 +14,7 @@ from designs import bench_text
 import jointid as jid
 from jointid.cli.command_line import main
 from jointid.cli.progress import MotionProgress
+from jointid.design.tables import answer
 from jointid.hardware.bench.bench import Bench
 
 Printed = pytest.CaptureFixture[str]
@@ -47,7 +48,12 @@ def test_it_writes_the_motion_the_picture_and_the_table(bench: Path, capsys: Pri
     assert main([*words, "--output", "motion.toml", "--plot", "motion.png"]) == 0
     printed = capsys.readouterr()
     design = jid.load_design("motion.toml")
-    assert printed.out == f"{design.summary()}\n\npicture: motion.png\nmotion: motion.toml\n"
+    assert printed.out == f"{answer(design)}\npicture: motion.png\nmotion: motion.toml\n"
+    lines = printed.out.splitlines()
+    assert len(lines) <= 16
+    assert max(map(len, lines)) <= 100
+    for name, expected in design.parameters.items():
+        assert any(line.split()[0] == name and expected.unit in line for line in lines)
     assert printed.err == ""
     assert Path("motion.png").read_bytes().startswith(b"\x89PNG")
     assert design.limits.position == pytest.approx((-1.0472, 1.0472), abs=1e-4)

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.cli.arguments import decimal, pair, whole, whole_seed
+from jointid.cli.arguments import decimal, pair, verbose_argument, whole, whole_seed
 from jointid.cli.outputs import check_folder, check_page
 
 if TYPE_CHECKING:
+    from jointid.cli.parser import CommandParser
     from jointid.design.design import Design
     from jointid.estimate.estimate import Estimate
 
@@ -21,7 +22,7 @@ _PICTURES = (".png", ".pdf", ".svg")
 _DURATION = 12.0  # s
 
 
-def add_design(design: argparse.ArgumentParser) -> None:
+def add_design(design: CommandParser) -> None:
     """Add the command's grammar."""
     design.epilog = (
         "examples:\n"
@@ -32,6 +33,7 @@ def add_design(design: argparse.ArgumentParser) -> None:
         "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
         'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
     )
+    verbose_argument(design)
     design.add_argument(
         "joint", type=Path, nargs="?", help="joint file (.toml); default: the joint of --after"
     )
@@ -281,13 +283,15 @@ def _say(found: Design, arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(found.to_dict(), indent=1, ensure_ascii=False, allow_nan=False))
     else:
-        print(found.summary())
+        from jointid.design.tables import answer
+
+        print(found.summary() if arguments.verbose else answer(found))
         written = (("picture", arguments.plot), ("report", arguments.report))
         lines = [f"{what}: {path}" for what, path in written if path is not None]
         if usable and arguments.output is not None:
             lines.append(f"motion: {arguments.output}")
         if lines:
-            print("", *lines, sep="\n")
+            print(*lines, sep="\n")
     if usable:
         return 0
     unwritten = f"; {arguments.output} was not written" if arguments.output is not None else ""

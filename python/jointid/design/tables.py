@@ -8,6 +8,7 @@ from jointid.base.error_text import printable
 from jointid.base.html import Html, element, table
 from jointid.design.assumptions import assumed
 from jointid.design.design import COMPLETE, Design
+from jointid.estimate.wording import rounded
 
 _LIMITS = {
     "position": ("rad", "m"),
@@ -17,6 +18,7 @@ _LIMITS = {
     "sensor_range": ("N·m", "N"),
 }
 _TITLES = {"acceleration": "acceleration of the reference", "sensor_range": "torque at the sensor"}
+_VALUES = 9  # values in an answer
 _REACHED = 0.98  # a limit of which so much is used is reached
 
 
@@ -81,6 +83,37 @@ def summary(design: Design) -> str:
     )
 
 
+def answer(design: Design) -> str:
+    """Return in a few lines which errors to expect, and what limits them."""
+    shown = list(design.parameters.values())[:_VALUES]
+    width = max((len(each.name) for each in shown), default=0)
+    values = []
+    for each in shown:
+        value = f"{rounded(each.value, each.stderr)} {_short(each.stderr)} {each.unit}".rstrip()
+        before = "" if each.before is None else f", was {_short(each.before)}"
+        values.append(
+            f"  {each.name.ljust(width)}  {value}, {share_text(each.worst)} at worst{before}"
+        )
+    more = len(design.parameters) - len(shown)
+    shares = ", ".join(
+        f"{100.0 * share:.0f} % of {_TITLES.get(name, name)}"
+        for name, share in design.shares.items()
+    )
+    return printable(
+        "\n".join(
+            [
+                _title(design),
+                *_status(design),
+                *values,
+                *([f"  {more} more: -v"] if more else []),
+                *_weakest(design),
+                *improved(design),
+                *([f"uses {shares}"] if shares else []),
+            ]
+        )
+    )
+
+
 def html_summary(design: Design) -> Html:
     """What a notebook shows for a design."""
     return element(
@@ -101,12 +134,17 @@ def _status(design: Design) -> list[str]:
     return [design.reason] if design.reason and design.status != COMPLETE else []
 
 
-def _remarks(design: Design) -> list[str]:
-    worst = design.parameters[design.weakest].worst if design.weakest in design.parameters else None
-    weakest = "" if worst is None else f"weakest: {design.weakest}, {share_text(worst)} at worst"
+def _weakest(design: Design) -> list[str]:
+    if design.weakest not in design.parameters:
+        return []
+    worst = share_text(design.parameters[design.weakest].worst)
     limited = f"; {design.limited_by}" if design.limited_by else ""
+    return [f"weakest: {design.weakest}, {worst} at worst{limited}"]
+
+
+def _remarks(design: Design) -> list[str]:
     return [
-        *([f"{weakest}{limited}"] if weakest else []),
+        *_weakest(design),
         *improved(design),
         *(f"reaches {line}" for line in limits_used(design)),
         assumed(design),
