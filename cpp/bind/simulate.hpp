@@ -50,7 +50,8 @@ struct type_caster<jointid::model::Friction> {
     return true;
   }
   static handle cast(const jointid::model::Friction& friction, return_value_policy, handle) {
-    return pybind11::make_tuple(friction.basis, friction.positive, friction.negative, friction.shapes)
+    return pybind11::make_tuple(friction.basis, friction.positive, friction.negative,
+                                friction.shapes)
         .release();
   }
 };
