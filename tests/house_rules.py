@@ -74,10 +74,12 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "pyarrow", "wpiutil"},
     ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
+    "balance": Folder(may_use={"base", "recording"}, packages={"numpy"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
     "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "pandas"}),
     "identification": Folder(
         may_use={
+            "balance",
             *_SOUGHT,
             *("identification/selection", "identification/inference", "identification/warnings"),
             *("identification/self_test", "identification/refinements"),
@@ -86,8 +88,12 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy"},
     ),
     "identification/causes": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
-    "identification/refinements": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
-    "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy"}),
+    "identification/refinements": Folder(
+        may_use={*(_FOUND - {"joint"}), "balance"}, packages={"numpy"}
+    ),
+    "identification/search": Folder(
+        may_use={*(_FOUND - {"recording"}), "balance"}, packages={"numpy"}
+    ),
     "identification/selection": Folder(
         may_use={*_FOUND, "identification/search"}, packages={"numpy"}
     ),
@@ -97,16 +103,16 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy"},
     ),
     "identification/inference": Folder(
-        may_use={*_FOUND, "identification/search"}, packages={"numpy"}
+        may_use={"balance", *_FOUND, "identification/search"}, packages={"numpy"}
     ),
     "identification/warnings": Folder(
-        may_use={*_FOUND, "identification/inference"}, packages={"numpy"}
+        may_use={"balance", *_FOUND, "identification/inference"}, packages={"numpy"}
     ),
     "comparison": Folder(may_use={*_SOUGHT, "servo"}, packages={"numpy", "pandas"}),
     "joints": Folder(
         may_use={*_SOUGHT, "recording/wide", "identification/causes"}, packages={"numpy"}
     ),
-    "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
+    "online": Folder(may_use={"balance", *_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
     "design": Folder(
@@ -115,12 +121,13 @@ FOLDERS: dict[str, Folder] = {
     ),
     "robot": Folder(
         may_use={
+            "balance",
             *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
             *("identification/inference", "identification/search"),
         },
         packages={"numpy", "pinocchio"},
     ),
-    "servo": Folder(may_use={*_DATA, "estimate"}, packages={"numpy"}),
+    "servo": Folder(may_use={"balance", *_DATA, "estimate"}, packages={"numpy"}),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study", "servo"},
         packages={"numpy", "matplotlib"},

@@ -19,6 +19,7 @@ namespace jointid::bind {
 
 void bind_regression(py::module_& m) {
   using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
+  using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
   constexpr std::int64_t kSamplesEach = 10;  // a row is a window
   m.def(
       "triangle",
@@ -30,27 +31,28 @@ void bind_regression(py::module_& m) {
       py::arg("matrix"), py::kw_only(), py::arg("threads") = 0,
       "R of the QR decomposition of a tall matrix.");
   m.def(
-      "non_negative_least_squares",
-      [](const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
-        if (matrix.rows() != target.size()) {
-          throw std::invalid_argument("the target must have a value for each row");
+      "box_minima",
+      [](const Rows& square, const Rows& gradient, const Eigen::VectorXd& lower,
+         const Eigen::VectorXd& upper) {
+        const py::ssize_t n = lower.size();
+        if (gradient.ndim() != 2 || square.ndim() != 3 || gradient.shape(1) != n ||
+            square.shape(0) != gradient.shape(0) || square.shape(1) != n || square.shape(2) != n ||
+            upper.size() != n) {
+          throw std::invalid_argument("square, gradient and bounds must fit together");
         }
+        Rows found({gradient.shape(0), n});
+        double* const to = found.mutable_data();
         const py::gil_scoped_release nogil;
-        // Columns of about unit norm: by powers of two, which round nothing.
-        Eigen::VectorXd scale = Eigen::VectorXd::Ones(matrix.cols());
-        for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
-          const double norm = matrix.col(i).norm();
-          if (norm > 0.0) scale[i] = std::ldexp(1.0, -std::ilogb(norm));
+        for (py::ssize_t i = 0; i < gradient.shape(0); ++i) {
+          const Eigen::Map<const Eigen::MatrixXd> own(square.data() + i * n * n, n, n);
+          const Eigen::Map<const Eigen::VectorXd> slope(gradient.data() + i * n, n);
+          Eigen::Map<Eigen::VectorXd>(to + i * n, n) =
+              search::box_minimum(own, slope, lower, upper);
         }
-        Eigen::VectorXd found =
-            search::non_negative_least_squares(matrix * scale.asDiagonal(), target);
-        found = found.cwiseProduct(scale).eval();
-        const double misfit = (matrix * found - target).norm();
-        return std::make_pair(std::move(found), misfit);
+        return found;
       },
-      py::arg("matrix"), py::arg("target"),
-
-      "The solution without negative entries, and the norm of what is left of the target.");
+      py::arg("square"), py::arg("gradient"), py::arg("lower"), py::arg("upper"),
+      "The minima of quadratic functions inside a box: (n, p, p) and (n, p) to (n, p).");
   m.def(
       "solve_independent",
       [](const Matrix& triangle, const std::vector<Eigen::Index>& columns, Eigen::Index target) {
@@ -117,7 +119,6 @@ void bind_regression(py::module_& m) {
       "First windows of the segments of motion, and the end of the last one; `edges` "
       "are the first "
       "windows of the recordings, and the end of the last one.");
-  using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
   py::class_<identify::Folds>(m, "Folds", "Cross-validated least squares on any of many columns.")
       .def(py::init([](const Rows& rows, const std::vector<std::int64_t>& edges) {
              if (rows.ndim() != 2 || rows.shape(1) < 1 || edges.size() < 2 ||

@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kRidge =
     1e-9;  // on unit columns: changes a well-posed answer by 1e-18 relative to its conditioning
+constexpr double kLacking = 1e-12;  // of a scaled direction: normal equations may lack one
+constexpr double kSlack = 1e-9;     // of scaled values and gradients of about 1
+constexpr int kTogether = 12, kOneByOne = 400;  // exchanges between held and free
 constexpr double kViolation =
     1e-7;  // of the distance moved: beyond, no x satisfies all constraints
 
@@ -74,6 +77,64 @@ Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen
         }
       }
     }
+  }
+  return x;
+}
+
+Eigen::VectorXd box_minimum(const Eigen::MatrixXd& square, const Eigen::VectorXd& gradient,
+                            const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  const Eigen::Index n = gradient.size();
+  Eigen::VectorXd size = square.diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!(size[i] > 0.0)) size[i] = 1.0;
+  }
+  const Eigen::VectorXd inverse = size.cwiseInverse();
+  const Eigen::MatrixXd scaled = inverse.asDiagonal() * square * inverse.asDiagonal();
+  // Values of about 1, by a power of two, which rounds nothing.
+  Eigen::VectorXd slope = gradient.cwiseProduct(inverse);
+  const double largest = n > 0 ? slope.cwiseAbs().maxCoeff() : 0.0;
+  const double unit = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+  slope *= unit;
+  size *= unit;
+  const Eigen::VectorXd low = lower.cwiseProduct(size);
+  const Eigen::VectorXd high = upper.cwiseProduct(size);
+
+  Eigen::VectorXi side = Eigen::VectorXi::Zero(n);  // -1, 1: held at the lower, upper bound
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  for (int step = 0; step < kOneByOne; ++step) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (side[i] == 0) free.push_back(i);
+      x[i] = side[i] == 0 ? 0.0 : side[i] < 0 ? low[i] : high[i];
+    }
+    const Eigen::VectorXd right = -(slope + scaled * x)(free);
+    const Eigen::MatrixXd own = scaled(free, free);
+    Eigen::MatrixXd damped = own;
+    damped.diagonal().array() += kLacking;
+    Eigen::VectorXd part = base::solve_semidefinite(damped, right);
+    // Once more with what is left: the damping then counts in directions that are lacking only.
+    part += base::solve_semidefinite(damped, right - own * part);
+    x(free) = part;
+
+    const Eigen::VectorXd pull = slope + scaled * x;
+    bool changed = false;
+    for (Eigen::Index i = 0; i < n && !(changed && step >= kTogether); ++i) {
+      const double slack = kSlack * (1.0 + std::fabs(x[i]));
+      int wanted = side[i];
+      if (side[i] == 0) {
+        wanted = x[i] < low[i] - slack ? -1 : x[i] > high[i] + slack ? 1 : 0;
+      } else if (side[i] * pull[i] > kSlack) {
+        wanted = 0;
+      }
+      changed = changed || wanted != side[i];
+      side[i] = wanted;
+    }
+    if (!changed) break;
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    x[i] = side[i] < 0   ? lower[i]
+           : side[i] > 0 ? upper[i]
+                         : std::clamp(x[i] / size[i], lower[i], upper[i]) + 0.0;  // no -0
   }
   return x;
 }

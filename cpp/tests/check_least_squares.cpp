@@ -1,6 +1,7 @@
 // Linear least squares under inequalities, against every combination of active constraints.
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +13,7 @@
 namespace jointid::tests {
 namespace {
 
+using search::box_minimum;
 using search::constrained_least_squares;
 using search::non_negative_least_squares;
 
@@ -208,6 +210,32 @@ CHECK_CASE("least squares: non-negative, against the exhaustive search") {
     CHECK(x.minCoeff() >= 0.0);
     CHECK_CLOSE((a * x - b).squaredNorm(), expected.square, 1e-11);
   }
+}
+
+CHECK_CASE("least squares: inside a box, against the exhaustive search") {
+  for (std::uint32_t trial = 0; trial < 300; ++trial) {
+    base::Random random(9, 0, 0, trial);
+    const Eigen::Index n = 1 + random.below(4);
+    const Eigen::MatrixXd a = drawn(random, n + 1 + random.below(10), n);
+    const Eigen::VectorXd b = drawn(random, a.rows(), 1);
+    const Eigen::VectorXd lower = Eigen::VectorXd::Constant(n, -0.2);
+    const Eigen::VectorXd upper = Eigen::VectorXd::Constant(n, 0.3);
+    const auto [g, h] = box(lower, upper);
+    const Eigen::VectorXd x = box_minimum(a.transpose() * a, -a.transpose() * b, lower, upper);
+    const auto expected = constrained_reference(a, b, g, h);
+    CHECK((x - lower).minCoeff() >= 0.0);
+    CHECK((upper - x).minCoeff() >= 0.0);
+    CHECK_CLOSE((a * x - b).squaredNorm(), expected.square, 1e-11);
+  }
+}
+
+CHECK_CASE("least squares: a direction that is lacking gets the shortest solution") {
+  const Eigen::Matrix2d square = Eigen::Matrix2d::Ones();
+  const Eigen::Vector2d far = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  const Eigen::VectorXd x = box_minimum(square, Eigen::Vector2d(-2.0, -2.0), -far, far);
+  CHECK_CLOSE(x[0], 1.0, 1e-6);
+  CHECK_CLOSE(x[1], 1.0, 1e-6);
+  CHECK(box_minimum(square, Eigen::Vector2d(2.0, 2.0), 0.0 * square.col(0), far).norm() == 0.0);
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
-"""The core's quantiles and non-negative least squares against SciPy, over wide ranges."""
+"""The core's quantiles against SciPy, over wide ranges."""
 
 import math
 
-import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from scipy import optimize, special
+from scipy import special
 
 from jointid import _core
 
@@ -102,49 +101,3 @@ def test_the_covering_interval_is_scipy_s(probability: float, offset: float) -> 
     found = _core.covering_half_width(probability, offset)
     there = math.sqrt(float(special.chndtrix(probability, 1.0, offset * offset)))
     assert found == pytest.approx(there, rel=1e-11)
-
-
-def problem(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """A least-squares problem: ordinary, with more columns than rows, collinear, with zeros, badly scaled."""
-    rows, columns = int(rng.integers(1, 40)), int(rng.integers(1, 8))
-    matrix = rng.normal(size=(rows, columns))
-    match rng.integers(6):
-        case 1:
-            matrix = np.abs(matrix)
-        case 2:
-            matrix[:, -1] = matrix[:, 0]
-        case 3:
-            matrix[:, rng.integers(columns)] = 0.0
-        case 4:
-            matrix *= 10.0 ** rng.uniform(-6, 6, columns)
-        case 5:
-            matrix = np.outer(matrix[:, 0], rng.normal(size=columns))
-    target = matrix @ np.maximum(rng.normal(size=columns), 0.0)
-    return matrix, target + 10.0 ** rng.uniform(-9, 1) * rng.normal(size=rows)
-
-
-def test_non_negative_least_squares_is_scipy_s() -> None:
-    rng = np.random.default_rng(3)
-    for _ in range(600):
-        matrix, target = problem(rng)
-        found, misfit = _core.non_negative_least_squares(matrix, target)
-        there, least = optimize.nnls(matrix, target)
-        assert np.all(found >= 0.0)
-        rounding = 1e-12 * float(np.linalg.norm(target))
-        assert misfit <= least * (1.0 + 1e-9) + rounding
-        again = float(np.linalg.norm(matrix @ found - target))
-        assert misfit == pytest.approx(again, rel=1e-9, abs=rounding)
-        size = np.linalg.norm(matrix, axis=0)
-        if np.linalg.matrix_rank(matrix / np.where(size > 0.0, size, 1.0)) == len(found):
-            scale = 1e-7 * np.linalg.norm(target) / size
-            assert np.all(np.abs(found - there) <= scale)
-
-
-def test_non_negative_least_squares_of_nothing() -> None:
-    found, misfit = _core.non_negative_least_squares(np.zeros((3, 2)), np.array([3.0, 0.0, 4.0]))
-    assert found.tolist() == [0.0, 0.0]
-    assert misfit == 5.0
-    found, misfit = _core.non_negative_least_squares(np.zeros((3, 0)), np.array([3.0, 0.0, 4.0]))
-    assert (found.size, misfit) == (0, 5.0)
-    with pytest.raises(ValueError, match="a value for each row"):
-        _core.non_negative_least_squares(np.zeros((3, 2)), np.zeros(4))

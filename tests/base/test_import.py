@@ -178,7 +178,7 @@ READING = {
     *("identification", "identification.search"),
 }
 IDENTIFYING = READING | {
-    *("estimate", "problem", "identification.causes", "identification.inference"),
+    *("balance", "estimate", "problem", "identification.causes", "identification.inference"),
     *("identification.refinements", "identification.selection", "identification.warnings"),
 }
 # What a command needs of the standard library beside what NumPy, argparse, pathlib and dataclasses have loaded before:

@@ -1,4 +1,4 @@
-"""The block bootstrap: minima inside a box, the same bits for a seed, and errors like those reported."""
+"""The block bootstrap: the same bits for a seed, and errors like those reported."""
 
 import time
 
@@ -7,7 +7,6 @@ import pytest
 
 import jointid as jid
 from jointid.cli.demonstration import data_folder
-from jointid.identification.inference.resampling import bounded_minima
 
 
 @pytest.fixture(scope="module")
@@ -15,21 +14,6 @@ def estimate() -> jid.Estimate:
     run = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
     return jid.identify(run, joint, search="separable")
-
-
-def test_minima_inside_a_box_meet_their_conditions() -> None:
-    rng = np.random.default_rng(1)
-    rows = rng.normal(size=(400, 9, 6))
-    square, gradient = np.einsum("nij,nik->njk", rows, rows), 8.0 * rng.normal(size=(400, 6))
-    lower, upper = np.full(6, -0.3), np.array([0.3, 0.0, 0.2, np.inf, 0.5, 1.0])
-    found = bounded_minima(square, gradient, lower, upper)
-    slope = np.einsum("nij,nj->ni", square, found) + gradient
-    below, above = found <= lower, found >= upper
-    assert below.any()
-    assert above.any()
-    assert np.all(slope[below] >= -1e-6)
-    assert np.all(slope[above] <= 1e-6)
-    np.testing.assert_allclose(slope[~below & ~above], 0.0, atol=1e-6)
 
 
 def test_its_errors_are_like_those_reported(estimate: jid.Estimate) -> None:

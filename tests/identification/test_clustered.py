@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from jointid.identification.inference.covariance import Covariance, parameter_covariance
-from jointid.identification.inference.segments import Segments
+from jointid.balance.covariance import Covariance, parameter_covariance
+from jointid.balance.segments import Segments
 
 ROWS = 200
 

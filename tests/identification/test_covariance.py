@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.balance.covariance import parameter_covariance
+from jointid.balance.segments import Segments, even_segments
 from jointid.cli.demonstration import data_folder
 from jointid.estimate.student import quantile
-from jointid.identification.inference.covariance import parameter_covariance
-from jointid.identification.inference.segments import Segments, even_segments
 from jointid.identification.prepared import prepare
 
 ROWS = 400

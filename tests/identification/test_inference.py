@@ -10,8 +10,8 @@ from fake_evidence import RUN, parameter
 
 import jointid as jid
 from jointid import _core
+from jointid.balance.covariance import parameter_covariance
 from jointid.identification import conclusion
-from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
     Freedom,
     freedom_of,

@@ -13,7 +13,7 @@ import jointid as jid
 from jointid.estimate.student import limited_half_width
 from jointid.identification.inference.inference import _half_width
 from jointid.identification.inference.measuring_again import NoiseEffect
-from jointid.identification.inference.segments import Motion, motion_segments
+from jointid.identification.inference.motion import Motion, motion_segments
 from jointid.identification.inference.shift_by_chance import variance_over_segments
 from jointid.identification.inference.systematic import admissible_shifts
 from jointid.identification.inference.velocity_noise import measured_again

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointid.identification.inference.segments import Motion, motion_segments
+from jointid.identification.inference.motion import Motion, motion_segments
 
 
 def motion(travel: np.ndarray, recording: np.ndarray | None = None) -> Motion:

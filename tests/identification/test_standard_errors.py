@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from jointid.identification.inference.covariance import Covariance, parameter_covariance
-from jointid.identification.inference.segments import Segments, even_segments
+from jointid.balance.covariance import Covariance, parameter_covariance
+from jointid.balance.segments import Segments, even_segments
 
 _ROWS = 48
 _SIGNS = np.where(np.random.default_rng(3).random(_ROWS) < 0.5, -1.0, 1.0)

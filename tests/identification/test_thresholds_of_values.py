@@ -13,10 +13,10 @@ import pytest
 from fake_evidence import TIME, evidence, found, inspected, parameter
 
 import jointid as jid
+from jointid.balance.covariance import Triangle
 from jointid.estimate.causes import Causes
 from jointid.estimate.findings import TITLE, Finding
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.identification.inference.covariance import Triangle
 from jointid.identification.warnings import torque_balance, unbounded
 from jointid.identification.warnings.evidence import Regressor
 from jointid.identification.warnings.excitation import Excitation

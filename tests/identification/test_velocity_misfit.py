@@ -7,9 +7,9 @@ import pytest
 from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
+from jointid.balance.covariance import parameter_covariance
+from jointid.balance.segments import even_segments
 from jointid.estimate.causes import Cause
-from jointid.identification.inference.covariance import parameter_covariance
-from jointid.identification.inference.segments import even_segments
 from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
 from jointid.identification.inference.velocity_noise import measured_again
 from jointid.identification.prepared import Prepared, prepare

@@ -8,7 +8,7 @@ import pytest
 from small_arm import recording, urdf
 
 import jointid as jid
-from jointid.identification.inference.resampling import Cells, draws
+from jointid.balance.resampling import Cells, draws
 
 pytest.importorskip("pinocchio")
 

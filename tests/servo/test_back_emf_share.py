@@ -4,11 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import nnls
 from simulated_servo import SUPPLY, Truth, bench_runs, servo_joint, with_truth
 
 import jointid as jid
-from jointid.servo.pivoting import not_negative
 
 TRUTH = Truth()
 
@@ -43,16 +41,3 @@ def test_a_resistance_or_a_constant_needs_no_share() -> None:
     found = jid.identify_servo(runs, servo_joint(resistance=TRUTH.resistance), draws=0)
     assert found["viscous"] == pytest.approx(TRUTH.viscous, rel=0.25)
     assert not any(each.code == "inseparable_back_emf" for each in found.findings)
-
-
-def test_many_problems_without_negative_entries_are_solved_as_one_by_one() -> None:
-    generator = np.random.default_rng(3)
-    tables = generator.normal(size=(200, 9, 6)) * 10.0 ** generator.uniform(-3, 3, (200, 1, 6))
-    right = generator.normal(size=(200, 9))
-    turned = tables.transpose(0, 2, 1)
-    found = not_negative(turned @ tables, (turned @ right[:, :, None])[:, :, 0])
-    wanted = np.array([nnls(a, b)[0] for a, b in zip(tables, right, strict=True)])
-    scale = np.linalg.norm(tables, axis=1)
-    assert (wanted == 0.0).any(axis=0).all()
-    assert np.abs((found - wanted) * scale).max() < 1e-9
-    assert (found >= 0.0).all()

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.covariance import Triangle, parameter_covariance
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence, ResidualStatistics
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
-from jointid.identification.inference.covariance import Triangle, parameter_covariance
 from jointid.identification.inference.held import held_intervals
 from jointid.identification.inference.inference import (
     freedom_of,
@@ -25,9 +25,9 @@ from jointid.identification.inference.inference import (
     statistics_of,
 )
 from jointid.identification.inference.measuring_again import Shifts
+from jointid.identification.inference.motion import Motion, motion_segments
 from jointid.identification.inference.own_noise import own_systematic
 from jointid.identification.inference.purposes import Torques, within
-from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import (
     admissible_shifts,
     lacking_torques,

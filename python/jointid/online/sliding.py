@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.covariance import parameter_covariance
 from jointid.base.errors import InputError
-from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import freedom_of, joint_of, parameters_of
 from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.online.online_estimate import OnlineEstimate

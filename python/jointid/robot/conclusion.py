@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.covariance import Covariance
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.estimate.student import quantile
-from jointid.identification.inference.covariance import Covariance
 from jointid.problem.window_table import WindowTable
 from jointid.robot.balance import Balance
 from jointid.robot.bodies import possible

@@ -9,12 +9,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.identification.inference.covariance import Covariance, parameter_covariance
+from jointid.balance.covariance import Covariance, parameter_covariance
+from jointid.balance.segments import time_segments
 from jointid.robot.balance import Balance
 from jointid.robot.inertia import InertiaColumns
 from jointid.robot.products import Products
 from jointid.robot.shaped_terms import ShapedSolution, ShapedTerms
-from jointid.robot.solving import time_segments
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,6 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 FOLDS = 8  # stretches of time, held out in turn
-_NOTHING = 1e-13  # of the largest eigenvalue: rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,10 +99,3 @@ def powers(sums: Array, values: Array) -> Array:
     """Return the squared residuals of each joint (and stretch) with some values of the scaled parameters."""
     full = np.append(values, -1.0)
     return np.asarray(np.maximum(np.einsum("...ab,a,b->...", sums, full, full), 0.0))
-
-
-def root_of(product: Array) -> Array:
-    """Return a square matrix R with RᵀR equal to products."""
-    values, vectors = np.linalg.eigh(product)
-    values = np.where(values > _NOTHING * max(float(values[-1]), 0.0), values, 0.0)
-    return np.asarray(np.sqrt(values)[:, None] * vectors.T)

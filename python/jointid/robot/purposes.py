@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.identification.inference.covariance import Covariance
+from jointid.balance.covariance import Covariance
+from jointid.balance.segments import time_segments
 from jointid.identification.inference.held import held_intervals
 from jointid.identification.inference.purposes import Torques, within
 from jointid.robot.balance import Balance
 from jointid.robot.fit import Fit
 from jointid.robot.parameters import FRICTION, SHAPES
 from jointid.robot.result import RobotEstimate
-from jointid.robot.solving import time_segments
 
 Array = NDArray[np.float64]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
@@ -10,15 +9,15 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.resampling import Cells, cells_of, draws
+from jointid.balance.segments import segment_length
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.bootstrap import Bootstrap
 from jointid.identification.inference.bootstrap import drawn_parameter
-from jointid.identification.inference.resampling import CELLS, Cells, draws
-from jointid.robot.solving import segment_length
 
 if TYPE_CHECKING:
-    from jointid.robot.balance import Balance, Rows
+    from jointid.robot.balance import Balance
     from jointid.robot.fit import Fit
     from jointid.robot.result import RobotEstimate
     from jointid.robot.solving import PriorRows
@@ -43,24 +42,20 @@ class RobotDraws:
         rows = balance.rows
         weight = 1.0 / fit.scatter[rows.joint]
         length = segment_length(rows.start, rows.stop, rows.piece)
-        limits, starts = _limits(rows, length)
-        count = fit.values.size
-        square = np.empty((len(limits), count, count))
-        gradient = np.empty((len(limits), count))
-        for number, (first, last) in enumerate(limits):
-            part = fit.jacobian[first:last] * weight[first:last, None]
-            square[number] = np.einsum("ij,ik->jk", part, part)
-            gradient[number] = -np.einsum(
-                "ij,i->j", part, fit.residual[first:last] * weight[first:last]
-            )
-        prior = prior.padded(count - prior.matrix.shape[1])
+        cells = cells_of(
+            fit.jacobian * weight[:, None],
+            -fit.residual * weight,
+            recording=rows.piece,
+            begin=rows.start,
+            end=rows.stop,
+            length=length,
+        )
+        prior = prior.padded(fit.values.size - prior.matrix.shape[1])
         missed = prior.matrix @ fit.values - prior.target
         lower, upper = np.array(fit.bounds).T
         return cls(
-            cells=Cells(
-                square=square,
-                gradient=gradient,
-                starts=starts,
+            cells=replace(
+                cells,
                 sure_square=prior.matrix.T @ prior.matrix,
                 sure_gradient=prior.matrix.T @ missed,
             ),
@@ -119,28 +114,6 @@ def _widening(source: RobotDraws) -> float:
     joints = [joint for joint, _ in source.labels if joint is not None]
     blocks, each = source.cells.blocks, len(joints) / max(1, len(set(joints)))
     return float(np.sqrt(blocks / max(blocks - each, 0.5 * blocks, 1.0)))
-
-
-def _limits(rows: Rows, length: float) -> tuple[list[tuple[int, int]], NDArray[np.int64]]:
-    """First row and end of each quarter of a block, and the quarters at which a block may begin.
-
-    Rows are in the order of time, and those of all joints in a stretch go together.
-    """
-    limits: list[tuple[int, int]] = []
-    starts: list[int] = []
-    for piece in np.unique(rows.piece):
-        low, high = (int(each) for each in np.searchsorted(rows.piece, (piece, piece + 1)))
-        begin = rows.start[low]
-        span = float(rows.stop[low:high].max() - begin)
-        count = max(1, round(CELLS * span / length))
-        ends = begin + span * np.arange(1, count) / count
-        inner = low + np.searchsorted(rows.start[low:high], ends)
-        cuts = np.unique([low, *inner, high])
-        # A recording shorter than a block is one with what follows.
-        starts += range(len(limits), len(limits) + max(1, len(cuts) - CELLS))
-        limits += [(int(a), int(b)) for a, b in itertools.pairwise(cuts)]
-    inside = [start for start in starts if start + CELLS <= len(limits)] or [0]
-    return limits, np.array(inside)
 
 
 def _nothing() -> None:

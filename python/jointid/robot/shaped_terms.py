@@ -20,7 +20,7 @@ from jointid.robot.integrals import interval_means
 from jointid.robot.models import shaped_term
 from jointid.robot.parameters import least_of
 from jointid.robot.products import Products, powers, weighted
-from jointid.robot.solving import PriorRows, Solution, bounded, scatter_of, solved
+from jointid.robot.solving import PriorRows, Solution, above_bounds, scatter_of, solved
 
 Array = NDArray[np.float64]
 
@@ -240,7 +240,7 @@ class _Search:
         slopes = first + count + np.arange(count)
         whole = weighted(by_joint, scatter)
         product = whole[np.ix_(linear, linear)] + self.prior_product
-        values, held = bounded(product, self.least)
+        values, held = above_bounds(product, self.least)
         full = np.append(values, -1.0)
         sizes = values[first:]
         # The residual's products with the derivatives, and what of these the linear parameters cannot follow.

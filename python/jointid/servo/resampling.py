@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.resampling import drawn_units
 from jointid.servo.layout import DRIVEN, LINEAR_COLUMN
 from jointid.servo.solving import Unknowns, solved
 from jointid.servo.windows import ServoGrid
@@ -31,9 +32,7 @@ def drawn(products: Array, unknowns: Unknowns, values: Array, draws: int, seed: 
 
     `products` is (units, columns, columns); each set starts from `values`, the solution of all units.
     """
-    count = len(products)
-    generator = np.random.default_rng(seed)
-    times = generator.multinomial(count, np.full(count, 1.0 / count), size=draws).astype(float)
+    times = drawn_units(len(products), draws, seed)
     if unknowns.separable and unknowns.layout.linear and not unknowns.motor_known:
         # Without a unit that turns freely, or without one that is driven, a set divides nothing.
         driven, turned = (products[:, each, each] for each in (DRIVEN, LINEAR_COLUMN))

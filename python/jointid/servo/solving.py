@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.least_squares import bounded_minima
 from jointid.base.values import dataclass
 from jointid.servo.layout import BACK_EMF, HELD, LINEAR, LOAD_FRICTION, TORQUE, Layout, balance
-from jointid.servo.pivoting import not_negative
 
 Array = NDArray[np.float64]
 
@@ -157,4 +157,5 @@ def _linear(products: Array, unknowns: Unknowns, last: Array) -> Array:
 def _chosen(products: Array, columns: Array, target: Array) -> Array:
     """Least squares with some of the columns."""
     turned = columns.transpose(0, 2, 1) @ products
-    return not_negative(turned @ columns, (turned @ target[:, :, None])[:, :, 0])
+    right = (turned @ target[:, :, None])[:, :, 0]
+    return bounded_minima(turned @ columns, -right, 0.0, np.inf)

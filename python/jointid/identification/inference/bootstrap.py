@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.resampling import cells_of, draws
 from jointid.estimate.bootstrap import Bootstrap, BootstrapParameter
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.student import quantile
-from jointid.identification.inference.resampling import cells_of, draws
-from jointid.identification.inference.segments import Motion
+from jointid.identification.inference.motion import Motion
 from jointid.identification.search.domain import SearchDomain
 from jointid.problem.problem import Problem
 
@@ -36,8 +36,14 @@ def block_bootstrap(
     best = np.array([estimate.parameters[name].value for name in domain.names])
     _, residual, jacobian = penalty.linearised(best)
     motion = Motion.of(problem, penalty)
+    end = np.cumsum(motion.moved)
     cells = cells_of(
-        jacobian[:, places], residual, motion.moved, motion.recording, motion.segment_length
+        jacobian[:, places],
+        residual,
+        recording=motion.recording,
+        begin=np.append(0.0, end[:-1]),
+        end=end,
+        length=motion.segment_length,
     )
     here = best[places]
     below, above = domain.lower[places] - here, domain.upper[places] - here

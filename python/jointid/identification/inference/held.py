@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.covariance import Triangle, parameter_covariance
+from jointid.balance.segments import Segments
 from jointid.estimate.student import quantile
-from jointid.identification.inference.covariance import Triangle, parameter_covariance
-from jointid.identification.inference.segments import Segments
 
 Array = NDArray[np.float64]
 

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.covariance import Covariance
 from jointid.base.values import dataclass
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.estimate.student import limited_half_width, quantile
-from jointid.identification.inference.covariance import Covariance
 from jointid.identification.search.domain import SearchDomain
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.inference.covariance import Triangle
+from jointid.balance.covariance import Triangle
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
 from jointid.recording.recording import Recording

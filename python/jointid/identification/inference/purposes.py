@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.covariance import Covariance
 from jointid.base.values import dataclass
 from jointid.estimate.intervals import NORMAL
 from jointid.estimate.statistics import ParameterEstimate, distance_from_bound
-from jointid.identification.inference.covariance import Covariance
 from jointid.problem.inner_products import column_sizes, size
 
 Array = NDArray[np.float64]

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.inference.segments import Motion, Segments
+from jointid.balance.segments import Segments
+from jointid.identification.inference.motion import Motion
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.covariance import Triangle
 from jointid.base.errors import InputError
-from jointid.identification.inference.covariance import Triangle
 from jointid.identification.inference.measuring_again import Shifts
 from jointid.identification.search.domain import SearchDomain
 from jointid.problem.constant_torque import with_fixed_offset

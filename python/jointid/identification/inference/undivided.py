@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.identification.inference.covariance import Covariance
+from jointid.balance.covariance import Covariance
 from jointid.identification.search.domain import SearchDomain
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided

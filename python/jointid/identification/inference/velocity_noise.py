@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.segments import Segments
 from jointid.base.values import dataclass
 from jointid.identification.inference.measuring_again import (
     DRAWS,
@@ -16,7 +17,6 @@ from jointid.identification.inference.measuring_again import (
     Shifts,
     noise_effect,
 )
-from jointid.identification.inference.segments import Segments
 from jointid.identification.inference.shift_by_chance import variance_over_segments
 from jointid.problem.problem import Problem
 from jointid.recording.extra_noise import noise_unit

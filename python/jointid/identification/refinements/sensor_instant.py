@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.least_squares import solve
 from jointid.base.values import dataclass
-from jointid.problem.least_squares import solve
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.least_squares import bounded_minima
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 
@@ -169,7 +170,9 @@ def _fitted(
     sizes[sizes == 0.0] = 1.0
     triangle: Array = np.asarray(np.linalg.qr(whole / sizes, mode="r"))
     rest = triangle[len(free) :, len(free) :]  # without the terms of either sign
-    solution, misfit = _core.non_negative_least_squares(rest[:, :-1], rest[:, -1])
+    left, right = rest[:, :-1], rest[:, -1]
+    solution = bounded_minima((left.T @ left)[None], -(left.T @ right)[None], 0.0, np.inf)[0]
+    misfit = float(np.linalg.norm(left @ solution - right))
     lead = float(sign * solution[0] * sizes[-1] / sizes[len(free)])
     if lead == 0.0:
         return misfit, 0.0

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.covariance import Triangle
 from jointid.base.values import dataclass
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.cross_check import CrossCheck
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
-from jointid.identification.inference.covariance import Triangle
 from jointid.identification.inference.own_noise import OwnNoise
 from jointid.identification.inference.purposes import Torques
 from jointid.identification.inference.velocity_noise import VelocityEffect

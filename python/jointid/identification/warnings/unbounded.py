@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.covariance import parameter_covariance
 from jointid.base.values import dataclass
-from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.warnings.evidence import Evidence, Regressor
 
 Array = NDArray[np.float64]

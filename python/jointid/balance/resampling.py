@@ -1,4 +1,6 @@
-"""The block bootstrap: stretches of the motion are drawn anew, and the parameters refitted to each draw.
+"""Resampling: stretches or runs of the motion are drawn anew.
+
+The block bootstrap: stretches of the motion are drawn anew, and the parameters refitted to each draw.
 
 A block is a run of neighbouring windows as long as a segment of motion (`segments`: the rule is fixed in advance);
 it may begin at any quarter of one (moving blocks: Künsch 1989). The refit is the minimum of the penalty linearised at
@@ -12,6 +14,7 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.least_squares import bounded_minima
 from jointid.base.values import dataclass
 from jointid.recording.order_statistics import distinct
 
@@ -20,8 +23,6 @@ Whole = NDArray[np.int64]
 
 CELLS = 4  # of a block, which begins at any of them
 _DRAWS_AT_ONCE = 100
-_TOGETHER, _ONE_BY_ONE = 12, 400  # exchanges between bounded and free
-_RIDGE = 1e-12  # of a scaled direction: a draw may lack one altogether
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 
 
@@ -54,18 +55,23 @@ class Cells:
 
 
 def cells_of(
-    jacobian: Array, residual: Array, moved: Array, recording: NDArray[np.integer], length: float
+    jacobian: Array,
+    residual: Array,
+    recording: NDArray[np.integer],
+    begin: Array,
+    end: Array,
+    length: float,
 ) -> Cells:
-    """Cut the windows into cells of equal motion.
+    """Cut rows into cells of equal motion.
 
     Parameters
     ----------
-    jacobian : ndarray, shape (windows, p)
-    residual : ndarray, shape (windows,)
-    moved : ndarray, shape (windows,)
-        Motion in each window [s].
+    jacobian : ndarray, shape (rows, p)
+    residual : ndarray, shape (rows,)
     recording : ndarray of int
-        Of each window.
+        Of each row, ascending.
+    begin, end : ndarray, shape (rows,)
+        Motion before each row and with it [s], ascending.
     length : float
         Of a block [s].
     """
@@ -73,9 +79,10 @@ def cells_of(
     starts: list[int] = []
     for number in distinct(recording):
         first, last = np.searchsorted(recording, (number, number + 1))
-        way = np.cumsum(moved[first:last])
-        count = max(1, round(CELLS * float(way[-1]) / length))
-        inner = 1 + np.searchsorted(way, way[-1] * np.arange(1, count) / count)
+        span = float(end[first:last].max() - begin[first])
+        count = max(1, round(CELLS * span / length))
+        ends = begin[first] + span * np.arange(1, count) / count
+        inner = np.searchsorted(begin[first:last], ends)
         cuts = distinct([0, *(i for i in inner if i < last - first), last - first]) + first
         # A recording shorter than a block is one with what follows.
         starts += range(len(limits), len(limits) + max(1, len(cuts) - CELLS))
@@ -145,62 +152,7 @@ def _mixed(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
     return np.asarray(z ^ (z >> np.uint64(31)))
 
 
-def bounded_minima(square: Array, gradient: Array, lower: Array, upper: Array) -> Array:
-    """Return the minima of quadratic functions inside a box, all at once.
-
-    Parameters
-    ----------
-    square : ndarray, shape (n, p, p)
-    gradient : ndarray, shape (n, p)
-        At zero.
-    lower, upper : ndarray, shape (p,)
-
-    Notes
-    -----
-    Parameters outside their bounds are held there, and held ones that the gradient pulls inside are
-    freed: all together first, which ends in a few rounds nearly always; else one by one, the first one
-    first, which ends always (Murty 1974; Júdice and Pires 1994).
-    """
-    count = square.shape[1]
-    size = np.sqrt(np.einsum("nii->ni", square))
-    size = np.where(size > 0.0, size, 1.0)
-    scaled = square / (size[:, :, None] * size[:, None, :])
-    scaled[:, np.arange(count), np.arange(count)] += _RIDGE
-    slope = gradient / size
-    low, high = lower * size, upper * size
-    side = np.zeros(slope.shape)  # -1, 1: held at the lower, upper bound
-    found = np.zeros(slope.shape)
-    open_ = np.arange(len(slope))
-    for step in range(_ONE_BY_ONE):
-        at = np.where(side[open_] < 0.0, low[open_], high[open_])
-        held = side[open_] != 0.0
-        moved = _with_held(scaled[open_], slope[open_], held, np.where(held, at, 0.0))
-        pull = np.einsum("nij,nj->ni", scaled[open_], moved) + slope[open_]
-        pull = np.where(held, pull, 0.0)
-        slack = 1e-9 * (1.0 + np.abs(moved))
-        wanted = np.where(held, side[open_], 0.0)
-        wanted = np.where(~held & (moved < low[open_] - slack), -1.0, wanted)
-        wanted = np.where(~held & (moved > high[open_] + slack), 1.0, wanted)
-        loose = 1e-9 * (1.0 + np.abs(slope[open_]))
-        wanted = np.where(held & (side[open_] * pull > loose), 0.0, wanted)
-        change = wanted != side[open_]
-        found[open_] = moved
-        if step >= _TOGETHER:  # the first one alone
-            change &= np.cumsum(change, axis=1) == 1
-        side[open_] = np.where(change, wanted, side[open_])
-        open_ = open_[change.any(axis=1)]
-        if open_.size == 0:
-            break
-    inside = np.clip(found / size, lower, upper)
-    return np.where(side < 0.0, lower, np.where(side > 0.0, upper, inside))
-
-
-def _with_held(square: Array, slope: Array, held: NDArray[np.bool_], at: Array) -> Array:
-    """The minima over the free parameters, the held ones at their bounds."""
-    fixed = held[:, :, None] | held[:, None, :]
-    system = np.where(fixed, 0.0, square)
-    index = np.arange(held.shape[1])
-    system[:, index, index] = np.where(held, 1.0, square[:, index, index])
-    right = -(slope + np.einsum("nij,nj->ni", square, at))
-    right = np.where(held, at, right)
-    return np.asarray(np.linalg.solve(system, right[:, :, None])[:, :, 0])
+def drawn_units(units: int, draws: int, seed: int) -> Array:
+    """Return how often each unit is in each set of as many that are drawn with replacement, shape (draws, units)."""
+    generator = np.random.default_rng(seed)
+    return generator.multinomial(units, np.full(units, 1.0 / units), size=draws).astype(float)

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.least_squares import solve
+from jointid.balance.segments import Segments, even_segments
 from jointid.base.values import dataclass
-from jointid.identification.inference.segments import Segments, even_segments
-from jointid.problem.least_squares import solve
 
 Array = NDArray[np.float64]
 

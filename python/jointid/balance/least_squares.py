@@ -1,7 +1,7 @@
-"""Least squares on columns of a triangle, the R of a QR decomposition of what was measured."""
+"""Linear least squares: on columns of a triangle, inside bounds, and of many problems at once."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from jointid import _core
 
@@ -30,3 +30,24 @@ def solve(
     scale = np.where(norms > 0.0, norms, 1.0)
     found = np.linalg.lstsq(regressors / scale, wanted, rcond=rcond)[0] / scale
     return found, float(np.linalg.norm(wanted - regressors @ found))
+
+
+def bounded_minima(square: Array, gradient: Array, lower: ArrayLike, upper: ArrayLike) -> Array:
+    """Return the minima of quadratic functions inside a box, all at once.
+
+    Parameters
+    ----------
+    square : ndarray, shape (n, p, p)
+    gradient : ndarray, shape (n, p)
+        At zero.
+    lower, upper : array_like, shape (p,) or a number
+        Bounds; infinite where there are none.
+
+    Returns
+    -------
+    ndarray, shape (n, p)
+        A parameter at a bound is exactly that bound. Of a direction that a problem lacks, the shortest solution.
+    """
+    count = gradient.shape[1]
+    low, high = (np.broadcast_to(np.asarray(each, float), count) for each in (lower, upper))
+    return _core.box_minima(square, gradient, low, high)
