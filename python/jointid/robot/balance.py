@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.windows import Windows, torque_integrals
 from jointid.robot.columns import Column, Summing, linear_columns, rotor_values
-from jointid.robot.integrals import Windows, inertia_integrals, torque_integrals
+from jointid.robot.integrals import inertia_integrals
 from jointid.robot.models import is_asymmetric, terms_of
 from jointid.robot.motion import Motion
 from jointid.robot.parameters import DIFFERENCE

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.robot.integrals import Windows, direction_integrals, interval_means
+from jointid.balance.windows import Windows, direction_integrals, interval_means
 from jointid.robot.motion import Motion
 from jointid.robot.parameters import (
     CONSTANT,

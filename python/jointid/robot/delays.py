@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.windows import torque_integrals
 from jointid.robot.balance import Balance
 from jointid.robot.excerpt_rows import ExcerptRows
 from jointid.robot.fit import Fit
-from jointid.robot.integrals import torque_integrals
 from jointid.robot.motion import Motion
 
 Array = NDArray[np.float64]

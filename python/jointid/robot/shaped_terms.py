@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.balance.windows import interval_means
 from jointid.identification.search.computed_bounds import shape_bounds
 from jointid.robot.balance import Balance
-from jointid.robot.integrals import interval_means
 from jointid.robot.models import shaped_term
 from jointid.robot.parameters import least_of
 from jointid.robot.products import Products, powers, weighted
