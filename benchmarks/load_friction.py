@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
-from jointid.comparison.parsimony import refusal
+from jointid.comparison.comparison import refusal
 
 INERTIA = 2.472e-4 * 101.0**2
 SENSED = jid.Joint(inertia=INERTIA, sensor=True, torque_hold="zoh")

@@ -95,7 +95,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={*(_FOUND - {"recording"}), "balance"}, packages={"numpy"}
     ),
     "identification/selection": Folder(
-        may_use={*_FOUND, "identification/search"}, packages={"numpy"}
+        may_use={"balance", *_FOUND, "identification/search"}, packages={"numpy"}
     ),
     # It identifies again, and is imported when an estimate is asked for it.
     "identification/self_test": Folder(
@@ -108,7 +108,7 @@ FOLDERS: dict[str, Folder] = {
     "identification/warnings": Folder(
         may_use={"balance", *_FOUND, "identification/inference"}, packages={"numpy"}
     ),
-    "comparison": Folder(may_use={*_SOUGHT, "servo"}, packages={"numpy", "pandas"}),
+    "comparison": Folder(may_use={"balance", *_SOUGHT, "servo"}, packages={"numpy", "pandas"}),
     "joints": Folder(
         may_use={*_SOUGHT, "recording/wide", "identification/causes"}, packages={"numpy"}
     ),
@@ -121,7 +121,7 @@ FOLDERS: dict[str, Folder] = {
     ),
     "robot": Folder(
         may_use={
-            "balance",
+            *("balance", "comparison"),
             *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
             *("identification/inference", "identification/search"),
         },

@@ -14,9 +14,9 @@ from example_recordings import WELL_EXCITED
 import jointid as jid
 from jointid.base.errors import InputError
 from jointid.cli.progress import ComparisonProgress
+from jointid.comparison.comparison import judge
 from jointid.comparison.fitter import ComparisonStep
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
-from jointid.comparison.parsimony import judge
 from jointid.comparison.result import ComparedModel
 from jointid.estimate.causes import Causes
 from jointid.identification import identification

@@ -9,7 +9,6 @@ from small_arm import ROTOR, URDF, recording, urdf
 
 import jointid as jid
 from jointid.cli import main
-from jointid.robot import comparing
 
 pytest.importorskip("pinocchio")
 
@@ -98,13 +97,6 @@ def test_several_recordings_are_held_out_whole(path: Path) -> None:
         runs, jid.Robot.from_urdf(path), models="coulomb_viscous", inertia="urdf", folds=2
     )
     assert both.settings["held_out"] == "recordings"
-
-
-def test_the_simplest_of_equals_wins() -> None:
-    scores = np.array([[0.10, 0.12, 0.11], [0.0999, 0.1201, 0.1099], [0.2, 0.2, 0.2]])
-    assert comparing._chosen(scores, [5, 9, 1]) == (1, 0)
-    clear = scores + np.array([[0.02], [0.0], [0.0]])
-    assert comparing._chosen(clear, [5, 9, 1]) == (1, 1)
 
 
 def test_text_and_json_say_the_same(found: jid.RobotComparison) -> None:

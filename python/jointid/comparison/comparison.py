@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
@@ -12,7 +13,8 @@ from jointid.base.errors import InputError
 from jointid.comparison.contenders import compared_models, default_models, shown_gravity, text_of
 from jointid.comparison.fitter import ComparisonStep, Fitter, with_causes
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
-from jointid.comparison.parsimony import counted, judge, refusal
+from jointid.comparison.judging import Entrant, judged
+from jointid.comparison.load_evidence import load_refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_of
@@ -21,6 +23,7 @@ from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.constant_torque import undivided
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Residual
 from jointid.problem.windows import Windows
@@ -215,13 +218,13 @@ def compare_models(
         _row(spec, estimate, fitter.scores(_as_found(spec, estimate), splits, cut, estimate))
         for spec, estimate in whole.items()
     ]
-    judged, winner, reason = judge(rows)
+    reasoned, winner, reason = judge(rows)
     kind = "block" if len(runs) == 1 else "recording" if parts == len(runs) else "recordings"
     return Comparison(
-        rows=judged,
-        winner=judged[winner].model,
+        rows=reasoned,
+        winner=reasoned[winner].model,
         reason=reason,
-        estimate=with_causes(whole[judged[winner].spec]),
+        estimate=with_causes(whole[reasoned[winner].spec]),
         settings={
             "folds": parts,
             "held_out": kind,
@@ -279,3 +282,65 @@ def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedMo
         eligible=reason is None,
         reason=reason or "",
     )
+
+
+def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int, str]:
+    """Choose a model by the one-standard-error rule.
+
+    Returns
+    -------
+    rows : tuple of ComparedModel
+        Each with its reason.
+    winner : int
+        Its index.
+    reason : str
+        Why it won, in a sentence.
+    """
+    found = judged(
+        [
+            Entrant(
+                name=row.model,
+                parameters=row.parameters,
+                score=row.score,
+                stderr=row.stderr,
+                parts=row.fold_scores,
+                eligible=row.eligible,
+            )
+            for row in rows
+        ]
+    )
+    reasons = [
+        "; ".join(filter(None, both))
+        for both in zip((row.reason for row in rows), found.reasons, strict=True)
+    ]
+    reasoned = [replace(row, reason=reason) for row, reason in zip(rows, reasons, strict=True)]
+    sentence = found.sentence
+    refused = [row.model for row in rows if not row.eligible]
+    if len(refused) == len(rows):
+        sentence += (
+            "; but the data support none of the models: see the warnings of the winner's estimate"
+        )
+    elif refused:
+        sentence += f"; the data do not support {', '.join(refused)}"
+    return tuple(reasoned), found.winner, sentence
+
+
+def counted(estimate: Estimate) -> int:
+    """Return the number of parameters that the data determine; an offset that nothing divides is none."""
+    free = [parameter.name for parameter in estimate.parameters.values() if parameter.vary]
+    return len(free) - len(undivided(free))
+
+
+def refusal(estimate: Estimate) -> str | None:
+    """Return why the data do not support a model, or None if they do."""
+    for warning in estimate.warnings:
+        if warning.code in ("model_too_rich", "load_scale"):
+            return f"not eligible: {warning.cause}"
+    ended = [p for p in estimate.parameters.values() if p.at_bound is not None]
+    if ended:
+        bounds = ", ".join(
+            f"{p.name} at its {'lower' if p.at_bound == 'min' else 'upper'} bound" for p in ended
+        )
+        return f"not eligible: {bounds}"
+    reason = load_refusal(estimate)
+    return None if reason is None else f"not eligible: {reason}"

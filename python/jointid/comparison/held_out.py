@@ -7,13 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from jointid.balance.held_out import block_starts, groups_of
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.prediction import FittedModel, TorquePredictor
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
-
-_FEWEST = 4  # windows that a held-out block needs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,15 +89,7 @@ def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tu
     InputError
         Too few windows for so many blocks.
     """
-    if count * _FEWEST > len(windows.start):
-        raise InputError(
-            f"the recording has {len(windows.start)} windows, and each block needs at least {_FEWEST}",
-            argument="folds",
-            value=count,
-            remedy="use fewer folds, or shorter windows",
-        )
-    firsts = [part[0] for part in np.array_split(np.arange(len(windows.start)), count)]
-    edges = [-np.inf, *(float(windows.start[first]) for first in firsts[1:]), np.inf]
+    edges = [-np.inf, *block_starts(windows.start, count).tolist(), np.inf]
     return tuple(
         Fold(
             training=(_without(recording, start, stop),),
@@ -110,7 +101,6 @@ def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tu
 
 def folds_by_recording(recordings: Sequence[Recording], count: int) -> tuple[Fold, ...]:
     """Return folds that hold out whole recordings: each alone, or in `count` groups if there are more."""
-    groups = np.array_split(np.arange(len(recordings)), min(count, len(recordings)))
     return tuple(
         Fold(
             training=tuple(run for index, run in enumerate(recordings) if index not in group),
@@ -118,7 +108,7 @@ def folds_by_recording(recordings: Sequence[Recording], count: int) -> tuple[Fol
                 Block(recording=recordings[index], start=-np.inf, stop=np.inf) for index in group
             ),
         )
-        for group in groups
+        for group in groups_of(len(recordings), count)
     )
 
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.held_out import in_errors, one_error, preferred
 from jointid.base.argument_checks import require_kind, whole_number
 from jointid.base.errors import InputError
-from jointid.estimate.student import quantile
-from jointid.estimate.wording import percent_with_error
+from jointid.comparison.judging import Entrant, judged
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.aligning import aligned
@@ -29,8 +29,6 @@ from jointid.robot.stamps import all_on_even_clocks
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
-
-_ONE_ERROR = 0.841345  # probability below one standard error of a normal distribution
 
 
 def compare_robot_models(
@@ -109,10 +107,11 @@ def compare_robot_models(
         raise InputError(
             f"no candidate can be fitted: {next(iter(left_out.values()))}", argument="inertia"
         )
-    scores = np.array([row.fold_scores for row in rows])
-    best, chosen = _chosen(scores, [row.parameters for row in rows])
-    reasoned = _with_reasons(rows, best, chosen)
-    winner = reasoned[chosen]
+    verdict = judged([_entrant(row) for row in rows], paired=True)
+    reasoned = [
+        replace(row, reason=reason) for row, reason in zip(rows, verdict.reasons, strict=True)
+    ]
+    winner = reasoned[verdict.winner]
     rivals = [row for row in reasoned if row.inertia == winner.inertia]
     found = {name: _model_of(name, rivals, winner) for name in robot.names}
     estimate = identify_robot(
@@ -127,10 +126,10 @@ def compare_robot_models(
     )
     several = len(given) > 1
     return RobotComparison(
-        rows=reasoned,
+        rows=tuple(reasoned),
         winner=winner,
         models=found,
-        reason=_sentence(reasoned, best, chosen),
+        reason=verdict.sentence,
         estimate=estimate,
         settings={
             "folds": int(blocks.max()) + 1,
@@ -195,22 +194,14 @@ def _row(attempt: Attempt, mode: Inertia, model: str, blocks: Whole) -> Compared
     )
 
 
-def _chosen(scores: Array, parameters: Sequence[int]) -> tuple[int, int]:
-    """The best candidate, and the simplest that is not worse by more than an error of the difference."""
-    best = int(np.argmin(scores.mean(axis=1)))
-    near = [
-        number
-        for number, each in enumerate(scores)
-        if number == best or not _worse(each - scores[best])
-    ]
-    return best, min(near, key=lambda each: (parameters[each], float(scores[each].mean())))
-
-
-def _worse(excess: Array) -> bool:
-    """Whether scores exceed others by more than the excess scatters over the blocks."""
-    count = excess.size
-    error = float(excess.std(ddof=1)) / np.sqrt(count) if count > 1 else np.inf
-    return bool(excess.mean() > error * quantile(_ONE_ERROR, max(1, count - 1)))
+def _entrant(row: ComparedRobotModel) -> Entrant:
+    return Entrant(
+        name=row.name,
+        parameters=row.parameters,
+        score=row.score,
+        stderr=row.stderr,
+        parts=row.fold_scores,
+    )
 
 
 def _model_of(name: str, rivals: Sequence[ComparedRobotModel], winner: ComparedRobotModel) -> str:
@@ -219,42 +210,10 @@ def _model_of(name: str, rivals: Sequence[ComparedRobotModel], winner: ComparedR
     scores = scores[:, ~np.isnan(scores).any(axis=0)]
     if not scores.shape[1]:
         return winner.model
-    _, chosen = _chosen(scores, [row.parameters for row in rivals])
-    return rivals[chosen].model
-
-
-def _with_reasons(
-    rows: Sequence[ComparedRobotModel], best: int, chosen: int
-) -> tuple[ComparedRobotModel, ...]:
-    winner = rows[chosen]
-    reasoned = []
-    for number, row in enumerate(rows):
-        excess = np.array(row.fold_scores) - np.array(rows[best].fold_scores)
-        if number == chosen:
-            reason = "winner"
-        elif number != best and _worse(excess):
-            error = float(excess.std(ddof=1)) / np.sqrt(excess.size)
-            reason = f"worse than the best by {percent_with_error(float(excess.mean()), error)}"
-        elif row.parameters == winner.parameters:
-            reason = "not significantly better than the winner, with the same number of parameters"
-        else:
-            reason = (
-                "not significantly better than the winner, with "
-                f"{row.parameters} parameters instead of {winner.parameters}"
-            )
-        reasoned.append(replace(row, reason=reason))
-    return tuple(reasoned)
-
-
-def _sentence(rows: Sequence[ComparedRobotModel], best: int, chosen: int) -> str:
-    winner, first = rows[chosen], rows[best]
-    score = percent_with_error(first.score, first.stderr)
-    if best == chosen:
-        return (
-            f"{winner.name} ({winner.parameters} parameters) predicts held-out torque best, {score}"
-        )
-    return (
-        f"{winner.name} ({winner.parameters} parameters) is the simplest that is not worse than the best, "
-        f"{first.name} with {score}, by more than one standard error of their difference; its residual is "
-        f"{100.0 * winner.score:.3g} %"
+    limit = one_error(scores.shape[1])
+    _, chosen = preferred(
+        scores.mean(axis=1).tolist(),
+        [row.parameters for row in rivals],
+        lambda each, best: in_errors(scores[each] - scores[best]) > limit,
     )
+    return rivals[chosen].model

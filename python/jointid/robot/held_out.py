@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.base.errors import InputError
+from jointid.balance.held_out import block_starts, groups_of
 from jointid.robot.balance import Balance, Rows
 from jointid.robot.fit import Fit
 from jointid.robot.shaped_terms import ShapedTerms
@@ -16,8 +16,6 @@ from jointid.robot.shaped_terms import ShapedTerms
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Whole = NDArray[np.int64]
-
-_FEWEST = 4  # windows of each joint that a block needs
 
 
 def blocks_of(rows: Rows, runs: Sequence[int], count: int) -> Whole:
@@ -28,24 +26,13 @@ def blocks_of(rows: Rows, runs: Sequence[int], count: int) -> Whole:
     recording = np.asarray(runs)[rows.piece]
     every = np.unique(recording)
     if every.size > 1:
-        groups = np.array_split(every, min(count, every.size))
         found = np.empty(recording.size, dtype=np.int64)
-        for number, group in enumerate(groups):
-            found[np.isin(recording, group)] = number
+        for number, group in enumerate(groups_of(every.size, count)):
+            found[np.isin(recording, every[group])] = number
         return found
-    size = rows.start.size
-    joints = np.unique(rows.joint).size
-    if size < count * _FEWEST * joints:
-        raise InputError(
-            f"the recording has {size} windows of {joints} joints, and each block needs at least "
-            f"{_FEWEST} of each",
-            argument="folds",
-            value=count,
-            remedy="use fewer folds, or shorter windows",
-        )
     # A window's rows stay together: those of all joints begin at the same time.
-    firsts = np.array([part[0] for part in np.array_split(np.arange(size), count)])
-    return np.searchsorted(rows.start[firsts[1:]], rows.start, side="right").astype(np.int64)
+    begins = block_starts(rows.start, count, np.unique(rows.joint).size)
+    return np.searchsorted(begins, rows.start, side="right").astype(np.int64)
 
 
 def part_of_balance(balance: Balance, kept: Flags) -> Balance:

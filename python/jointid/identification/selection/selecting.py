@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.held_out import in_errors, preferred
 from jointid.base.errors import InputError
 from jointid.estimate import selection as values
 from jointid.estimate.selection import Selection
@@ -124,9 +125,12 @@ def _alone(candidate: Candidate) -> tuple[Candidate, Selection]:
 def _judged(entries: Sequence[Entry], energy: float) -> tuple[Candidate, Selection]:
     """Return the candidate with the fewest parameters that is not worse than the best by more than chance."""
     able = [each for each in entries if not each.refused] or list(entries[:1])
-    best = min(able, key=lambda each: float(each.missed.sum()))
-    near = [each for each in able if excess(each.missed, best.missed) <= _MARGIN]
-    winner = min(near, key=lambda each: (each.parameters, float(each.missed.sum())))
+    first, chosen = preferred(
+        [float(each.missed.sum()) for each in able],
+        [each.parameters for each in able],
+        lambda each, best: excess(able[each].missed, able[best].missed) > _MARGIN,
+    )
+    best, winner = able[first], able[chosen]
     others = [each for each in entries if each is not winner]
     second = min(others, key=lambda each: (bool(each.refused), float(each.missed.sum())))
     made = {
@@ -157,13 +161,4 @@ def excess(missed: Array, best: Array) -> float:
     """
     floor = 1e-30 * float(best.sum() + missed.sum()) + 1e-300
     ratio = np.log((missed + floor) / (best + floor))
-    return max(_in_errors(ratio), _in_errors(missed - best))
-
-
-def _in_errors(differences: Array) -> float:
-    """Return the mean of differences over its standard error."""
-    mean = float(differences.mean())
-    error = float(np.std(differences, ddof=1) / np.sqrt(len(differences)))
-    if error == 0.0:
-        return float(np.sign(mean)) * (float("inf") if mean else 0.0)
-    return mean / error
+    return max(in_errors(ratio), in_errors(missed - best))
