@@ -8,11 +8,11 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
-from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.tables import remark, subject
-from jointid.estimate.verdict import Verdict
+from jointid.estimate.verdict import Verdict, judged
 from jointid.estimate.wording import number, percent, rounded, two_digits
 
 COLUMNS = 100
@@ -23,7 +23,7 @@ _FINDINGS = 2
 _NAMED = 4  # names in a line
 
 
-def answer(estimate: Estimate, action: Callable[[Action], str] = str, saved: str = "") -> str:
+def answer(estimate: EstimateRecord, action: Callable[[Action], str] = str, saved: str = "") -> str:
     """Return the answer in at most 15 lines.
 
     Parameters
@@ -34,7 +34,7 @@ def answer(estimate: Estimate, action: Callable[[Action], str] = str, saved: str
     saved : str
         The file that has the estimate. Default: there is none.
     """
-    verdict = estimate.verdict
+    verdict = judged(estimate)
     return printable(
         "\n".join(
             [

@@ -5,18 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
 from jointid.estimate.intervals import BESIDE, quantile_of, squared_half_widths
+from jointid.estimate.record import EstimateRecord
 from jointid.problem.constant_torque import undivided
-
-if TYPE_CHECKING:
-    from jointid.estimate.estimate import Estimate
-
 
 Array = NDArray[np.float64]
 
@@ -60,7 +56,7 @@ class DerivedValue:
     largest_part: str | None = None
 
 
-def derived_values(estimate: Estimate) -> dict[str, DerivedValue]:
+def derived_values(estimate: EstimateRecord) -> dict[str, DerivedValue]:
     """Return breakaway friction, Stribeck velocity, and what is known of an undivided offset, if the model has them."""
     values = (
         *_breakaway(estimate),
@@ -71,7 +67,7 @@ def derived_values(estimate: Estimate) -> dict[str, DerivedValue]:
     return {each.name: each for each in values}
 
 
-def _breakaway(estimate: Estimate) -> Iterator[DerivedValue]:
+def _breakaway(estimate: EstimateRecord) -> Iterator[DerivedValue]:
     """The friction to overcome at rest: Coulomb friction and the static excess over it."""
     parameters = estimate.parameters
     for direction in ("", "_positive", "_negative"):
@@ -92,7 +88,7 @@ def _breakaway(estimate: Estimate) -> Iterator[DerivedValue]:
                 )
 
 
-def _constants(estimate: Estimate) -> Iterator[DerivedValue]:
+def _constants(estimate: EstimateRecord) -> Iterator[DerivedValue]:
     """What a recording tells where it does not divide an offset from the difference of Coulomb frictions."""
     found = estimate.parameters
     sides = ("coulomb_positive", "coulomb_negative")
@@ -125,7 +121,7 @@ def _constants(estimate: Estimate) -> Iterator[DerivedValue]:
             )
 
 
-def sums_of_splits(estimate: Estimate) -> Iterator[DerivedValue]:
+def sums_of_splits(estimate: EstimateRecord) -> Iterator[DerivedValue]:
     """Yield what is known of two coefficients that the recording does not divide: their sum in its motion.
 
     The second counts as often as makes the sum the best known: a viscous friction by the speed, an offset once.
@@ -159,7 +155,7 @@ def sums_of_splits(estimate: Estimate) -> Iterator[DerivedValue]:
             )
 
 
-def _is_force(estimate: Estimate, name: str) -> bool:
+def _is_force(estimate: EstimateRecord, name: str) -> bool:
     base = name.partition("[")[0]
     parts = ("coulomb", "static", "viscous", "load_friction", "torque_offset", "sensor_offset")
     return (
@@ -167,7 +163,7 @@ def _is_force(estimate: Estimate, name: str) -> bool:
     )
 
 
-def _pair(estimate: Estimate, one: str, other: str) -> Array | None:
+def _pair(estimate: EstimateRecord, one: str, other: str) -> Array | None:
     """The covariance of two parameters, large instead of infinite along what the recording does not determine."""
     information = estimate.information
     if information is None:
@@ -182,7 +178,7 @@ def _pair(estimate: Estimate, one: str, other: str) -> Array | None:
     return np.asarray(covariance[np.ix_(places, places)])
 
 
-def _stribeck_velocity(estimate: Estimate) -> Iterator[DerivedValue]:
+def _stribeck_velocity(estimate: EstimateRecord) -> Iterator[DerivedValue]:
     """The speed at which the static excess has decayed to 1/e."""
     shape = estimate.parameters.get("stribeck")
     if shape is not None and shape.value > 0.0:
@@ -206,7 +202,7 @@ def _slope(stribeck: float) -> float:
 
 
 def _derived(
-    estimate: Estimate,
+    estimate: EstimateRecord,
     *,
     name: str,
     meaning: str,
@@ -236,7 +232,7 @@ def _derived(
     )
 
 
-def _largest_part(estimate: Estimate, slopes: Mapping[str, float]) -> str | None:
+def _largest_part(estimate: EstimateRecord, slopes: Mapping[str, float]) -> str | None:
     sizes: dict[str, float] = {}
     for name, slope in slopes.items():
         for part, size in estimate.parameters[name].systematic.items():
@@ -246,7 +242,7 @@ def _largest_part(estimate: Estimate, slopes: Mapping[str, float]) -> str | None
     return largest if largest is not None and sizes[largest] > 0.0 else None
 
 
-def _error(estimate: Estimate, slopes: Mapping[str, float], matrix: Array) -> float | None:
+def _error(estimate: EstimateRecord, slopes: Mapping[str, float], matrix: Array) -> float | None:
     """Error of a quantity with these slopes by the parameters: √(slopes · matrix · slopes)."""
     free = [name for name in slopes if name in estimate.free]
     held = [name for name in slopes if name not in free and estimate.parameters[name].vary]

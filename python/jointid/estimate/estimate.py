@@ -3,44 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.base.joining import joined
-from jointid.base.values import dataclass
-from jointid.estimate.cross_check import CrossCheck
-from jointid.estimate.delays import Delay
-from jointid.estimate.findings import Finding
 from jointid.estimate.questions import Questions
-from jointid.estimate.selection import Selection
-from jointid.estimate.slow_motion import SlowMotion
-from jointid.estimate.statistics import (
-    Convergence,
-    FrictionCurve,
-    ParameterEstimate,
-    ResidualStatistics,
-)
-from jointid.problem.window_table import Prediction, WindowTable
+from jointid.estimate.statistics import FrictionCurve, ParameterEstimate
+from jointid.problem.window_table import Prediction
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from jointid.estimate.derived import DerivedValue
-    from jointid.estimate.follow_up import FollowUp
     from jointid.estimate.verdict import Verdict
-    from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
-Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Estimate(Questions):
     """The result of `identify`: values, their uncertainty, and findings.
 
@@ -111,29 +94,7 @@ class Estimate(Questions):
     'usable'
     """
 
-    parameters: Mapping[str, ParameterEstimate]
-    free: tuple[str, ...]
-    status: str
-    message: str
-    penalty: float
-    correlation: Array
-    condition: float
-    weakest: tuple[str, ...]
-    covariance: Array
-    residuals: ResidualStatistics
-    windows: WindowTable
-    convergence: Convergence | None
-    findings: tuple[Finding, ...]
-    joint: Joint
-    settings: Mapping[str, Any]
-    seconds: float = field(repr=False)
-    delays: Mapping[str, Delay] = field(default_factory=dict)
-    slow_motion: SlowMotion | None = None
-    selection: Selection | None = field(default=None, repr=False)
-    information: Array | None = field(default=None, repr=False)
-    cross_check: CrossCheck | None = field(default=None, repr=False)
-    within: Mapping[str, float] = field(default_factory=dict, repr=False)
-    follow_up: FollowUp | None = field(default=None, repr=False)
+    __slots__ = ()
 
     def __repr__(self) -> str:
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
@@ -174,11 +135,6 @@ class Estimate(Questions):
         from jointid.estimate.derived import derived_values
 
         return derived_values(self)
-
-    @property
-    def warnings(self) -> tuple[Finding, ...]:
-        """Findings that may bias values or make them unusable."""
-        return tuple(found for found in self.findings if found.severity != "info")
 
     @property
     def verdict(self) -> Verdict:
@@ -312,7 +268,7 @@ class Estimate(Questions):
         from jointid.estimate.json import read_estimate
 
         require_kind("text", text, str)
-        return read_estimate(text)
+        return read_estimate(text, cls)
 
     @classmethod
     def load(cls, path: str | Path) -> Estimate:

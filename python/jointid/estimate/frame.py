@@ -5,19 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.frames import data_frame
+from jointid.estimate.derived import DerivedValue, derived_values
+from jointid.estimate.record import EstimateRecord
+from jointid.estimate.statistics import ParameterEstimate
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from jointid.estimate.derived import DerivedValue
-    from jointid.estimate.estimate import Estimate
-    from jointid.estimate.statistics import ParameterEstimate
 
-
-def parameter_frame(estimate: Estimate) -> pd.DataFrame:
+def parameter_frame(estimate: EstimateRecord) -> pd.DataFrame:
     """Return one row for each parameter and derived quantity: see `Estimate.to_pandas`."""
     rows = [_row(p) for p in estimate.parameters.values()]
-    rows += [_row(each) for each in estimate.derived.values()]
+    rows += [_row(each) for each in derived_values(estimate).values()]
     return data_frame(rows, index="name")
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import squared_half_widths
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.statistics import FrictionCurve
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ def friction_torque(
     return total
 
 
-def friction_curve(estimate: Estimate, velocity: Array, load: float = 0.0) -> FrictionCurve:
+def friction_curve(estimate: EstimateRecord, velocity: Array, load: float = 0.0) -> FrictionCurve:
     """Friction at each velocity, and its pointwise 95 % band by linear propagation of the intervals."""
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}
     terms = estimate.settings["terms"]

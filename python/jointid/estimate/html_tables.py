@@ -8,19 +8,20 @@ from collections.abc import Callable, Mapping
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, table
 from jointid.estimate.answers import purposes
-from jointid.estimate.derived import DerivedValue
-from jointid.estimate.estimate import Estimate
+from jointid.estimate.derived import DerivedValue, derived_values
 from jointid.estimate.findings import Finding
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.tables import HEAD, quality, recorded, rows, shown_name, subject
+from jointid.estimate.verdict import judged
 from jointid.estimate.wording import rounded, two_digits
 
 
-def html_table(estimate: Estimate) -> Html:
+def html_table(estimate: EstimateRecord) -> Html:
     """The parameter table; the digits of a value are those of its standard error."""
     found: list[ParameterEstimate | DerivedValue] = [
         *estimate.parameters.values(),
-        *estimate.derived.values(),
+        *derived_values(estimate).values(),
     ]
     body: list[list[Html | str]] = [
         [row[0], _rounded(p.value, p.stderr) or row[1], *row[2:]]
@@ -34,17 +35,17 @@ def _rounded(value: float, stderr: float | None) -> str:
     return rounded(value, stderr) if stderr is not None and 0.0 < stderr < math.inf else ""
 
 
-def html_windows(estimate: Estimate) -> Html:
+def html_windows(estimate: EstimateRecord) -> Html:
     """What the estimate was made from."""
     return table([list(pair) for pair in recorded(estimate)], class_="facts")
 
 
-def html_quality(estimate: Estimate) -> Html:
+def html_quality(estimate: EstimateRecord) -> Html:
     """Quality of the fit and what it is based on."""
     return table([list(pair) for pair in quality(estimate)], class_="facts")
 
 
-def html_correlation(estimate: Estimate) -> Html:
+def html_correlation(estimate: EstimateRecord) -> Html:
     """The correlation matrix of the free parameters."""
     body: list[list[Html | str]] = [
         [element("th", shown_name(name)), *(f"{x:.2f}" for x in row)]
@@ -53,7 +54,7 @@ def html_correlation(estimate: Estimate) -> Html:
     return table(body, head=["", *map(shown_name, estimate.free)], class_="numbers")
 
 
-def html_shifts(estimate: Estimate) -> Html:
+def html_shifts(estimate: EstimateRecord) -> Html:
     """How each value moves when the windows are halved and doubled."""
     body: list[list[Html | str]] = []
     for p in estimate.parameters.values():
@@ -66,7 +67,7 @@ def html_shifts(estimate: Estimate) -> Html:
 
 
 def html_findings(
-    estimate: Estimate,
+    estimate: EstimateRecord,
     pictures: Mapping[str, str] | None = None,
     action: Callable[[Action], str] = str,
 ) -> Html:
@@ -105,7 +106,7 @@ def _finding(found: Finding, pictures: Mapping[str, str], action: Callable[[Acti
     return element("li", *parts, class_=found.severity)
 
 
-def html_summary(estimate: Estimate) -> Html:
+def html_summary(estimate: EstimateRecord) -> Html:
     """What a notebook shows for an estimate."""
     r = estimate.residuals
     caption = (
@@ -114,7 +115,7 @@ def html_summary(estimate: Estimate) -> Html:
     )
     if estimate.selection is not None:
         caption += f"; chosen: {estimate.selection.sentence}"
-    lines = [f"{subject(estimate)}: {estimate.verdict.level}", *purposes(estimate.verdict)]
+    lines = [f"{subject(estimate)}: {judged(estimate).level}", *purposes(judged(estimate))]
     return element(
         "div",
         element("p", element("b", lines[0]), *(f"; {each.strip()}" for each in lines[1:])),

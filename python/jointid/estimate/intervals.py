@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from jointid.estimate.estimate import Estimate
-    from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.record import EstimateRecord
+from jointid.estimate.statistics import ParameterEstimate
 
 Array = NDArray[np.float64]
 
@@ -28,7 +26,7 @@ def interval_part(p: ParameterEstimate) -> float:
     return math.hypot(*(size for name, size in p.systematic.items() if name not in BESIDE))
 
 
-def quantile_of(estimate: Estimate) -> float:
+def quantile_of(estimate: EstimateRecord) -> float:
     """Return the largest quantile of the parameters' intervals, in standard errors; at least the normal one."""
     found = [NORMAL]
     for p in estimate.parameters.values():
@@ -38,7 +36,7 @@ def quantile_of(estimate: Estimate) -> float:
     return max(found)
 
 
-def half_widths(estimate: Estimate, *, without: str = "") -> Array:
+def half_widths(estimate: EstimateRecord, *, without: str = "") -> Array:
     """Return half of each free parameter's interval, in its standard errors by chance: the normal quantile or more.
 
     Each parameter's interval has its own quantile and its own systematic part; the part `without` is left out.
@@ -60,7 +58,7 @@ def half_widths(estimate: Estimate, *, without: str = "") -> Array:
     return scale
 
 
-def squared_half_widths(estimate: Estimate) -> Array:
+def squared_half_widths(estimate: EstimateRecord) -> Array:
     """Return the covariance of the free parameters, scaled so that its diagonal holds squared half widths.
 
     The correlations are those of the covariance.

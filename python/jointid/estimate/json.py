@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +14,20 @@ from jointid.base.json_layout import json_text
 from jointid.base.schema import Number, read_json
 from jointid.estimate.cross_check import CrossCheck, SecondValue
 from jointid.estimate.delays import Delay
-from jointid.estimate.estimate import Estimate
+from jointid.estimate.derived import derived_values
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.json_schema import ESTIMATE
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.selection import Candidate, Selection
 from jointid.estimate.settings import model_of
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics
+from jointid.estimate.verdict import judged
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.problem.window_table import WindowTable
+
+Saved = TypeVar("Saved", bound=EstimateRecord)
 
 SCHEMA = 3
 """Raised when a reader of the old form would misread the new one. 2: findings in place of warnings; 3: a standard
@@ -39,20 +43,20 @@ _OTHERS = {
 }
 
 
-def write_estimate(estimate: Estimate) -> str:
+def write_estimate(estimate: EstimateRecord) -> str:
     """The estimate as JSON text; an infinite number is the string "inf"."""
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
-    for item in fields(Estimate):
+    for item in fields(EstimateRecord):
         if item.name != "follow_up":  # it holds the recordings, which have files of their own
             document[item.name] = plain(getattr(estimate, item.name))
-    document["derived"] = plain(estimate.derived)
-    document["verdict"] = estimate.verdict.document()
+    document["derived"] = plain(derived_values(estimate))
+    document["verdict"] = judged(estimate).document()
     document["findings"] = documents_of(estimate.findings)
     return json_text(document)
 
 
-def read_estimate(text: str) -> Estimate:
-    """An estimate from its JSON text.
+def read_estimate(text: str, cls: type[Saved]) -> Saved:
+    """An estimate of this class from its JSON text.
 
     Raises
     ------
@@ -73,10 +77,10 @@ def read_estimate(text: str) -> Estimate:
     if schema > SCHEMA:
         reason = f"this jointid reads schemas up to {SCHEMA}"
         raise InputError(reason, value=schema, place="schema", remedy="update jointid")
-    return _estimate(ESTIMATE[schema].read(document, ""))
+    return _estimate(ESTIMATE[schema].read(document, ""), cls)
 
 
-def _estimate(d: Mapping[str, Any]) -> Estimate:
+def _estimate(d: Mapping[str, Any], cls: type[Saved]) -> Saved:
     for place, reason in _contradictions(d):
         raise InputError(reason, place=place)
     try:
@@ -84,7 +88,7 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
     except InputError as error:
         raise error.at("settings.model") from None
     history = d["convergence"]
-    return Estimate(
+    return cls(
         parameters={name: parameter_of(entry) for name, entry in d["parameters"].items()},
         free=tuple(d["free"]),
         status=d["status"],

@@ -12,8 +12,8 @@ from jointid.estimate.derived import sums_of_splits
 from jointid.estimate.wording import two_digits
 
 if TYPE_CHECKING:
-    from jointid.estimate.estimate import Estimate
     from jointid.estimate.findings import Finding
+    from jointid.estimate.record import EstimateRecord
     from jointid.estimate.self_test import SelfTest
     from jointid.estimate.statistics import ParameterEstimate
 
@@ -67,7 +67,7 @@ class Objection:
         return 2 if self.blocking else 3
 
 
-def objections_of(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Objection]:
+def objections_of(estimate: EstimateRecord, self_test: SelfTest | None) -> Iterable[Objection]:
     """Yield what findings, the misfit, a self-test and the given facts' tolerances say."""
     for found in estimate.findings:
         if found.severity != "info" and not _is_of_compensation(found):
@@ -108,7 +108,7 @@ def explained_text(explained: float, of_what: str) -> str:
     return f"the model explains {share} of the variance of {of_what}"
 
 
-def no_values(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:
+def no_values(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable[Objection]:
     """Friction and sensor's values that are none: on a bound, or a part of a sum that nothing in the recording divides.
 
     Where friction differs by direction, an offset is one quantity with it for any motion, and need not be separated.
@@ -150,7 +150,7 @@ def held_on_bounds(findings: Iterable[Finding], asked: Collection[str]) -> Itera
         )
 
 
-def without_friction(estimate: Estimate) -> Iterable[Objection]:
+def without_friction(estimate: EstimateRecord) -> Iterable[Objection]:
     """A torque that holds no friction: of that compensation alone knows nothing."""
     for found in estimate.findings:
         if _is_of_compensation(found):
@@ -178,7 +178,7 @@ def _is_split(p: ParameterEstimate, share: float) -> bool:
     return share > LARGE and half > _HALF * abs(p.value)
 
 
-def hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:
+def hidden_inertia(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable[Objection]:
     """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
     doubted = _named(estimate.findings, "undetermined")
     for name, p in estimate.parameters.items():
@@ -210,11 +210,11 @@ def _named(findings: Iterable[Finding], code: str) -> dict[str, float]:
     }
 
 
-def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:
+def _free(estimate: EstimateRecord, found: Finding) -> tuple[str, ...]:
     return tuple(name for name in found.parameters if name in estimate.parameters)
 
 
-def _named_share(estimate: Estimate) -> float:
+def _named_share(estimate: EstimateRecord) -> float:
     """How much of the misfit a finding has a cause for: the finding says what that moves, so it needs care alone."""
     shares = [
         found.evidence["share"].value
@@ -224,7 +224,7 @@ def _named_share(estimate: Estimate) -> float:
     return min(1.0, max(0.0, *shares)) if shares else 0.0
 
 
-def _explained(estimate: Estimate) -> tuple[float, str]:
+def _explained(estimate: EstimateRecord) -> tuple[float, str]:
     """Share of the variance that the model explains, of held-out torque where there is some.
 
     That torque does not excuse a reading that the model misses: the two do not belong together, e.g. because one of
@@ -238,7 +238,7 @@ def _explained(estimate: Estimate) -> tuple[float, str]:
     return left.r_squared, "the windows"
 
 
-def _missed(estimate: Estimate) -> bool:
+def _missed(estimate: EstimateRecord) -> bool:
     """Whether what was measured is missed altogether: a cause's name excuses no such values."""
     left = estimate.residuals
     return left.r_squared < 0.0 and left.relative**2 > 1.0 - EXPLAINED

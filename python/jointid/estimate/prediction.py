@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.friction_map import shared_value
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.settings import model_of
 from jointid.joint.joint import Joint
 from jointid.problem.problem import Problem
@@ -22,9 +23,6 @@ from jointid.problem.window_table import Prediction, r_squared, relative_residua
 from jointid.recording.mending import mended
 from jointid.recording.recording import Recording
 from jointid.recording.shifting import shifted
-
-if TYPE_CHECKING:
-    from jointid.estimate.estimate import Estimate
 
 Array = NDArray[np.float64]
 
@@ -48,7 +46,7 @@ class FittedModel:
     values: Mapping[str, float]
 
     @classmethod
-    def of(cls, estimate: Estimate) -> FittedModel:
+    def of(cls, estimate: EstimateRecord) -> FittedModel:
         """Return that of an estimate."""
         values = {name: parameter.value for name, parameter in estimate.parameters.items()}
         return cls(settings=estimate.settings, joint=estimate.joint, values=values)
@@ -72,7 +70,7 @@ class PredictedTorque:
     residual: Array
 
 
-def predict(estimate: Estimate, recording: Recording) -> Prediction:
+def predict(estimate: EstimateRecord, recording: Recording) -> Prediction:
     """Predict a recording: see `Estimate.predict`."""
     fitted = FittedModel.of(estimate)
     problem = _posed(fitted, recording)

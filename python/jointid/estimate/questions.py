@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 from jointid.base.joining import joined
+from jointid.estimate.record import EstimateRecord, FollowUp
 
 if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
-    from jointid.estimate.estimate import Estimate
-    from jointid.estimate.follow_up import FollowUp
     from jointid.estimate.self_test import SelfTest
 
 
-class Questions:
+class Questions(EstimateRecord):
     """The questions of an `Estimate`."""
 
     __slots__ = ()
-    if TYPE_CHECKING:
-        follow_up: FollowUp | None
 
     def selftest(self, trials: int = 3, seed: int = 0) -> SelfTest:
         """Test whether known parameters come back from the recorded motion with the noise of the recordings.
@@ -63,7 +60,7 @@ class Questions:
         """
         trials = whole_number("trials", trials, 1, 1000)
         seed = whole_number("seed", seed, 0, 2**64 - 1)
-        return self._with_recordings("selftest").selftest(cast("Estimate", self), trials, seed)
+        return self._with_recordings("selftest").selftest(self, trials, seed)
 
     def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
         """Draw stretches of the recordings anew, and refit the parameters to each draw (block bootstrap).
@@ -97,7 +94,7 @@ class Questions:
         """
         n = whole_number("n", n, 20, 1_000_000)
         seed = whole_number("seed", seed, 0, 2**64 - 1)
-        return self._with_recordings("bootstrap").bootstrap(cast("Estimate", self), n, seed)
+        return self._with_recordings("bootstrap").bootstrap(self, n, seed)
 
     def causes(self, signals: Mapping[str, ArrayLike] | None = None) -> Causes:
         """Say why the model does not fit: causes by name, what they explain, what they move, what to do.
@@ -131,7 +128,7 @@ class Questions:
             raise InputError(
                 "signals by name are expected", argument="signals", value=type(signals).__name__
             )
-        return self._with_recordings("causes").causes(cast("Estimate", self), signals or {})
+        return self._with_recordings("causes").causes(self, signals or {})
 
     def next_motion(
         self,

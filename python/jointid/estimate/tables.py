@@ -6,10 +6,11 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
-from jointid.estimate.derived import DerivedValue
-from jointid.estimate.estimate import Estimate
+from jointid.estimate.derived import DerivedValue, derived_values
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.verdict import judged
 from jointid.estimate.window_views import fitted_signal
 from jointid.estimate.wording import number, percent, rounded, two_digits
 from jointid.joint.units import velocity_label
@@ -19,7 +20,7 @@ HEAD = ("parameter", "value", "± std. error", "± systematic", "95 % interval",
 Row = tuple[str, str, str, str, str, str, str]
 
 
-def subject(estimate: Estimate) -> str:
+def subject(estimate: EstimateRecord) -> str:
     """The joint's name for a title, and how many recordings the estimate is made from, of several."""
     runs = estimate.settings["recordings"]
     name = estimate.joint.name or "joint"
@@ -50,10 +51,10 @@ def shown_name(name: str) -> str:
     return name
 
 
-def rows(estimate: Estimate) -> list[Row]:
+def rows(estimate: EstimateRecord) -> list[Row]:
     """The parameter table: one row a parameter, then one a derived quantity."""
     table = [_row(p, remark(p)) for p in estimate.parameters.values()]
-    return table + [_row(each, f"= {each.formula}") for each in estimate.derived.values()]
+    return table + [_row(each, f"= {each.formula}") for each in derived_values(estimate).values()]
 
 
 def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
@@ -75,7 +76,7 @@ def systematic(p: ParameterEstimate | DerivedValue) -> str:
     return f"{two_digits(p.systematic_total)} ({p.largest_part.replace('_', ' ')})"
 
 
-def quality(estimate: Estimate) -> list[tuple[str, str]]:
+def quality(estimate: EstimateRecord) -> list[tuple[str, str]]:
     """Quality of the fit and what it is based on, as label and text."""
     r = estimate.residuals
     unit = residual_unit(estimate.settings)
@@ -106,7 +107,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
     ]
 
 
-def second_look(estimate: Estimate) -> str:
+def second_look(estimate: EstimateRecord) -> str:
     """The values of the second look, or why there are none, in a line."""
     check = estimate.cross_check
     if check is None or check.reason:
@@ -117,7 +118,7 @@ def second_look(estimate: Estimate) -> str:
     return f"plain least squares {verdict}: {', '.join(values)}"
 
 
-def recorded(estimate: Estimate) -> list[tuple[str, str]]:
+def recorded(estimate: EstimateRecord) -> list[tuple[str, str]]:
     """What the estimate was made from, as label and text: recordings, and what the windows cover."""
     windows, r = estimate.windows, estimate.residuals
     kind = estimate.settings["kind"]
@@ -140,7 +141,7 @@ def recorded(estimate: Estimate) -> list[tuple[str, str]]:
     return [*lines, ("standing still", f"{percent(r.standing)} of the samples")]
 
 
-def _refinements(estimate: Estimate) -> list[tuple[str, str]]:
+def _refinements(estimate: EstimateRecord) -> list[tuple[str, str]]:
     """What was found about the data before the search, and done about it."""
     lines = []
     if estimate.delays:
@@ -161,7 +162,7 @@ def _refinements(estimate: Estimate) -> list[tuple[str, str]]:
     return lines
 
 
-def strongest_correlation(estimate: Estimate) -> str:
+def strongest_correlation(estimate: EstimateRecord) -> str:
     """The pair of parameters with the strongest correlation."""
     size = np.abs(np.triu(estimate.correlation, 1))
     if size.size < 2:
@@ -171,7 +172,7 @@ def strongest_correlation(estimate: Estimate) -> str:
     return f"strongest {estimate.correlation[first, second]:.2f}, between {pair}"
 
 
-def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
+def text_report(estimate: EstimateRecord, action: Callable[[Action], str] = str) -> str:
     """The estimate as text.
 
     Parameters
@@ -185,7 +186,7 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     lines = [
         f"jointid estimate — {subject(estimate)}",
         "",
-        *estimate.verdict.lines(),
+        *judged(estimate).lines(),
         "",
     ]
     for index, row in enumerate(table):
@@ -207,7 +208,7 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     return printable("\n".join(lines))
 
 
-def _findings(estimate: Estimate, action: Callable[[Action], str]) -> list[str]:
+def _findings(estimate: EstimateRecord, action: Callable[[Action], str]) -> list[str]:
     """One line a finding; between blocking ones and warnings, how many of these may be effects."""
     lines = [
         f"{found.severity} ({found.code}): {found.worded(action)}" for found in estimate.findings

@@ -19,7 +19,7 @@ from jointid.estimate.objections import (
 from jointid.estimate.wording import percent
 
 if TYPE_CHECKING:
-    from jointid.estimate.estimate import Estimate
+    from jointid.estimate.record import EstimateRecord
     from jointid.estimate.self_test import SelfTest
     from jointid.estimate.statistics import ParameterEstimate
 
@@ -128,7 +128,7 @@ class Verdict:
 
 
 def judged(
-    estimate: Estimate, self_test: SelfTest | None = None, parameters: Iterable[str] = ()
+    estimate: EstimateRecord, self_test: SelfTest | None = None, parameters: Iterable[str] = ()
 ) -> Verdict:
     """Judge an estimate by its findings.
 

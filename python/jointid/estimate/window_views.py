@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.estimate.record import EstimateRecord
 from jointid.joint.units import torque_unit
 from jointid.problem.window_table import WindowTable
 from jointid.recording.order_statistics import distinct, median
 
-if TYPE_CHECKING:
-    from jointid.estimate.estimate import Estimate
-
 Array = NDArray[np.float64]
 
 
-def fitted_signal(estimate: Estimate) -> tuple[str, str]:
+def fitted_signal(estimate: EstimateRecord) -> tuple[str, str]:
     """Return the quantity that the model is fitted to, and its unit."""
     if estimate.settings["residual"] != "torque":
         return "sensor reading", "sensor units"

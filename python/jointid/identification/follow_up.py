@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Cause, Causes
     from jointid.estimate.estimate import Estimate
+    from jointid.estimate.record import EstimateRecord
     from jointid.estimate.self_test import SelfTest
     from jointid.identification.search.domain import SearchDomain
     from jointid.identification.search.search import Search
@@ -54,7 +55,7 @@ class EstimateSource:
     again: Callable[[tuple[Recording, ...]], Estimate]
     attributed: Callable[[], Estimate] | None = None
 
-    def selftest(self, estimate: Estimate, trials: int, seed: int) -> SelfTest:
+    def selftest(self, estimate: EstimateRecord, trials: int, seed: int) -> SelfTest:
         """Inject known parameters into the recorded motion, and identify them again."""
         from jointid.identification.self_test.testing import self_test
 
@@ -62,14 +63,14 @@ class EstimateSource:
             self.problem, self.domain, self.windows, self.again, estimate, trials, seed
         )
 
-    def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
+    def bootstrap(self, estimate: EstimateRecord, n: int, seed: int) -> Bootstrap:
         """Draw stretches of the recordings anew, and refit the parameters to each draw."""
         penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
         from jointid.identification.inference.bootstrap import block_bootstrap
 
         return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
 
-    def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:
+    def causes(self, estimate: EstimateRecord, signals: Mapping[str, ArrayLike]) -> Causes:
         """Attribute the misfit of what was fitted, behind the causes that were taken away before."""
         from jointid.identification.causes.causes import attributed
 

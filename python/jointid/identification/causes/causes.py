@@ -11,7 +11,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
-from jointid.estimate.estimate import Estimate
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import listed_candidates
@@ -174,7 +174,7 @@ def _fitted(
 def attributed(
     problem: Problem,
     penalty: _core.Penalty,
-    estimate: Estimate,
+    estimate: EstimateRecord,
     signals: Mapping[str, ArrayLike],
     times: Array,
 ) -> Causes:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.balance.resampling import cells_of, draws
 from jointid.estimate.bootstrap import Bootstrap, BootstrapParameter
-from jointid.estimate.estimate import Estimate
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.student import quantile
 from jointid.identification.inference.motion import Motion
@@ -26,7 +26,7 @@ def block_bootstrap(
     problem: Problem,
     penalty: _core.Penalty,
     domain: SearchDomain,
-    estimate: Estimate,
+    estimate: EstimateRecord,
     count: int,
     seed: int,
 ) -> Bootstrap:

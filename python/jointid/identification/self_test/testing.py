@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.record import EstimateRecord
 from jointid.estimate.self_test import SelfTest, SelfTestRow
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.search.domain import SearchDomain
@@ -30,7 +31,7 @@ def self_test(
     domain: SearchDomain,
     windows: Windows,
     again: Callable[[tuple[Recording, ...]], Estimate],
-    estimate: Estimate,
+    estimate: EstimateRecord,
     trials: int,
     seed: int,
 ) -> SelfTest:
@@ -66,7 +67,7 @@ def self_test(
 
 
 def _drawn(
-    estimate: Estimate, domain: SearchDomain, theta: Array, rng: np.random.Generator
+    estimate: EstimateRecord, domain: SearchDomain, theta: Array, rng: np.random.Generator
 ) -> Array:
     """Return parameters from the intervals of the estimate, correlated as its errors are."""
     truth = theta.copy()
