@@ -12,7 +12,7 @@ import pytest
 from moving_joints import recorded, sines, torques
 
 import jointid as jid
-from jointid.joints.result import JointResult
+from jointid.joints.record import JointResult
 from jointid.joints.tables import value_with_error
 
 

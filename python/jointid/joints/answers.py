@@ -11,7 +11,7 @@ from jointid.estimate.answers import cut, findings, in_line, joint_lines
 from jointid.estimate.findings import Finding
 from jointid.estimate.objections import acts_against_motion
 from jointid.estimate.verdict import LEVELS
-from jointid.joints.result import FAILED, JointEstimates, JointResult
+from jointid.joints.record import FAILED, JointEstimatesRecord, JointResult
 
 _SHOWN = 3  # values in a line
 _FINDINGS = 1
@@ -20,7 +20,7 @@ _ORDER = (*LEVELS, FAILED)
 
 
 def answer(
-    result: JointEstimates,
+    result: JointEstimatesRecord,
     action: Callable[[Action, str], str] = lambda action, _: str(action),
     error: Callable[[InputError], str] = str,
     saved: str = "",
@@ -69,7 +69,7 @@ def _row(result: JointResult) -> list[str]:
     return [result.name, _level(result), *cells, *[""] * (_SHOWN - len(cells))]
 
 
-def _findings(result: JointEstimates) -> list[tuple[str, Finding]]:
+def _findings(result: JointEstimatesRecord) -> list[tuple[str, Finding]]:
     """All joints' findings with the joint's name, the most severe first; what is said of all in the first line not."""
     found = [
         (name, each)
@@ -80,7 +80,7 @@ def _findings(result: JointEstimates) -> list[tuple[str, Finding]]:
     return sorted(found, key=lambda pair: _SEVERITIES.index(pair[1].severity))
 
 
-def _failures(result: JointEstimates, error: Callable[[InputError], str]) -> list[str]:
+def _failures(result: JointEstimatesRecord, error: Callable[[InputError], str]) -> list[str]:
     """Why the first joint failed, and which others did."""
     failed = [each for each in result.results.values() if each.error is not None]
     if not failed or failed[0].error is None:
@@ -90,7 +90,7 @@ def _failures(result: JointEstimates, error: Callable[[InputError], str]) -> lis
     return [f"joint {failed[0].name} failed: {error(failed[0].error)}{also}"]
 
 
-def _coupled(result: JointEstimates) -> list[str]:
+def _coupled(result: JointEstimatesRecord) -> list[str]:
     """The first thing that a joint explains of another, and how many there are."""
     sentences = result.sentences()
     more = f", and {len(sentences) - 1} more" if len(sentences) > 1 else ""

@@ -11,13 +11,13 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.estimate.json import write_estimate
-from jointid.joints.result import JointEstimates, JointResult
+from jointid.joints.record import JointEstimatesRecord, JointResult
 
 SCHEMA = 1
 KIND = "jointid joints"
 
 
-def document_of(result: JointEstimates) -> dict[str, Any]:
+def document_of(result: JointEstimatesRecord) -> dict[str, Any]:
     """Return the result in JSON types; each joint's estimate is the document of its own file."""
     return {
         "schema": SCHEMA,
@@ -41,12 +41,12 @@ def _of_joint(result: JointResult) -> dict[str, Any]:
     }
 
 
-def json_of(result: JointEstimates) -> str:
+def json_of(result: JointEstimatesRecord) -> str:
     """Return the result as JSON text."""
     return json.dumps(document_of(result), indent=1, ensure_ascii=False, allow_nan=False)
 
 
-def save_json(result: JointEstimates, path: str | Path) -> Path:
+def save_json(result: JointEstimatesRecord, path: str | Path) -> Path:
     """Write the result as JSON: see `JointEstimates.save`."""
     target = require_path("path", path)
     if target.suffix != ".json":

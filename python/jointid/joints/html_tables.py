@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from jointid.base.html import Html, element, table
-from jointid.joints.result import JointEstimates
+from jointid.joints.record import JointEstimatesRecord
 from jointid.joints.tables import couplings, head, notes, rows
 
 
-def html_table(result: JointEstimates) -> Html:
+def html_table(result: JointEstimatesRecord) -> Html:
     """The table of all joints."""
     return table([list(row) for row in rows(result)], head=head(result), class_="joints")
 
 
-def html_couplings(result: JointEstimates) -> Html:
+def html_couplings(result: JointEstimatesRecord) -> Html:
     """What the joints explain of each other, and what holds for the whole table."""
     lines = [*notes(result), *couplings(result)]
     return element("ul", *(element("li", line) for line in lines))
 
 
-def html_shares(result: JointEstimates) -> Html:
+def html_shares(result: JointEstimatesRecord) -> Html:
     """Shares of the residuals: one row a joint, one column for each other one that explains something."""
     explaining = {s.joint for each in result.results.values() for s in each.others}
     others = [*(name for name in result.results if name in explaining)]
@@ -39,7 +39,7 @@ def html_shares(result: JointEstimates) -> Html:
     )
 
 
-def html_summary(result: JointEstimates) -> Html:
+def html_summary(result: JointEstimatesRecord) -> Html:
     """What a notebook shows for several joints."""
     title = element("b", f"jointid estimates — {result.name or 'robot'}")
     return element("div", title, html_table(result), html_couplings(result))

@@ -17,7 +17,8 @@ from jointid.joint.model import Model, ModelName
 from jointid.joint.parameters import Parameter
 from jointid.joints.citing import cited
 from jointid.joints.coupling import shares_of_others
-from jointid.joints.result import FAILED, IDENTIFIED, JointEstimates, JointResult
+from jointid.joints.record import FAILED, IDENTIFIED, JointResult
+from jointid.joints.result import JointEstimates
 from jointid.problem.terms import Residual
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording

@@ -2,81 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import Any
 
-from jointid.base.errors import InputError
-from jointid.base.values import dataclass
-from jointid.estimate.estimate import Estimate
-from jointid.joints.coupling import Share
-from jointid.joints.signals import MEANING
-from jointid.recording.wide.joint_names import joint_named
-
-IDENTIFIED, FAILED = "identified", "failed"
+from jointid.joints.record import JointEstimatesRecord
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointResult:
-    """What became of one joint.
-
-    Attributes
-    ----------
-    name : str
-    status : str
-        "identified", or "failed" when its recording cannot be used.
-    estimate : Estimate or None
-        None if it failed.
-    error : InputError or None
-        Why it failed.
-    side : str
-        Side of the gear that the values are on: "joint", or "motor" without a known gear ratio.
-    others : tuple of Share
-        What the other joints explain of its residual, in the order in which they were found.
-    """
-
-    name: str
-    status: str
-    estimate: Estimate | None = None
-    error: InputError | None = None
-    side: str = "joint"
-    others: tuple[Share, ...] = ()
-
-    @property
-    def explained(self) -> float:
-        """Share of the residual that other joints explain for certain, 0 to 1."""
-        return min(1.0, float(sum(share.share for share in self.others if share.certain)))
-
-    def sentences(self) -> tuple[str, ...]:
-        """What the other joints explain, in words.
-
-        Examples
-        --------
-        >>> share = Share(joint="6", by="speed", share=0.41, scale=0.07)
-        >>> JointResult(name="5", status="identified", others=(share,)).sentences()
-        ("joint 6's speed explains 41 % of joint 5's residual (friction of a coupled drive)",)
-        """
-        return tuple(_sentence(self.name, share) for share in self.others)
-
-
-def _sentence(name: str, share: Share) -> str:
-    alike = ""
-    if share.alike:
-        others = " and ".join(f"joint {each}" for each in share.alike)
-        alike = f"; {others} would explain it as well: they move alike"
-    if share.own_too:
-        alike += f"; joint {name}'s own motion explains nearly as much"
-    verb = "explains" if share.certain else "explains perhaps"
-    percent = max(1, round(100.0 * share.share))
-    return (
-        f"joint {share.joint}'s {share.by} {verb} {percent} % of joint {name}'s residual "
-        f"({MEANING[share.by]}{alike})"
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointEstimates(Mapping[str, Estimate]):
+class JointEstimates(JointEstimatesRecord):
     """Several joints identified from one recording, each for itself; a mapping from names to estimates.
 
     A joint that failed is not in the mapping; `results` has it with its reason.
@@ -97,18 +29,7 @@ class JointEstimates(Mapping[str, Estimate]):
     (['1', '2'], 'joint 1')
     """
 
-    results: Mapping[str, JointResult]
-    name: str = ""
-    seconds: float = field(default=0.0, repr=False, compare=False)
-
-    @property
-    def failed(self) -> tuple[str, ...]:
-        """Names of the joints whose recordings cannot be used."""
-        return tuple(name for name, each in self.results.items() if each.status == FAILED)
-
-    def sentences(self) -> tuple[str, ...]:
-        """What the joints explain of each other's residuals, in words."""
-        return tuple(text for each in self.results.values() for text in each.sentences())
+    __slots__ = ()
 
     def report(self, verbose: bool = False) -> str:
         """Return the verdict, a line for each joint, and the first finding, as text.
@@ -148,21 +69,6 @@ class JointEstimates(Mapping[str, Estimate]):
         from jointid.joints.document import save_json
 
         return save_json(self, path)
-
-    def __getitem__(self, joint: str | int) -> Estimate:
-        try:
-            result = self.results[joint_named(joint, list(self.results), self.name or "estimates")]
-        except InputError as error:
-            raise KeyError(str(error)) from None
-        if result.estimate is None:
-            raise KeyError(f"joint {joint} failed: {result.error}")
-        return result.estimate
-
-    def __iter__(self) -> Iterator[str]:
-        return (name for name, each in self.results.items() if each.estimate is not None)
-
-    def __len__(self) -> int:
-        return sum(each.estimate is not None for each in self.results.values())
 
     def __str__(self) -> str:
         return self.report()

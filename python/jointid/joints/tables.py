@@ -13,13 +13,13 @@ from jointid.base.text_table import aligned
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import rounded, two_digits
-from jointid.joints.result import JointEstimates, JointResult
+from jointid.joints.record import JointEstimatesRecord, JointResult
 
 _NOTHING = 1e-9  # of a free value without an error: what a bound at zero leaves
 _NO_COUPLING = "no joint's residual is explained by the others beyond chance"
 
 
-def shown_parameters(result: JointEstimates) -> list[str]:
+def shown_parameters(result: JointEstimatesRecord) -> list[str]:
     """Names of the parameters that the table shows: friction and inertia, as far as a joint has them."""
     present = {name for estimate in result.values() for name in estimate.parameters}
     friction = [
@@ -28,7 +28,7 @@ def shown_parameters(result: JointEstimates) -> list[str]:
     return [name for name in dict.fromkeys([*friction, "inertia"]) if name in present]
 
 
-def head(result: JointEstimates) -> list[str]:
+def head(result: JointEstimatesRecord) -> list[str]:
     """The table's head."""
     units = {
         name: parameter.unit
@@ -39,7 +39,7 @@ def head(result: JointEstimates) -> list[str]:
     return ["joint", "model", *shown, "residual", "others explain", "warnings"]
 
 
-def rows(result: JointEstimates) -> list[list[str]]:
+def rows(result: JointEstimatesRecord) -> list[list[str]]:
     """One row a joint, in the order of the head."""
     names = shown_parameters(result)
     return [_row(each, names) for each in result.results.values()]
@@ -73,7 +73,7 @@ def value_with_error(parameter: ParameterEstimate | None) -> str:
     return f"{rounded(parameter.value, parameter.stderr)} ± {two_digits(parameter.stderr)}"
 
 
-def notes(result: JointEstimates) -> list[str]:
+def notes(result: JointEstimatesRecord) -> list[str]:
     """What holds for the whole table."""
     lines = []
     at_motor = [name for name, each in result.results.items() if each.side == "motor"]
@@ -85,7 +85,7 @@ def notes(result: JointEstimates) -> list[str]:
     return lines
 
 
-def couplings(result: JointEstimates) -> list[str]:
+def couplings(result: JointEstimatesRecord) -> list[str]:
     """What the joints explain of each other's residuals, a sentence each."""
     if len(result.results) < 2 and not result.sentences():
         return []
@@ -93,7 +93,7 @@ def couplings(result: JointEstimates) -> list[str]:
 
 
 def text_report(
-    result: JointEstimates,
+    result: JointEstimatesRecord,
     action: Callable[[Action, str], str] = lambda action, _: str(action),
     error: Callable[[InputError], str] = str,
 ) -> str:

@@ -10,7 +10,8 @@ from jointid.base.html import Html, element, page
 from jointid.estimate.html_tables import html_findings, html_quality
 from jointid.estimate.html_tables import html_table as html_parameters
 from jointid.joints.html_tables import html_couplings, html_shares, html_table
-from jointid.joints.result import JointEstimates, JointResult
+from jointid.joints.record import JointResult
+from jointid.joints.result import JointEstimates
 from jointid.report.answering import verdict_lines
 from jointid.report.estimate_pictures import friction_picture, windows_picture
 from jointid.report.html import shown_by
