@@ -37,15 +37,19 @@ class Group:
 def _directive(name: str) -> str:
     found = named(name)
     if inspect.isclass(found):
-        options = (
-            ["   :members:", "   :undoc-members:"]
-            if issubclass(found, Exception)
-            else ["   :members:"]
-        )
+        # Fields and methods may stand in a class that has no page.
+        foreign = [each.__name__ for each in found.__mro__ if not _is_ours(each)]
+        options = ["   :members:", f"   :inherited-members: {', '.join(foreign)}"]
+        if issubclass(found, Exception):
+            options.append("   :undoc-members:")
         return "\n".join([f".. autoclass:: {name}", *options])
     if callable(found):
         return f".. autofunction:: {name}"
     return f".. autodata:: {name}\n   :no-value:"
+
+
+def _is_ours(kind: type) -> bool:
+    return kind.__module__.startswith("jointid.")
 
 
 def named(name: str) -> object:
