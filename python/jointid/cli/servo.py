@@ -77,7 +77,8 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
         if rolled is not None:
             print(f"\nRollouts of the closed loop, against the logs\n{rolled.report()}")
     else:
-        print(answer(found, wording.of_command, wording.saved_file, rolled))
+        error = None if rolled is None else rolled.median
+        print(answer(found, wording.of_command, wording.saved_file, error))
     joint_file = arguments.save if arguments.save != saved else None
     say_written(report=arguments.report, estimate=saved, joint_file=joint_file)
     return required({"": found.verdict}, arguments)

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.estimate.answers import findings, purposes, values
-from jointid.servo.estimate import ServoEstimate
 from jointid.servo.layout import MOTOR
-
-if TYPE_CHECKING:
-    from jointid.servo.rolling_out import Rollout
+from jointid.servo.record import ServoEstimateRecord
+from jointid.servo.verdict import judged_servo
 
 _FINDINGS = 1
 # What a simulator needs, before what it follows from.
@@ -22,17 +19,17 @@ _FIRST, _LAST = (*MOTOR, "inertia"), ("torque_per_voltage", "back_emf")
 
 
 def answer(
-    estimate: ServoEstimate,
+    estimate: ServoEstimateRecord,
     action: Callable[[Action], str] = str,
     saved: str = "",
-    rolled: Rollout | None = None,
+    rollout_error: float | None = None,
 ) -> str:
     """Return the answer in at most 15 lines; `action` words an advice, `saved` is the file that has the estimate.
 
-    `rolled` is the rollout of the runs, if there is one.
+    `rollout_error` is the median of the runs' rollouts, if there is one [rad].
     """
     count = len(estimate.runs)
-    verdict, runs = estimate.verdict, f"{count} run{'s' * (count != 1)}"
+    verdict, runs = judged_servo(estimate), f"{count} run{'s' * (count != 1)}"
     parameters = estimate.parameters
     ordered = dict.fromkeys([*_FIRST, *(n for n in parameters if n not in _LAST), *_LAST])
     lines = [
@@ -40,7 +37,7 @@ def answer(
         *purposes(verdict),
         *values([parameters[name] for name in ordered]),
     ]
-    if rolled is not None:
-        lines.append(f"rollout: {np.degrees(rolled.median):.2f}° from the log, median of {runs}")
+    if rollout_error is not None:
+        lines.append(f"rollout: {np.degrees(rollout_error):.2f}° from the log, median of {runs}")
     lines += findings(estimate.findings, action, _FINDINGS, saved)
     return printable("\n".join(lines))

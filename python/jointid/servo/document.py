@@ -11,11 +11,13 @@ from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.estimate.json import documents_of, plain
 from jointid.joint.joint_file import joint_document
-from jointid.servo.estimate import ServoEstimate
+from jointid.servo.joint_from_estimate import identified_joint
 from jointid.servo.reading_back import KIND, SCHEMA, SETTINGS
+from jointid.servo.record import ServoEstimateRecord
+from jointid.servo.verdict import judged_servo
 
 
-def document_of(estimate: ServoEstimate) -> dict[str, Any]:
+def document_of(estimate: ServoEstimateRecord) -> dict[str, Any]:
     """Return the estimate in JSON types; an infinite number is the text "inf"."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
@@ -23,7 +25,7 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
         "joint": joint_document(estimate.joint),
         "parameters": {name: plain(p) for name, p in estimate.parameters.items()},
         "findings": documents_of(estimate.findings),
-        "verdict": estimate.verdict.document(),
+        "verdict": judged_servo(estimate).document(),
         "rms": estimate.rms,
         "relative_residual": estimate.relative_residual,
         "settings": {
@@ -34,16 +36,16 @@ def document_of(estimate: ServoEstimate) -> dict[str, Any]:
     return document
 
 
-def json_of(estimate: ServoEstimate) -> str:
+def json_of(estimate: ServoEstimateRecord) -> str:
     """Return the estimate as JSON text."""
     return json.dumps(document_of(estimate), indent=1, ensure_ascii=False, allow_nan=False)
 
 
-def save(estimate: ServoEstimate, path: str | Path) -> Path:
+def save(estimate: ServoEstimateRecord, path: str | Path) -> Path:
     """Write the estimate: see `ServoEstimate.save`."""
     target = require_path("path", path)
     if target.suffix == ".toml":
-        estimate.identified.save(target)
+        identified_joint(estimate).save(target)
     elif target.suffix == ".json":
         write_whole(target, json_of(estimate).encode())
     else:

@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.notebook import Shown
 from jointid.base.schema import read_text
-from jointid.base.values import dataclass
-from jointid.estimate.findings import Finding
-from jointid.estimate.statistics import ParameterEstimate
-from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
+from jointid.servo.record import ServoEstimateRecord
 
 if TYPE_CHECKING:
     from jointid.estimate.verdict import Verdict
 
-Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ServoEstimate(Shown):
+class ServoEstimate(ServoEstimateRecord, Shown):
     """A servo as identified.
 
     Attributes
@@ -72,30 +61,7 @@ class ServoEstimate(Shown):
         Wall time.
     """
 
-    joint: Joint
-    parameters: Mapping[str, ParameterEstimate]
-    findings: tuple[Finding, ...]
-    model: str
-    values: Array = field(repr=False)
-    draws: Array = field(repr=False)
-    load_friction: bool
-    separable: bool
-    lead: float
-    lead_found: bool
-    command_lag: float | None
-    windows: int
-    window: float
-    slowest: float
-    runs: tuple[str, ...]
-    moving: tuple[float, ...] = field(repr=False)
-    rms: float
-    relative_residual: float
-    seconds: float
-
-    @property
-    def warnings(self) -> tuple[Finding, ...]:
-        """The findings that may bias values or make them unusable."""
-        return tuple(each for each in self.findings if each.severity != "info")
+    __slots__ = ()
 
     @property
     def verdict(self) -> Verdict:
@@ -103,22 +69,6 @@ class ServoEstimate(Shown):
         from jointid.servo.verdict import judged_servo
 
         return judged_servo(self)
-
-    def __getitem__(self, name: str) -> float:
-        """Return a parameter's value.
-
-        Raises
-        ------
-        InputError
-            No such parameter.
-        """
-        if name not in self.parameters:
-            raise InputError(
-                f"there is no such parameter; {suggestion(name, list(self.parameters))}",
-                argument="name",
-                value=name,
-            )
-        return self.parameters[name].value
 
     @property
     def identified(self) -> Joint:
@@ -177,7 +127,7 @@ class ServoEstimate(Shown):
         """
         from jointid.servo.reading_back import read_servo_estimate
 
-        return read_servo_estimate(text)
+        return read_servo_estimate(text, cls)
 
     @classmethod
     def load(cls, path: str | Path) -> ServoEstimate:

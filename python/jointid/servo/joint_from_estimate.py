@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.servo.layout import LAYOUTS, LOAD_FRICTION
-
-if TYPE_CHECKING:
-    from jointid.servo.estimate import ServoEstimate
+from jointid.servo.record import ServoEstimateRecord
 
 
-def identified_joint(estimate: ServoEstimate) -> Joint:
+def identified_joint(estimate: ServoEstimateRecord) -> Joint:
     """Return the joint with motor, inertia and friction as identified."""
     joint = estimate.joint
     names = [t.name for t in (*LAYOUTS[estimate.model].friction, LOAD_FRICTION)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -22,8 +22,10 @@ from jointid.base.schema import (
 from jointid.estimate.json import empty_calls, finding_of, parameter_of
 from jointid.estimate.json_schema import FINDING, PARAMETER
 from jointid.joint.joint_file import joint_from_document
-from jointid.servo.estimate import ServoEstimate
 from jointid.servo.layout import DEFAULT_MODEL, LAYOUTS, LOAD_FRICTION, MOTOR
+from jointid.servo.record import ServoEstimateRecord
+
+Saved = TypeVar("Saved", bound=ServoEstimateRecord)
 
 SCHEMA = 1
 KIND = "jointid servo"
@@ -76,8 +78,8 @@ _ESTIMATE = Record(
 )
 
 
-def read_servo_estimate(text: str) -> ServoEstimate:
-    """Return the estimate that a JSON text holds; see `ServoEstimate.load`."""
+def read_servo_estimate(text: str, cls: type[Saved]) -> Saved:
+    """Return the estimate of this class that a JSON text holds; see `ServoEstimate.load`."""
     document = read_json(text)
     if not isinstance(document, dict) or document.get("kind") != KIND:
         raise InputError(
@@ -93,7 +95,7 @@ def read_servo_estimate(text: str) -> ServoEstimate:
         raise InputError("a servo's input is a voltage", place="joint.drive.input")
     settings, parameters = d["settings"], d["parameters"]
     names = LAYOUTS[settings["model"]].names
-    return ServoEstimate(
+    return cls(
         joint=joint,
         parameters={name: parameter_of(entry) for name, entry in parameters.items()},
         findings=tuple(finding_of(each) for each in d["findings"]),

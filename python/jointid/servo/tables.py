@@ -15,9 +15,10 @@ from jointid.base.error_text import printable
 from jointid.base.text_table import aligned
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
-from jointid.servo.estimate import ServoEstimate
 from jointid.servo.layout import BACK_EMF, HELD, LOAD_FRICTION, MOTOR, TERMS, TORQUE
+from jointid.servo.record import ServoEstimateRecord
 from jointid.servo.solving import Unknowns
+from jointid.servo.verdict import judged_servo
 
 Array = NDArray[np.float64]
 
@@ -113,7 +114,7 @@ def head() -> list[str]:
     return ["parameter", "value", "± std. error", "95 % interval", "unit", "meaning"]
 
 
-def rows(estimate: ServoEstimate) -> list[list[str]]:
+def rows(estimate: ServoEstimateRecord) -> list[list[str]]:
     """One row a parameter."""
     return [
         [p.name, f"{p.value:.4g}", _error(p), _interval(p), p.unit or "1", p.meaning]
@@ -137,7 +138,7 @@ def _interval(p: ParameterEstimate) -> str:
     return f"{p.interval[0]:.3g} … {p.interval[1]:.3g}"
 
 
-def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) -> str:
+def text_report(estimate: ServoEstimateRecord, action: Callable[[Action], str] = str) -> str:
     """Return the report that `ServoEstimate.report` shows; `action` words an advice."""
     name = estimate.joint.name or "servo"
     used = float(np.mean(estimate.moving))
@@ -146,7 +147,7 @@ def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) 
         f"{estimate.windows} windows of {1e3 * estimate.window:g} ms, "
         f"{100.0 * used:.0f} % of the time used",
         "",
-        *estimate.verdict.lines(),
+        *judged_servo(estimate).lines(),
         "",
         *aligned([head(), *rows(estimate)]),
         "",
@@ -162,14 +163,14 @@ def text_report(estimate: ServoEstimate, action: Callable[[Action], str] = str) 
     return printable("\n".join(lines))
 
 
-def _lead(estimate: ServoEstimate) -> str:
+def _lead(estimate: ServoEstimateRecord) -> str:
     shown = f"a row's position is {1e3 * estimate.lead:.1f} ms older than its duty"
     if estimate.lead_found:
         return f"{shown} (found)"
     return f"{shown} (given)" if estimate.lead else "position and duty are taken as simultaneous"
 
 
-def _command(estimate: ServoEstimate) -> list[str]:
+def _command(estimate: ServoEstimateRecord) -> list[str]:
     if estimate.command_lag is None:
         return []
     if estimate.command_lag == 0.0:

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from jointid.estimate.objections import EXPLAINED, Objection, explained_text
 from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
-from jointid.servo.estimate import ServoEstimate
 from jointid.servo.layout import LOAD_FRICTION, SPEED_FRICTION
+from jointid.servo.record import ServoEstimateRecord
 
 _COMPENSATED = {"torque_per_voltage", *(term.name for term in (*SPEED_FRICTION, LOAD_FRICTION))}
 
 
-def judged_servo(estimate: ServoEstimate) -> Verdict:
+def judged_servo(estimate: ServoEstimateRecord) -> Verdict:
     """Judge a servo's estimate by its findings.
 
     Not usable: a blocking finding, less than 90 % of the load's squared torque explained, or, for what needs it, a
@@ -32,7 +32,7 @@ def judged_servo(estimate: ServoEstimate) -> Verdict:
     return concluded(uses, objections, {})
 
 
-def _objections(estimate: ServoEstimate) -> Iterable[Objection]:
+def _objections(estimate: ServoEstimateRecord) -> Iterable[Objection]:
     for found in estimate.warnings:
         yield Objection(
             code=found.code,
