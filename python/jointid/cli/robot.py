@@ -71,8 +71,8 @@ def compare_whole_robot(arguments: argparse.Namespace) -> int:
     """Compare inertias and friction models of a robot by held-out torque."""
     from jointid.joint.model import Model
     from jointid.report.saving import save_report
-    from jointid.robot.answers import answer_of_comparison
     from jointid.robot.comparing import compare_robot_models
+    from jointid.robot.comparison_result import answer_of_comparison
 
     _check(arguments)
     asked = {"models": arguments.models, "inertia": arguments.inertia}

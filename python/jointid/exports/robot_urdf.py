@@ -10,7 +10,8 @@ from jointid.exports.xml_patch import elements, only, with_attributes, with_comm
 from jointid.joint.checks import suggestion
 from jointid.robot.models import terms_of
 from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS
-from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.record import RobotJoint
+from jointid.robot.result import RobotEstimate
 
 _WORDS = {"linear": "damping", "constant": "friction"}  # of the URDF, by the basis
 

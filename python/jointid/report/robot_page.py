@@ -17,7 +17,8 @@ from jointid.report.rows import NamedRow, rows_panel
 from jointid.report.style import STYLE, WIDE
 from jointid.robot.comparison_result import RobotComparison
 from jointid.robot.friction import joint_friction
-from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.record import RobotJoint
+from jointid.robot.result import RobotEstimate
 from jointid.robot.tables import base_rows, head, quality, rows
 
 _DRAWN = 20  # candidates; the table has all

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from html import escape
 from typing import Any
 
+from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.base.text_table import aligned
+from jointid.estimate.answers import cut, findings
+from jointid.estimate.wording import rounded, two_digits
+from jointid.robot.answers import FINDINGS, lines_of_joints
 from jointid.robot.inertia import Inertia
 from jointid.robot.result import RobotEstimate
 
@@ -92,8 +96,6 @@ class RobotComparison:
             Whether to return everything: a line for each candidate, and each joint's residual. Default False.
         """
         if not verbose:
-            from jointid.robot.answers import answer_of_comparison
-
             return answer_of_comparison(self)
         title = f"jointid comparison — {self.estimate.robot.name or 'robot'}"
         lines = [title, "", *aligned([_HEAD, *self.cells()]), "", self.setting()]
@@ -194,3 +196,24 @@ def _html(head: list[str], rows: list[list[str]]) -> str:
         "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
     )
     return f"<table class='jointid'><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def answer_of_comparison(
+    found: RobotComparison, action: Callable[[Action], str] = str, saved: str = ""
+) -> str:
+    """Return the winner with each joint's model and values, in at most 7 lines and one for each joint."""
+    estimate, winner = found.estimate, found.winner
+    others = sorted((row for row in found.rows if row != winner), key=lambda row: row.score)
+    runner_up = f", next {others[0].name} {_score(others[0])}" if others else ""
+    lines = [
+        f"{estimate.robot.name or 'robot'}: {winner.name} of {len(found.rows)} candidates, {estimate.verdict.level}",
+        cut(f"  held-out residual {_score(winner)}{runner_up}"),
+        *lines_of_joints(estimate, found.models),
+        *findings(estimate.findings, action, FINDINGS, saved),
+    ]
+    return printable("\n".join(lines))
+
+
+def _score(row: ComparedRobotModel) -> str:
+    value, error = 100.0 * row.score, 100.0 * row.stderr
+    return f"{rounded(value, error) if error > 0.0 else f'{value:.3g}'} ± {two_digits(error)} %"

@@ -20,7 +20,8 @@ from jointid.robot.inertia import SCALED
 from jointid.robot.models import terms_of
 from jointid.robot.parameters import DIFFERENCE, parameter_facts
 from jointid.robot.purposes import held_of, torques_of, within_of
-from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.record import RobotJoint
+from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
@@ -90,8 +91,11 @@ def concluded(
         name: torques_of([n.removeprefix(f"{name}.") for n in names], balance, fit, k)
         for k, name in enumerate(robot.names)
     }
-    estimate = replace(estimate, within=within_of(names, balance, fit, estimate, covariance))
-    return findings_of(estimate, fit.columns, torques)
+    return replace(
+        estimate,
+        within=within_of(names, balance, fit, estimate, covariance),
+        findings=findings_of(estimate, fit.columns, torques),
+    )
 
 
 def _parameter(

@@ -10,15 +10,16 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.estimate.json import documents_of, plain
-from jointid.robot.result import RobotEstimate
+from jointid.robot.record import RobotEstimateRecord
 from jointid.robot.robot import Robot
+from jointid.robot.verdict import judged_robot
 
 SCHEMA = 2
 """2: links, joints and windows are in it, so that it can be read back; an infinite number is the text "inf"."""
 KIND = "jointid robot"
 
 
-def document_of(estimate: RobotEstimate) -> dict[str, Any]:
+def document_of(estimate: RobotEstimateRecord) -> dict[str, Any]:
     """Return the estimate in JSON types."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
@@ -47,7 +48,7 @@ def document_of(estimate: RobotEstimate) -> dict[str, Any]:
         "robot": robot_document(estimate.robot),
         "cross_check": plain(estimate.cross_check),
         "findings": documents_of(estimate.findings),
-        "verdict": estimate.verdict.document(),
+        "verdict": judged_robot(estimate).document(),
         "settings": plain(estimate.settings),
     }
     return document
@@ -80,12 +81,12 @@ def robot_document(robot: Robot) -> dict[str, Any]:
     }
 
 
-def json_of(estimate: RobotEstimate) -> str:
+def json_of(estimate: RobotEstimateRecord) -> str:
     """Return the estimate as JSON text."""
     return json.dumps(document_of(estimate), indent=1, ensure_ascii=False, allow_nan=False)
 
 
-def save_json(estimate: RobotEstimate, path: str | Path) -> Path:
+def save_json(estimate: RobotEstimateRecord, path: str | Path) -> Path:
     """Write the estimate as JSON: see `RobotEstimate.save`."""
     target = require_path("path", path)
     if target.suffix != ".json":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from jointid.robot.finding_types import TYPES, listed
 from jointid.robot.inertia import FREE, InertiaColumns
 from jointid.robot.models import linear_terms
 from jointid.robot.parameters import LINEAR_FRICTION
-from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.record import RobotEstimateRecord, RobotJoint
 
 _STANDING = 0.1  # of the time: worth saying
 _MOSTLY = 0.35
@@ -30,9 +29,9 @@ RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
 def findings_of(
-    estimate: RobotEstimate, columns: InertiaColumns, torques: Mapping[str, Torques]
-) -> RobotEstimate:
-    """Return the estimate with its findings, the most severe first; torques are by the parameters' names."""
+    estimate: RobotEstimateRecord, columns: InertiaColumns, torques: Mapping[str, Torques]
+) -> tuple[Finding, ...]:
+    """Return an estimate's findings, the most severe first; torques are by the parameters' names."""
     found = [
         *_standing(estimate),
         *(
@@ -42,10 +41,10 @@ def findings_of(
         ),
         *_of_inertia(estimate, columns),
     ]
-    return replace(estimate, findings=tuple(sorted(found, key=lambda each: RANK[each.severity])))
+    return tuple(sorted(found, key=lambda each: RANK[each.severity]))
 
 
-def doubtful_joints(estimate: RobotEstimate) -> list[int]:
+def doubtful_joints(estimate: RobotEstimateRecord) -> list[int]:
     """Joints whose balance says that something that was given is wrong: much is left, or friction would be negative."""
     return [
         number
@@ -55,7 +54,7 @@ def doubtful_joints(estimate: RobotEstimate) -> list[int]:
     ]
 
 
-def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
+def _standing(estimate: RobotEstimateRecord) -> Iterator[Finding]:
     """Joints that hardly move one by one, and in one sentence those that stand still now and then."""
     shares = {name: joint.residuals.standing for name, joint in estimate.joints.items()}
     for name, share in shares.items():
@@ -78,7 +77,9 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
         )
 
 
-def _of_joint(joint: RobotJoint, estimate: RobotEstimate, torques: Torques) -> Iterator[Finding]:
+def _of_joint(
+    joint: RobotJoint, estimate: RobotEstimateRecord, torques: Torques
+) -> Iterator[Finding]:
     for name in LINEAR_FRICTION:
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
@@ -136,7 +137,7 @@ def _all_of(joint: RobotJoint) -> tuple[str, ...]:
     return tuple(f"{joint.name}.{name}" for name in joint.parameters)
 
 
-def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Finding]:
+def _of_inertia(estimate: RobotEstimateRecord, columns: InertiaColumns) -> Iterator[Finding]:
     names = estimate.robot.names
     if columns.dropped:
         shown = listed([names[each] for each in columns.dropped])

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.robot.models import terms_of
 from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS, VISCOUS
-from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.record import RobotEstimateRecord, RobotJoint
 
 Array = NDArray[np.float64]
 
 
-def friction_of(estimate: RobotEstimate, velocity: Array) -> Array:
+def friction_of(estimate: RobotEstimateRecord, velocity: Array) -> Array:
     """Return the friction torque at the joints; see `RobotEstimate.friction`."""
     couplings, joints = estimate.robot.couplings, list(estimate.joints.values())
     own = [joint_friction(joint, velocity[..., k]) for k, joint in enumerate(joints)]

@@ -18,7 +18,8 @@ from jointid.robot.aligning import aligned, delay_findings
 from jointid.robot.assumptions import assumption_findings
 from jointid.robot.asymmetry import asymmetry_findings
 from jointid.robot.attempt import Request, attempted
-from jointid.robot.cross_check import CrossCheck, cross_checked, disagreement, slow_motion
+from jointid.robot.cross_check import CrossCheck
+from jointid.robot.cross_checking import cross_checked, disagreement, slow_motion
 from jointid.robot.diagnosis import diagnosed
 from jointid.robot.findings import RANK
 from jointid.robot.inertia import FREE, MODES, Inertia

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance import Balance, balance_of
 from jointid.robot.motion import Motion
-from jointid.robot.result import RobotEstimate
+from jointid.robot.record import RobotEstimateRecord
 from jointid.robot.shaped_terms import ShapedTerms
 from jointid.robot.shifts import torque_shift, without_delay
 from jointid.robot.stamps import on_even_clock
@@ -37,7 +37,7 @@ class RobotPrediction:
     windows: int
 
 
-def predict_robot(estimate: RobotEstimate, recording: RobotRecording) -> RobotPrediction:
+def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> RobotPrediction:
     """Predict the window integrals of a recording's torques; see `RobotEstimate.predict`."""
     robot, settings = estimate.robot, estimate.settings
     motion = Motion.of(
@@ -65,7 +65,7 @@ def predict_robot(estimate: RobotEstimate, recording: RobotRecording) -> RobotPr
     )
 
 
-def _friction(estimate: RobotEstimate, balance: Balance) -> Array:
+def _friction(estimate: RobotEstimateRecord, balance: Balance) -> Array:
     """Integrals of friction, offsets and the rotors that the links' parameters do not contain."""
     joints = list(estimate.joints.values())
     models = [joint.model for joint in joints]

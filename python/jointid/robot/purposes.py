@@ -14,7 +14,7 @@ from jointid.identification.inference.purposes import Torques, within
 from jointid.robot.balance import Balance
 from jointid.robot.fit import Fit
 from jointid.robot.parameters import FRICTION, SHAPES
-from jointid.robot.result import RobotEstimate
+from jointid.robot.record import RobotEstimateRecord
 
 Array = NDArray[np.float64]
 
@@ -69,7 +69,11 @@ def torques_of(
 
 
 def within_of(
-    names: Sequence[str], balance: Balance, fit: Fit, estimate: RobotEstimate, spread: Covariance
+    names: Sequence[str],
+    balance: Balance,
+    fit: Fit,
+    estimate: RobotEstimateRecord,
+    spread: Covariance,
 ) -> dict[str, float]:
     """Return by purpose how far off what it needs may be, as a share of it: of all joints together."""
     weight = 1.0 / fit.scatter[balance.rows.joint]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -24,16 +24,18 @@ from jointid.robot.json_schema import ROBOT_ESTIMATE
 from jointid.robot.link_tree import LinkTree
 from jointid.robot.models import is_asymmetric, terms_of
 from jointid.robot.parameters import DIFFERENCE, FRICTION, MOTOR_TERMS, PARAMETERS
-from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.record import RobotEstimateRecord, RobotJoint
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import torque_shift
+
+Saved = TypeVar("Saved", bound=RobotEstimateRecord)
 
 _TURNED = 1e-6  # by which a rotation may be none
 _SINGULAR = 1e9
 
 
-def read_robot_estimate(text: str) -> RobotEstimate:
-    """Return the estimate that a JSON text holds; see `RobotEstimate.load`."""
+def read_robot_estimate(text: str, cls: type[Saved]) -> Saved:
+    """Return the estimate of this class that a JSON text holds; see `RobotEstimate.load`."""
     document = read_json(text)
     if not isinstance(document, dict) or document.get("kind") != KIND:
         raise InputError(
@@ -52,17 +54,17 @@ def read_robot_estimate(text: str) -> RobotEstimate:
     found = ROBOT_ESTIMATE.read(document, "")
     for place, reason in _contradictions(found):
         raise InputError(reason, place=place)
-    return _estimate(found)
+    return _estimate(found, cls)
 
 
-def _estimate(d: Mapping[str, Any]) -> RobotEstimate:
+def _estimate(d: Mapping[str, Any], cls: type[Saved]) -> Saved:
     base = [parameter_of(each) for each in d["base_parameters"]]
     robot = _robot(d["robot"], d["name"])
     try:
         torque_shift(d["settings"].get("shift", {}), robot)
     except InputError as error:
         raise error.at("settings") from None
-    return RobotEstimate(
+    return cls(
         joints={
             name: RobotJoint(
                 name=name,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
@@ -17,9 +17,9 @@ from jointid.estimate.bootstrap import Bootstrap
 from jointid.identification.inference.bootstrap import drawn_parameter
 
 if TYPE_CHECKING:
+    from jointid.estimate.statistics import ParameterEstimate
     from jointid.robot.balance import Balance
     from jointid.robot.fit import Fit
-    from jointid.robot.result import RobotEstimate
     from jointid.robot.solving import PriorRows
 
 Array = NDArray[np.float64]
@@ -71,11 +71,16 @@ class RobotDraws:
         return _nothing, ()
 
 
-def bootstrapped(estimate: RobotEstimate, count: int, seed: int) -> Bootstrap:
-    """Return the block bootstrap of an estimate; see `RobotEstimate.bootstrap`."""
+def bootstrapped(
+    source: RobotDraws | None,
+    every: Mapping[str, ParameterEstimate],
+    joints: Sequence[str],
+    count: int,
+    seed: int,
+) -> Bootstrap:
+    """Return the block bootstrap of all parameters of joints of these names; see `RobotEstimate.bootstrap`."""
     count = whole_number("n", count, 20, 1_000_000)
     seed = whole_number("seed", seed, 0, 2**64 - 1)
-    source = estimate.draws
     if source is None:
         raise InputError(
             "this estimate was read from a file, which does not hold the recordings",
@@ -86,11 +91,7 @@ def bootstrapped(estimate: RobotEstimate, count: int, seed: int) -> Bootstrap:
     moved = draws(source.cells, below, above, count, seed)
     freedom = max(1, source.cells.blocks - 1)
     wider = np.clip(_widening(source) * moved, below, above)
-    names = [
-        name if joint is None else f"{estimate.robot.names[joint]}.{name}"
-        for joint, name in source.labels
-    ]
-    every = estimate.parameters
+    names = [name if joint is None else f"{joints[joint]}.{name}" for joint, name in source.labels]
     return Bootstrap(
         parameters={
             name: replace(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,54 +11,18 @@ from numpy.typing import ArrayLike, NDArray
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.base.notebook import Shown
-from jointid.estimate.findings import Finding
-from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
-from jointid.problem.window_table import WindowTable
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.robot import Robot
+from jointid.robot.record import RobotEstimateRecord
 
 if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.verdict import Verdict
-    from jointid.robot.cross_check import CrossCheck
     from jointid.robot.prediction import RobotPrediction
-    from jointid.robot.resampling import RobotDraws
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RobotJoint:
-    """One joint of a robot's estimate.
-
-    Attributes
-    ----------
-    name : str
-    model : str
-        As "coulomb_viscous" or "stribeck:asymmetric".
-    parameters : mapping of str to ParameterEstimate
-        At the joint: those of its model, as "coulomb" and "viscous", and "torque_offset"; of
-        a motor that turns with several joints "motor_coulomb" and "motor_viscous"; "rotor_inertia" where it is
-        identified, "inertia_scale" with ``inertia="scaled"``.
-    residuals : ResidualStatistics
-    windows : WindowTable
-        Its `friction` is the torque less all but this joint's friction.
-    """
-
-    name: str
-    model: str
-    parameters: Mapping[str, ParameterEstimate]
-    residuals: ResidualStatistics
-    windows: WindowTable
-
-    @property
-    def relative_residual(self) -> float:
-        """Norm of the residuals over the norm of the measured integrals."""
-        return self.residuals.relative
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RobotEstimate(Shown):
+class RobotEstimate(RobotEstimateRecord, Shown):
     """Friction and inertia of a whole robot.
 
     Attributes
@@ -100,38 +62,7 @@ class RobotEstimate(Shown):
         None of an estimate that was saved without it.
     """
 
-    joints: Mapping[str, RobotJoint]
-    inertia: str
-    base_parameters: Mapping[str, ParameterEstimate]
-    inertial: Array
-    consistent: bool | None
-    relative_residual: float
-    free: tuple[str, ...]
-    covariance: Array
-    condition: float
-    findings: tuple[Finding, ...]
-    robot: Robot = field(repr=False)
-    settings: Mapping[str, Any] = field(repr=False)
-    seconds: float = field(default=0.0, repr=False)
-    draws: RobotDraws | None = field(default=None, repr=False)
-    impossible_by: float = 0.0
-    cross_check: CrossCheck | None = None
-    within: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def parameters(self) -> dict[str, ParameterEstimate]:
-        """All parameters by the names that `free` has: "joint.name", and base parameters by their combination."""
-        of_joints = {
-            f"{joint.name}.{name}": p
-            for joint in self.joints.values()
-            for name, p in joint.parameters.items()
-        }
-        return {**of_joints, **self.base_parameters}
-
-    @property
-    def warnings(self) -> tuple[Finding, ...]:
-        """Findings that may bias values or make them unusable."""
-        return tuple(found for found in self.findings if found.severity != "info")
+    __slots__ = ()
 
     @property
     def verdict(self) -> Verdict:
@@ -230,7 +161,7 @@ class RobotEstimate(Shown):
         """
         from jointid.robot.resampling import bootstrapped
 
-        return bootstrapped(self, n, seed)
+        return bootstrapped(self.draws, self.parameters, self.robot.names, n, seed)
 
     def report(self, verbose: bool = False) -> str:
         """Return the verdict, a line for each joint, and the first finding, as text.
@@ -288,7 +219,7 @@ class RobotEstimate(Shown):
         """
         from jointid.robot.reading_back import read_robot_estimate
 
-        return read_robot_estimate(text)
+        return read_robot_estimate(text, cls)
 
     @classmethod
     def load(cls, path: str | Path) -> RobotEstimate:

@@ -10,16 +10,17 @@ from jointid.base.text_table import aligned
 from jointid.estimate.wording import number, percent, two_digits
 from jointid.joints.tables import value_with_error
 from jointid.robot.parameters import PARAMETERS
-from jointid.robot.result import RobotEstimate
+from jointid.robot.record import RobotEstimateRecord
+from jointid.robot.verdict import judged_robot
 
 
-def shown_parameters(estimate: RobotEstimate) -> list[str]:
+def shown_parameters(estimate: RobotEstimateRecord) -> list[str]:
     """Names of the parameters that some joint has, in the order of the table."""
     present = {name for joint in estimate.joints.values() for name in joint.parameters}
     return [name for name in PARAMETERS if name in present]
 
 
-def head(estimate: RobotEstimate) -> list[str]:
+def head(estimate: RobotEstimateRecord) -> list[str]:
     """The table's head."""
     units: dict[str, str] = {}
     for joint in estimate.joints.values():
@@ -31,7 +32,7 @@ def head(estimate: RobotEstimate) -> list[str]:
     return ["joint", "model", *shown, "residual", "left out", "warnings"]
 
 
-def rows(estimate: RobotEstimate) -> list[list[str]]:
+def rows(estimate: RobotEstimateRecord) -> list[list[str]]:
     """One row a joint, in the order of the head."""
     names = shown_parameters(estimate)
     return [
@@ -47,7 +48,7 @@ def rows(estimate: RobotEstimate) -> list[list[str]]:
     ]
 
 
-def _codes(estimate: RobotEstimate, name: str) -> str:
+def _codes(estimate: RobotEstimateRecord, name: str) -> str:
     mine = [
         found.code
         for found in estimate.warnings
@@ -57,7 +58,7 @@ def _codes(estimate: RobotEstimate, name: str) -> str:
     return ", ".join(dict.fromkeys(mine)) or "none"
 
 
-def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
+def quality(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
     """How good the fit is and what it rests on, as label and text."""
     inertia = {
         "urdf": "as the URDF has it",
@@ -86,7 +87,7 @@ def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
     ]
 
 
-def _turning(estimate: RobotEstimate) -> list[tuple[str, str]]:
+def _turning(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
     """Which motors turn with several joints, and what was taken away of zeros and delays."""
     robot, found = estimate.robot, []
     for motor in map(int, robot.coupled.nonzero()[0]):
@@ -101,7 +102,7 @@ def _turning(estimate: RobotEstimate) -> list[tuple[str, str]]:
     return found
 
 
-def base_rows(estimate: RobotEstimate) -> list[list[str]]:
+def base_rows(estimate: RobotEstimateRecord) -> list[list[str]]:
     """The table of base parameters: value, error, unit, combination."""
     return [
         [
@@ -114,15 +115,15 @@ def base_rows(estimate: RobotEstimate) -> list[list[str]]:
     ]
 
 
-def text_summary(estimate: RobotEstimate) -> str:
+def text_summary(estimate: RobotEstimateRecord) -> str:
     """The table of the joints."""
     return printable("\n".join(aligned([head(estimate), *rows(estimate)])))
 
 
-def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
+def text_report(estimate: RobotEstimateRecord, action: Callable[[Action], str] = str) -> str:
     """The estimate as text; `action` words the advice of a finding."""
     lines = [f"jointid robot estimate — {estimate.robot.name}; value ± standard error", ""]
-    lines += [*estimate.verdict.lines(), ""]
+    lines += [*judged_robot(estimate).lines(), ""]
     lines += [*aligned([head(estimate), *rows(estimate)]), ""]
     width = max(len(label) for label, _ in quality(estimate))
     lines += [f"{label.ljust(width)}  {text}" for label, text in quality(estimate)]

@@ -11,7 +11,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.robot.finding_types import TYPES
-from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.record import RobotEstimateRecord, RobotJoint
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ _EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
 _MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
 
 
-def unexamined(estimate: RobotEstimate, corrected: RobotEstimate) -> Iterator[Finding]:
+def unexamined(estimate: RobotEstimateRecord, corrected: RobotEstimateRecord) -> Iterator[Finding]:
     """The finding that a residual is no noise, and what was not examined; it caps the verdict at "with care".
 
     Where wrong facts that were named explain it, it is for information: another cause may look like them.

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from jointid.estimate.objections import EXPLAINED, Objection, explained_text, held_on_bounds
 from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
 from jointid.robot.parameters import FRICTION
-from jointid.robot.result import RobotEstimate
+from jointid.robot.record import RobotEstimateRecord
 
 _COMPENSATED = FRICTION | {"torque_offset"}
 _IMPOSSIBLE = "impossible_inertia"
 
 
-def judged_robot(estimate: RobotEstimate) -> Verdict:
+def judged_robot(estimate: RobotEstimateRecord) -> Verdict:
     """Judge a robot's estimate by its findings; parameters are named as in `RobotEstimate.free`.
 
     Not usable: a blocking finding, or a joint of whose windows less than 90 % of the variance is explained; for
@@ -32,7 +32,7 @@ def judged_robot(estimate: RobotEstimate) -> Verdict:
     return concluded(uses, [*every, *bounded], estimate.within)
 
 
-def _objections(estimate: RobotEstimate) -> Iterable[Objection]:
+def _objections(estimate: RobotEstimateRecord) -> Iterable[Objection]:
     for found in estimate.warnings:
         yield Objection(
             code=found.code,
@@ -42,7 +42,7 @@ def _objections(estimate: RobotEstimate) -> Iterable[Objection]:
         )
 
 
-def _unexplained(estimate: RobotEstimate) -> Iterable[Objection]:
+def _unexplained(estimate: RobotEstimateRecord) -> Iterable[Objection]:
     """Joints whose torque the balance does not explain."""
     for joint in estimate.joints.values():
         explained = joint.residuals.r_squared
