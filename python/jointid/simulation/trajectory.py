@@ -339,12 +339,12 @@ class Trajectory:
     def __repr__(self) -> str:
         from jointid.simulation.trajectory_facts import line_of
 
-        return line_of(self)
+        return line_of(self.form, self.core)
 
     def _repr_html_(self) -> str:
         from jointid.simulation.trajectory_facts import html_facts
 
-        return str(html_facts(self))
+        return str(html_facts(self.form, self.core))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.form, self.arguments)

@@ -13,7 +13,7 @@ from jointid.base.argument_checks import require_kind
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.opened_drive import open_drive
 from jointid.hardware.proof.sizes import resolution_of, sizes_of
-from jointid.hardware.proof.watchdog import NO_WATCHDOG, watchdog_of_bench
+from jointid.hardware.proof.watchdog_reach import NO_WATCHDOG, watchdog_of_bench
 from jointid.hardware.session.drive import Drive, DriveFaultError
 from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.gains import doubt_of_gains

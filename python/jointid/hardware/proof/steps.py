@@ -28,7 +28,7 @@ from jointid.hardware.proof.pushes import (
 )
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.proof.sizes import resolution_of, sizes_of
-from jointid.hardware.proof.watchdog import slow_on_bench
+from jointid.hardware.proof.watchdog_reach import slow_on_bench
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.interruptions import Interruptions

@@ -1,57 +1,19 @@
-"""The drive's own watchdog: judged by how far it lets the joint go, and tried without a plug, by a silent host."""
+"""The drive's own watchdog, tried without a plug, by a silent host."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from jointid.base.errors import InputError
-from jointid.hardware.bench.bench import Bench
 from jointid.hardware.proof.refusal import RefusedBenchError
+from jointid.hardware.proof.steps import Steps
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.silence import DriveSilence
-from jointid.hardware.session.watchdog import Watchdog, watchdog_of
-from jointid.hardware.session.watchdog_check import (
-    WatchdogTravel,
-    watchdog_problems,
-    watchdog_travel,
-)
-
-if TYPE_CHECKING:
-    from jointid.hardware.proof.axis import Axis
-    from jointid.hardware.proof.steps import Steps
+from jointid.hardware.session.watchdog import Watchdog
 
 _BEATEN = 1.0  # [s] at no torque: a drive that only begins to watch has begun by then
 _LATE = 3.0  # times the time allowed: the drive is asked after twice that, and the host may be late
-
-
-NO_WATCHDOG = "the drive declares no watchdog: it may go on when this program dies, so the bench gets no certificate"
-
-
-def watchdog_of_bench(bench: Bench, drive: Drive, position: float) -> WatchdogTravel | None:
-    """Return how far a bench's joint goes when the host dies in its motion; None: its drive declares no watchdog.
-
-    Parameters
-    ----------
-    bench : Bench
-    drive : Drive
-        Connected.
-    position : float
-        Where the joint stands [rad].
-    """
-    watchdog = watchdog_of(drive)
-    if watchdog is None:
-        return None
-    return watchdog_travel(
-        *(watchdog, bench.joint, bench.controller, bench.trajectory, bench.limits, bench.options),
-        position=position,
-    )
-
-
-def slow_on_bench(bench: Bench, drive: Drive, axis: Axis) -> list[str]:
-    """Return why a bench's joint must not be moved with the watchdog that its drive declares; empty: it may."""
-    travel = watchdog_of_bench(bench, drive, axis.sample.position)
-    return [] if travel is None else [*watchdog_problems(travel, bench.options)]
 
 
 def silence_of(drive: Drive) -> Callable[[], DriveSilence]:

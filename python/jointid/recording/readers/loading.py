@@ -25,7 +25,8 @@ from jointid.recording.recording import Recording
 from jointid.recording.signals import Kind, TorqueHold
 from jointid.recording.table import MOST_COLUMNS, Table
 from jointid.recording.unreadable import read_leniently
-from jointid.recording.wide.one_joint import OneJoint, joint_of_table, of_joint
+from jointid.recording.wide.joint_in_table import joint_of_table
+from jointid.recording.wide.one_joint import OneJoint, of_joint
 
 _SURROGATE = "[\ud800-\udfff]"
 _SORT = "sort the rows by time, or cut the file where a second run begins"

@@ -7,8 +7,8 @@ from jointid.recording.even_rows import at_rate
 from jointid.recording.extra import extra_columns
 from jointid.recording.matching import match_columns
 from jointid.recording.table import Table
+from jointid.recording.wide.joint_in_table import joint_of_table
 from jointid.recording.wide.joint_table import JointTable
-from jointid.recording.wide.one_joint import joint_of_table
 
 
 def columns_read(table: Table, joint: str | None, reading: Mapping[str, Any]) -> set[int]:
