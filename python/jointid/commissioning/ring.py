@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.files import make_folder
-from jointid.base.notebook import Shown
+from jointid.commissioning.result import BenchRun, Commissioning, blocking
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import Finding
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.emulated_joints import true_joint
 from jointid.hardware.bench.opened_drive import open_drive
@@ -30,107 +27,6 @@ from jointid.simulation.scenario import believing
 
 Observer = Callable[..., object]
 _ENVELOPE = 2.0  # times what an identified joint needs
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BenchRun:
-    """One motion of the joint.
-
-    Attributes
-    ----------
-    name : str
-        "initial", "cycle 1", …, "true parameters".
-    recording : Recording
-    controller : AdaptiveRobust, CompensatedPid or LugreObserver
-        With the parameters that it assumed.
-    tracking_error, peak_error : float
-        Root mean square and largest magnitude of position less reference, without the first sixth
-        [rad].
-    """
-
-    name: str
-    recording: Recording
-    controller: Controller
-    tracking_error: float
-    peak_error: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Commissioning(Shown):
-    """Result of a commissioning.
-
-    Attributes
-    ----------
-    runs : tuple of BenchRun
-        The initial one, then one for each cycle that `agree` allowed, and whose estimate has no blocking finding.
-    estimates : tuple of Estimate
-        One for each cycle, each of all that was recorded until then; none when the joint was only recorded.
-    truth : mapping of str to float
-        Of an emulated joint; empty otherwise.
-    true_run : BenchRun or None
-        Of an emulated joint: with the true parameters.
-    without_ripple : Estimate or None
-        When the joint's model has ripple: the last estimate, had it none.
-    """
-
-    runs: tuple[BenchRun, ...]
-    estimates: tuple[Estimate, ...]
-    truth: Mapping[str, float]
-    true_run: BenchRun | None = None
-    without_ripple: Estimate | None = None
-
-    @property
-    def blocked(self) -> Finding | None:
-        """The blocking finding of the last estimate, with which the joint was not moved; None without one."""
-        return None if not self.estimates else _blocking(self.estimates[-1])
-
-    @property
-    def motion_warning(self) -> str:
-        """In what the bench differs from the one its motion was designed for; empty where it does not."""
-        return str(self.runs[0].recording.metadata.get("motion_warning", ""))
-
-    @property
-    def improvement(self) -> float:
-        """How many times smaller the tracking error of the last run is than that of the first."""
-        return self.runs[0].tracking_error / self.runs[-1].tracking_error
-
-    def recordings(self) -> dict[str, Recording]:
-        """The runs' recordings by name, e.g. for `jointid.plot.tracking_error`."""
-        last = () if self.true_run is None else (self.true_run,)
-        return {run.name: run.recording for run in (*self.runs, *last)}
-
-    def to_dict(self) -> dict[str, Any]:
-        """The numbers, of JSON's types."""
-        estimates = [
-            {name: found.value for name, found in estimate.parameters.items()}
-            for estimate in self.estimates
-        ]
-        last = () if self.true_run is None else (self.true_run,)
-        return {
-            "runs": [
-                {"name": r.name, "tracking_error": r.tracking_error, "peak_error": r.peak_error}
-                for r in (*self.runs, *last)
-            ],
-            "improvement": self.improvement,
-            "blocked": None if self.blocked is None else self.blocked.code,
-            "estimates": estimates,
-            "truth": dict(self.truth),
-            "without_ripple": None
-            if self.without_ripple is None
-            else {name: found.value for name, found in self.without_ripple.parameters.items()},
-        }
-
-    def report(self, action: Callable[[Action], str] = str) -> str:
-        """Return tables of tracking errors and parameters.
-
-        Parameters
-        ----------
-        action : callable
-            Words the advice of a finding. Default: as at a Python prompt.
-        """
-        from jointid.commissioning.report import text_report
-
-        return text_report(self, action)
 
 
 def commission(
@@ -243,13 +139,13 @@ def commission(
                 estimates.append(estimate)
                 if folder is not None:
                     estimate.save(folder / f"cycle_{cycle}.json")
-                if _blocking(estimate) is not None:
+                if blocking(estimate) is not None:
                     break
                 if agree is not None and not agree(estimate):
                     break
                 found = estimate.joint
                 runs.append(run(f"cycle {cycle}", believing(controller, found), found))
-            if emulate and cycles and _blocking(estimates[-1]) is None:
+            if emulate and cycles and blocking(estimates[-1]) is None:
                 true_run = run("true parameters", believing(controller, true_joint(bench)))
         except (Exception, KeyboardInterrupt) as error:
             _keep(error, recordings)
@@ -264,7 +160,7 @@ def commission(
             vars(error)["outcome"] = until_then if until_then.runs else None
             raise
     plain = None
-    usable = bool(estimates) and _blocking(estimates[-1]) is None
+    usable = bool(estimates) and blocking(estimates[-1]) is None
     if usable and bench.joint.model.resolved.ripple:
         before = [each.recording for each in runs[: len(estimates)]]
         plain = identify(before, bench.joint, model=Model(ripple=()), search=search)
@@ -275,11 +171,6 @@ def commission(
         true_run=true_run,
         without_ripple=plain,
     )
-
-
-def _blocking(estimate: Estimate) -> Finding | None:
-    """The first finding that says that the values cannot be used."""
-    return next((each for each in estimate.findings if each.severity == "blocking"), None)
 
 
 @contextmanager

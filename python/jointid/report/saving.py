@@ -14,7 +14,7 @@ from jointid.base.files import write_whole
 from jointid.problem.recordings import listed
 
 if TYPE_CHECKING:
-    from jointid.commissioning.ring import Commissioning
+    from jointid.commissioning.result import Commissioning
     from jointid.comparison.result import Comparison
     from jointid.design.design import Design
     from jointid.estimate.estimate import Estimate

@@ -15,7 +15,7 @@ from jointid.report.limit_margins import margin_rows
 from jointid.report.style import STYLE
 
 if TYPE_CHECKING:
-    from jointid.commissioning.ring import BenchRun, Commissioning
+    from jointid.commissioning.result import BenchRun, Commissioning
     from jointid.estimate.estimate import Estimate
 
 _REFERENCE = "true parameters"  # the run with the emulated joint's own values
@@ -31,7 +31,7 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
     """
-    from jointid.commissioning.report import TIMING, parameter_rows, run_rows, timing_rows
+    from jointid.commissioning.result import TIMING, parameter_rows, run_rows, timing_rows
 
     first = result.runs[0].recording
     name = first.name or "joint"
@@ -67,7 +67,7 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
 
 def _answer(result: Commissioning) -> list[Html]:
     """What came of the session, before all else why it was stopped if it was."""
-    from jointid.commissioning.report import summary
+    from jointid.commissioning.result import summary
 
     emulated = "An emulated joint on an emulated drive: no hardware moved."
     lines = [element("p", emulated)] if result.truth else []

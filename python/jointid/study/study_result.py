@@ -85,13 +85,12 @@ class Study:
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of the parameters of all rows."""
-        names = {name: None for row in self.rows for name in row.values}
-        return tuple(names)
+        return tables.parameters_of(self.rows)
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of the table's columns."""
-        return tuple(tables.columns(self))
+        return tuple(self._table())
 
     def column(self, name: str) -> NDArray[Any]:
         """Return one column of the table, shape (rows,).
@@ -101,7 +100,7 @@ class Study:
         InputError
             No such column.
         """
-        table = tables.columns(self)
+        table = self._table()
         if name not in table:
             raise InputError(
                 f"the study has no such column; {suggestion(name, table)}",
@@ -128,7 +127,8 @@ class Study:
         InputError
             `within` is not above 0.
         """
-        return summarise(self, within)
+        truths = [self.truth_of(cell) for cell in range(len(self.cells))]
+        return summarise(self.cells, truths, self.rows, within)
 
     def to_pandas(self) -> pd.DataFrame:
         """Return the table as a data frame, one row per trial.
@@ -138,7 +138,7 @@ class Study:
         InputError
             pandas is not installed.
         """
-        return data_frame(tables.columns(self))
+        return data_frame(self._table())
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the table to .csv or .parquet, or the study itself to .jsonl; a failed write changes no file.
@@ -148,7 +148,8 @@ class Study:
         InputError
             Another extension, or the folder does not exist.
         """
-        tables.save(self, require_path("path", path))
+        records = [header_of(self), *(row.asdict() for row in self.rows)]
+        tables.save(self._table(), records, require_path("path", path))
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Study:
@@ -161,6 +162,9 @@ class Study:
         """
         header, rows, _ = study_file.read(require_path("path", path))
         return study_of(header, rows)
+
+    def _table(self) -> dict[str, list[Any]]:
+        return tables.columns(self.swept, self.cells, self.rows)
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -19,8 +19,6 @@ from jointid.study.row import REFUSED, Row
 if TYPE_CHECKING:
     import pandas as pd
 
-    from jointid.study.study_result import Study
-
 
 _SHOWN = 10  # cells in a text
 _ALIKE = 1e-4  # of a value: so much do searches differ that found the same minimum
@@ -139,8 +137,13 @@ def html_summary(summary: Summary) -> Html:
     )
 
 
-def summarise(study: Study, within: float) -> Summary:
-    """Summarise each cell; see `Study.summary`.
+def summarise(
+    cells: Sequence[dict[str, Any]],
+    truths: Sequence[Mapping[str, float]],
+    rows: Sequence[Row],
+    within: float,
+) -> Summary:
+    """Summarise each cell, with the true parameters in it; see `Study.summary`.
 
     Raises
     ------
@@ -151,20 +154,22 @@ def summarise(study: Study, within: float) -> Summary:
         raise InputError(
             "a share above 0, such as 0.05, is expected", argument="within", value=within
         )
-    mine: list[list[Row]] = [[] for _ in study.cells]
-    for row in study.rows:
+    mine: list[list[Row]] = [[] for _ in cells]
+    for row in rows:
         mine[row.cell].append(row)
-    cells = (_cell(study, number, rows, within) for number, rows in enumerate(mine))
-    return Summary(cells=tuple(cells), within=float(within))
+    each = zip(cells, truths, mine, strict=True)
+    return Summary(cells=tuple(_cell(*one, within) for one in each), within=float(within))
 
 
-def _cell(study: Study, number: int, rows: Sequence[Row], within: float) -> CellSummary:
+def _cell(
+    labels: dict[str, Any], truth: Mapping[str, float], rows: Sequence[Row], within: float
+) -> CellSummary:
     done = [row for row in rows if row.status != REFUSED]
     values = {
         name: np.array([row.values[name] for row in done])
         for name in (done[0].values if done else ())
     }
-    true = {n: v for n, v in study.truth_of(number).items() if n in values and v != 0.0}
+    true = {n: v for n, v in truth.items() if n in values and v != 0.0}
     ratios = {name: values[name] / value - 1.0 for name, value in true.items()}
     near = [np.abs(ratio) <= within for ratio in ratios.values()]
     tracking = {
@@ -172,7 +177,7 @@ def _cell(study: Study, number: int, rows: Sequence[Row], within: float) -> Cell
         for name in (done[0].tracking if done else ())
     }
     return CellSummary(
-        labels=study.cells[number],
+        labels=labels,
         trials=len(rows),
         refused=len(rows) - len(done),
         reason=next((row.message for row in rows if row.status == REFUSED), ""),

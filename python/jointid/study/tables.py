@@ -6,28 +6,27 @@ import csv
 import io
 import json
 import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
-
-if TYPE_CHECKING:
-    from jointid.study.study_result import Study
+from jointid.study.row import Row
 
 
-def columns(study: Study) -> dict[str, list[Any]]:
+def columns(
+    swept: Sequence[str], cells: Sequence[Mapping[str, Any]], rows: Sequence[Row]
+) -> dict[str, list[Any]]:
     """Return all columns: swept settings, the trial, its status, and all its numbers."""
-    rows = study.rows
-    table: dict[str, list[Any]] = {
-        name: [study.cells[row.cell][name] for row in rows] for name in study.swept
-    }
+    table: dict[str, list[Any]] = {name: [cells[row.cell][name] for row in rows] for name in swept}
     for name in ("trial", "seed", "status", "penalty", "evaluations", "generations"):
         table[name] = [getattr(row, name) for row in rows]
-    for name in study.parameters:
+    parameters = parameters_of(rows)
+    for name in parameters:
         table[name] = [row.values.get(name, math.nan) for row in rows]
     if any(row.stderr for row in rows):
-        for name in study.parameters:
+        for name in parameters:
             table[f"{name}_stderr"] = [row.stderr.get(name, math.nan) for row in rows]
     for name in ("before", "after", "true"):
         if any(row.tracking for row in rows):
@@ -37,8 +36,13 @@ def columns(study: Study) -> dict[str, list[Any]]:
     return table
 
 
-def save(study: Study, path: Path) -> None:
-    """Write the table, or the study itself, by the path's extension.
+def parameters_of(rows: Sequence[Row]) -> tuple[str, ...]:
+    """Return the names of the parameters of all rows."""
+    return tuple({name: None for row in rows for name in row.values})
+
+
+def save(table: Mapping[str, list[Any]], records: Sequence[Any], path: Path) -> None:
+    """Write a study's table, or its records, by the path's extension.
 
     Raises
     ------
@@ -52,16 +56,19 @@ def save(study: Study, path: Path) -> None:
             value=str(path),
             remedy="create it first",
         )
-    writers = {".csv": _csv, ".parquet": _parquet, ".jsonl": _lines}
+    writers = {
+        ".csv": lambda: _csv(table),
+        ".parquet": lambda: _parquet(table),
+        ".jsonl": lambda: _lines(records),
+    }
     if path.suffix not in writers:
         raise InputError(
             f"a study is saved as {', '.join(writers)}", argument="path", value=str(path)
         )
-    write_whole(path, writers[path.suffix](study))
+    write_whole(path, writers[path.suffix]())
 
 
-def _csv(study: Study) -> bytes:
-    table = columns(study)
+def _csv(table: Mapping[str, list[Any]]) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table)
@@ -78,7 +85,7 @@ def _text(value: Any) -> str:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def _parquet(study: Study) -> bytes:
+def _parquet(table: Mapping[str, list[Any]]) -> bytes:
     try:
         import pyarrow as pa
         import pyarrow.parquet as pq
@@ -88,7 +95,7 @@ def _parquet(study: Study) -> bytes:
             remedy="pip install pyarrow",
         ) from error
     sink = pa.BufferOutputStream()
-    mixed = {name: _one_kind(values) for name, values in columns(study).items()}
+    mixed = {name: _one_kind(values) for name, values in table.items()}
     pq.write_table(pa.table(mixed), sink)
     return bytes(sink.getvalue())
 
@@ -101,8 +108,5 @@ def _one_kind(values: list[Any]) -> list[Any]:
     return [None if value is None else str(value) for value in values]
 
 
-def _lines(study: Study) -> bytes:
-    from jointid.study.study_result import header_of
-
-    records = [header_of(study), *(row.asdict() for row in study.rows)]
+def _lines(records: Sequence[Any]) -> bytes:
     return "".join(json.dumps(r, ensure_ascii=False) + "\n" for r in records).encode()
