@@ -110,7 +110,8 @@ FOLDERS: dict[str, Folder] = {
     ),
     "comparison": Folder(may_use={"balance", *_SOUGHT, "servo"}, packages={"numpy", "pandas"}),
     "joints": Folder(
-        may_use={*_SOUGHT, "recording/wide", "identification/causes"}, packages={"numpy"}
+        may_use={*(_SOUGHT - {"problem"}), "recording/wide", "identification/causes"},
+        packages={"numpy"},
     ),
     "online": Folder(may_use={"balance", *_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),

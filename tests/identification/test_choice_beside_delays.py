@@ -11,6 +11,7 @@ import jointid as jid
 from jointid.identification.causes.remedies import advice_against
 from jointid.identification.chosen_model import unfit_in
 from jointid.identification.prepared import prepare
+from jointid.problem.settings import Settings
 
 SIDES = ("positive", "negative")
 
@@ -125,7 +126,8 @@ def test_a_held_torque_is_proposed(
     early: float, torque_hold: str | None, proposed: bool, held: jid.Recording
 ) -> None:
     """A torque early by half a sample is a held one; by no time, or held already, it is not."""
-    problem = prepare(held, None, torque_hold=torque_hold, model="coulomb_viscous").problem
+    settings = Settings.of({"torque_hold": torque_hold, "model": "coulomb_viscous"})
+    problem = prepare(held, None, settings).problem
     late = -early * held.sample_period
     fit = SimpleNamespace(problem=problem)
     cause = SimpleNamespace(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, Unpack, overload
 
 import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.options import options_of, takes
 from jointid.comparison.contenders import compared_models, default_models, shown_gravity, text_of
 from jointid.comparison.fitter import ComparisonStep, Fitter, with_causes
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
@@ -18,17 +19,16 @@ from jointid.comparison.load_evidence import load_refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_of
+from jointid.identification.options import CompareOptions
 from jointid.identification.prepared import require_joint
-from jointid.identification.search.search import Method, Search
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
-from jointid.joint.parameters import Parameter
 from jointid.problem.constant_torque import undivided
 from jointid.problem.recordings import listed
-from jointid.problem.terms import Residual
+from jointid.problem.settings import Settings
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
-from jointid.recording.signals import TorqueHold
 
 if TYPE_CHECKING:
     from jointid.servo.comparing import ServoComparison
@@ -52,18 +52,12 @@ def compare_models(
     score: Literal["windows"] = "windows",
     models: Model | str | Sequence[Any] | None = None,
     folds: int = 5,
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    search: Search | Method | None = None,
-    residual: Residual | None = None,
-    windows: Windows = None,
-    torque_hold: TorqueHold | None = None,
-    mask_standstill: bool = True,
-    shift: Mapping[str, float] | None = None,
-    min_speed: float = 0.0,
     callback: Callable[[ComparisonStep], object] | None = None,
+    **options: Unpack[CompareOptions],
 ) -> Comparison: ...
 
 
+@takes(CompareOptions)
 def compare_models(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None = None,
@@ -71,15 +65,8 @@ def compare_models(
     score: Literal["windows", "rollout"] = "windows",
     models: Model | str | Sequence[Any] | None = None,
     folds: int = 5,
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    search: Search | Method | None = None,
-    residual: Residual | None = None,
-    windows: Windows = None,
-    torque_hold: TorqueHold | None = None,
-    mask_standstill: bool = True,
-    shift: Mapping[str, float] | None = None,
-    min_speed: float = 0.0,
     callback: Callable[[ComparisonStep], object] | None = None,
+    **options: Unpack[CompareOptions],
 ) -> Comparison | ServoComparison:
     """Compare friction models by how well they predict what they were not fitted to.
 
@@ -88,6 +75,9 @@ def compare_models(
     with the fewest parameters whose score is within one standard error of the best score (the
     one-standard-error rule of Breiman et al., 1984). A model that the data do not support cannot win:
     its estimate from all data has the warning `model_too_rich`, or a parameter on a bound.
+
+    The options of `identify` are the same for all models. Delays that are chosen are chosen from all data; windows are
+    by default the shortest of the models' defaults.
 
     Parameters
     ----------
@@ -103,18 +93,7 @@ def compare_models(
         `settings["left_out"]`.
     folds : int
         Number of blocks of one recording, or largest number of groups of several. Default 5.
-    parameters : mapping, optional
-        As in `identify`; for all models.
-    search : Search or str, optional
-        As in `identify`.
-    residual, torque_hold, mask_standstill
-        As in `identify`.
-    shift : mapping of str to float, optional
-        As in `identify`; what is chosen, is chosen from all data, and the same for all models.
-    min_speed : float
-        As in `identify`, the same for all models. Default 0: all motion is judged.
-    windows : int, float, str or WindowOptions, optional
-        As in `identify`; the same for all models. Default: the shortest of the models' defaults.
+    **options
     callback : callable, optional
         Called with a `ComparisonStep` after every fit.
 
@@ -137,9 +116,8 @@ def compare_models(
     ('stribeck', 'stribeck')
     """
     if score == "rollout":
-        usual = (folds == 5, mask_standstill is True, min_speed == 0.0)
-        others = (parameters, search, residual, windows, torque_hold, shift, callback)
-        if not all(usual) or any(each is not None for each in others):
+        usual = {name: option.default for name, option in options_of(CompareOptions).items()}
+        if folds != 5 or callback is not None or options != usual:
             raise InputError(
                 "a servo takes no option but models here; compare_servo_models has more",
                 argument="score",
@@ -152,37 +130,22 @@ def compare_models(
         raise InputError("windows or rollout is expected", argument="score", value=score)
     runs = listed(recordings)
     require_joint(joint)
+    settings, search = Settings.of(options), Search.of(options["search"])
+    windows = settings.windows
     specs = compared_models(models) if models is not None else default_models()
     if models is None:
-        gravity = shown_gravity(
-            runs,
-            joint,
-            parameters=parameters,
-            residual=residual,
-            windows=windows,
-            torque_hold=torque_hold,
-            mask_standstill=mask_standstill,
-            shift=shift,
-            min_speed=min_speed,
-        )
+        gravity = shown_gravity(runs, joint, settings)
         specs = tuple(spec.replace(gravity=gravity) for spec in specs)
     if isinstance(folds, bool) or not isinstance(folds, int | np.integer) or folds < 2:
         raise InputError("a whole number of 2 or more is expected", argument="folds", value=folds)
     parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
-    if residual is None and any(spec.load_friction for spec in specs):
-        residual = "torque"  # the one that all of them have: fits by different residuals are not comparable
-    chosen = Search.of(search)
+    if settings.residual is None and any(spec.load_friction for spec in specs):
+        # The one that all of them have: fits by different residuals are not comparable.
+        settings = replace(settings, residual="torque")
     fitter = Fitter(
         joint=joint,
-        common={
-            "parameters": parameters,
-            "search": chosen,
-            "residual": residual,
-            "torque_hold": torque_hold,
-            "mask_standstill": mask_standstill,
-            "shift": shift,
-            "min_speed": min_speed,
-        },
+        settings=settings,
+        search=search,
         total=len(specs) * (1 + parts),
         callback=callback,
     )
@@ -229,7 +192,7 @@ def compare_models(
             "folds": parts,
             "held_out": kind,
             "windows": duration,
-            "method": chosen.chosen_method,
+            "method": search.chosen_method,
             "residual": first.settings["residual"],
             "left_out": left_out,
         },

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 from jointid.base.errors import InputError
 from jointid.identification.prepared import prepare
 from jointid.joint.joint import Joint
 from jointid.joint.model import Gravity, Model, ModelName
+from jointid.problem.settings import Settings
 from jointid.recording.recording import Recording
 
 _MODELS: tuple[ModelName, ...] = ("coulomb_viscous", "stribeck")
@@ -44,20 +44,21 @@ def compared_models(models: object) -> tuple[Model, ...]:
     return entries
 
 
-def shown_gravity(runs: Sequence[Recording], joint: Joint | None, **options: Any) -> Gravity | None:
+def shown_gravity(
+    runs: Sequence[Recording], joint: Joint | None, settings: Settings
+) -> Gravity | None:
     """Return the gravity that a model without a name gets from the recordings; None where it has none, or it is stated.
 
     Parameters
     ----------
     runs : sequence of Recording
     joint : Joint or None
-    **options
-        As for `prepare`.
+    settings : Settings
     """
     if joint is not None and joint.model.gravity is not None:
         return None
     try:
-        model = prepare(runs, joint, model=None, choose=True, **options).problem.choice.model
+        model = prepare(runs, joint, settings, choose=True).problem.choice.model
     except InputError:  # each fit says what it cannot do
         return None
     found = model.resolved.gravity

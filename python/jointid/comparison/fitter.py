@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
@@ -16,8 +15,10 @@ from jointid.identification.follow_up import EstimateSource
 from jointid.identification.identification import identified
 from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
+from jointid.problem.settings import Settings
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
@@ -59,17 +60,19 @@ class Fitter:
         self,
         *,
         joint: Joint | None,
-        common: Mapping[str, Any],
+        settings: Settings,
+        search: Search,
         total: int,
         callback: Callable[[ComparisonStep], object] | None,
     ) -> None:
-        self._joint, self._common, self._callback = joint, common, callback
+        self._joint, self._settings, self._search = joint, settings, search
+        self._callback = callback
         self.total = total
         self._done = 0
 
     def shift(self, delays: Mapping[str, float]) -> None:
         """Take these delays away from now on [s]."""
-        self._common = {**self._common, "shift": delays}
+        self._settings = replace(self._settings, shift=delays)
 
     def fit(
         self,
@@ -94,9 +97,10 @@ class Fitter:
             As `identify` says it, with the model's name and `where`.
         """
         try:
-            options = {**self._common, "windows": windows}
-            search = options.pop("search")
-            estimate = identified(training, self._joint, spec, search, options, attribute=attribute)
+            settings = replace(self._settings, model=spec, windows=windows)
+            estimate = identified(
+                training, self._joint, settings, self._search, attribute=attribute
+            )
         except InputError as error:
             raise error.at(f"model '{text_of(spec)}'{where}") from error
         self._step(spec)
@@ -120,18 +124,15 @@ class Fitter:
         What all data show of their signals holds for their parts: delays, and that a reading is not taken before the
         torque steps. How much it lacks each part measures.
         """
-        search = self._common["search"]
-        stated = {name: value for name, value in self._common.items() if name != "search"}
+        search = self._search
         try:
             prepared = prepare(
                 training,
                 self._joint,
-                model=spec,
-                windows=windows,
+                replace(self._settings, model=spec, windows=windows),
                 threads=search.threads,
                 measure=False,
                 instant="sensor_before_step" in whole.settings,
-                **stated,
             )
             outcome = run_search(search, prepared.penalty, prepared.domain)
         except InputError as error:

@@ -101,7 +101,7 @@ def _refitted(ready: Prepared, true: Mapping[str, float], names: tuple[str, ...]
             for name, low, high in zip(domain.names, domain.lower, domain.upper, strict=True)
         ]
     )
-    parts = ready.problem.parts(ready.windows)
+    parts = ready.problem.parts(ready.settings.windows)
     best = parts.refit(domain.lower, domain.upper, start, threads=1)
     best = balanced(domain.names, domain.lower, domain.upper, best)
     return np.asarray(best[[domain.names.index(name) for name in names]])

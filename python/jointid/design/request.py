@@ -13,6 +13,7 @@ from jointid.identification.prepared import prepare
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import undivided
+from jointid.problem.settings import Settings
 from jointid.recording.recording import Recording
 
 
@@ -53,7 +54,7 @@ def request_of(joint: Joint, wanted: Sequence[str] | None) -> Request:
             value=str(joint.model),
             place="joint.model",
         )
-    prepared = prepare(_template(joint), joint, parameters=None, shift={}, min_speed=0.0)
+    prepared = prepare(_template(joint), joint, Settings.of({"shift": {}, "min_speed": 0.0}))
     domain = prepared.domain
     names = tuple(name for name in domain.names if not domain.fixed(name))
     # No motion divides an offset from the friction of the two directions: it is taken as it is.

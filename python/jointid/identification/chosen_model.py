@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
@@ -13,8 +12,8 @@ from jointid.identification.refinements.refinements import without_delays
 from jointid.identification.selection.selecting import select_model, simplest_model
 from jointid.identification.warnings.model_too_rich import MODEL_TOO_RICH
 from jointid.problem.problem import Problem
+from jointid.problem.settings import Settings
 from jointid.problem.terms import Request
-from jointid.problem.windows import Windows
 
 # A delay leaves a misfit that a richer model fits in part; a model whose rival misses so much more has no need of that.
 _CLOSE = 2.0
@@ -23,9 +22,7 @@ _CLOSE = 2.0
 def chosen_without_delays(
     problem: Problem,
     request: Request,
-    parameters: Mapping[str, Any] | None,
-    windows: Windows,
-    shift: Mapping[str, float] | None,
+    settings: Settings,
     unfit: Mapping[str, str],
 ) -> tuple[Problem, dict[str, Delay], Selection]:
     """Choose a model, and take the delays of its signals away.
@@ -36,8 +33,9 @@ def chosen_without_delays(
     ----------
     problem : Problem
         Of the recordings as they are, with any choice of terms.
-    request, parameters, windows, shift
-        As in `select_model` and `without_delays`.
+    request : Request
+        As in `select_model`.
+    settings : Settings
     unfit : mapping of str to str
         Models that cannot win, and why.
 
@@ -53,6 +51,7 @@ def chosen_without_delays(
     InputError
         Input that cannot be used.
     """
+    parameters, windows, shift = settings.parameters, settings.windows, settings.shift
     # First: with the wrong model, delays of a fraction of a sample are lost in its misfit.
     chosen, selection = select_model(problem, request, parameters, windows, unfit)
     moved, delays = without_delays(chosen, shift)

@@ -3,39 +3,30 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Unpack
 
+from jointid.base.options import takes
 from jointid.estimate.estimate import Estimate
 from jointid.identification.chosen_model import unfit_in
+from jointid.identification.options import IdentifyOptions
 from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
-from jointid.identification.search.search import Method, Search
+from jointid.identification.search.search import Search
 from jointid.identification.warnings.load_scale import LOAD_SCALE
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model, ModelName
-from jointid.joint.parameters import Parameter
 from jointid.problem.recordings import listed
-from jointid.problem.terms import Residual, loads
-from jointid.problem.windows import Windows
+from jointid.problem.settings import Settings
+from jointid.problem.terms import loads
 from jointid.recording.recording import Recording
-from jointid.recording.signals import TorqueHold
 
 
+@takes(IdentifyOptions)
 def identify(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None = None,
-    *,
-    model: Model | ModelName | Mapping[str, Any] | None = None,
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    search: Search | Method | None = None,
-    residual: Residual | None = None,
-    windows: Windows = None,
-    torque_hold: TorqueHold | None = None,
-    mask_standstill: bool = True,
-    shift: Mapping[str, float] | None = None,
-    min_speed: float | None = None,
-    terms: Mapping[str, str] | None = None,
+    **options: Unpack[IdentifyOptions],
 ) -> Estimate:
     """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
 
@@ -49,44 +40,7 @@ def identify(
     joint : Joint, optional
         Known values, bounds and the model. Without one, inertia, friction and an offset are identified with
         bounds from the data, and the sensor if the recording has one.
-    model : Model, str or mapping, optional
-        Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; each stated field overrides that of the
-        joint's model. Default: the joint's. Where neither names one, or the name is "auto", the model is
-        chosen by held-out prediction: "coulomb_viscous" or "stribeck", with gravity free or none where that
-        is neither stated nor known; `Estimate.selection` has the scores.
-    parameters : mapping, optional
-        Changes by name: a number fixes the parameter; {"value", "min", "max", "vary"} or a `Parameter`
-        changes those fields. Values in SI units.
-    search : Search or str, optional
-        Settings of the search, or a method: "separable" (default), "ga" or "random".
-    residual : str, optional
-        "instruments" (default with a sensor): the gain from the part of the reading that gravity and
-        inertia of a rigid link explain, which neither the reading's noise nor friction that the model
-        lacks biases. "sensor" (the thesis) compares the reading with what the torque leaves for it,
-        "torque" (default without a sensor) the torque with the reading. Where instruments are weak the
-        default is "sensor", and `settings` says why.
-    windows : int, float, "cumulative" or WindowOptions, optional
-        An int is the approximate number of windows (gaps and several recordings change it), a float
-        their duration [s]; "cumulative" compares the running integral at each sample, as the thesis's
-        MATLAB program does. Default: the shortest windows that the noise of the velocity allows.
-    torque_hold : str, optional
-        "zoh" for a torque command held between samples, "linear" for a measured torque.
-        Default: the recording's, else the joint's, else "linear".
-    mask_standstill : bool
-        Whether to leave out the parts in which the joint sticks or stands still, where friction is
-        set-valued and the model does not apply. Default True.
-    shift : mapping of str to float, optional
-        Delays of "torque", "sensor" and "velocity" against the position [s], to be taken away; positive:
-        the signal is late. An empty mapping shifts nothing. Default: the delays that are certain, but for a
-        torque that is early by more than a sample, as it seems beside a late or coarse position; the
-        estimate's `delays` and its report tell them.
-    min_speed : float, optional
-        Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless
-        slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose
-        friction depends on slow motion, such as "stribeck". The estimate's `slow_motion` tells it.
-    terms : mapping of str to str, optional
-        Own terms: extra signals of the recordings and how they enter, e.g. ``{"q6_rate": "viscous+coulomb",
-        "tau_model": "known"}``; the same as the field `terms` of the model. Default: the model's.
+    **options
 
     Returns
     -------
@@ -107,27 +61,14 @@ def identify(
     >>> windows = jid.WindowOptions(duration=0.02)
     >>> estimate = jid.identify(recording, joint, windows=windows, parameters={"viscous": {"min": 0.0, "max": 40.0}})
     """
-    stated = Model.of(model)
-    if terms is not None:
-        stated = stated.replace(terms=terms)
-    options = {
-        "parameters": parameters,
-        "residual": residual,
-        "windows": windows,
-        "torque_hold": torque_hold,
-        "mask_standstill": mask_standstill,
-        "shift": shift,
-        "min_speed": min_speed,
-    }
-    return identified(recordings, joint, stated, Search.of(search), options)
+    return identified(recordings, joint, Settings.of(options), Search.of(options["search"]))
 
 
 def identified(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None,
-    model: Model,
+    settings: Settings,
     search: Search,
-    options: Mapping[str, Any],
     *,
     attribute: bool = True,
 ) -> Estimate:
@@ -135,22 +76,20 @@ def identified(
 
     Parameters
     ----------
-    options : mapping of str to object
-        Further arguments of `prepare`.
     attribute : bool
         Whether the causes of a misfit are looked for: what compares models needs those of one of them. A drift that
         is taken away is looked for in any case. Default True.
     """
     started = time.perf_counter()
+    model = settings.model
     merged = model.over(joint.model) if isinstance(joint, Joint) else model
     if merged.load_friction is True:
         found = [
             identified(
                 recordings,
                 joint,
-                model.replace(load_friction=load),
+                replace(settings, model=model.replace(load_friction=load)),
                 search,
-                options,
                 attribute=attribute,
             )
             for load in loads(merged, listed(recordings), joint)
@@ -162,11 +101,10 @@ def identified(
         prepared = prepare(
             recordings,
             joint,
-            model=model,
+            settings,
             threads=search.threads,
             choose=True,
             unfit=unfit,
-            **options,
         )
         outcome = run_search(search, prepared.penalty, prepared.domain)
         estimate = prepared.estimate(search, outcome, started, attribute)

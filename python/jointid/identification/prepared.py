@@ -39,21 +39,19 @@ from jointid.identification.refinements.sensor_instant import (
     SensorInstant,
     without_early_reading,
 )
-from jointid.identification.refinements.slow_motion import checked_speed
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
 from jointid.identification.search.stated_bounds import known_parameters
 from jointid.joint.joint import Joint
-from jointid.joint.model import AUTO, Model
+from jointid.joint.model import AUTO
 from jointid.joint.own_terms import INERTIA
-from jointid.joint.parameters import Parameter
 from jointid.problem.constant_torque import balanced
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
+from jointid.problem.settings import USUAL, Settings
 from jointid.problem.terms import Request, TermChoice, choose_terms
-from jointid.problem.windows import Windows
 from jointid.recording.mending import Mend, mended
 from jointid.recording.motion import raise_if_hardly_moving, raise_if_still
 from jointid.recording.recording import Recording
@@ -73,8 +71,8 @@ class Prepared:
     penalty : Penalty
         The direct sum over the windows.
     domain : SearchDomain
-    windows : int, float, str, WindowOptions or None
-        As given in the call.
+    settings : Settings
+        Of the call.
     given : tuple of Recording
         As given in the call; those of the problem may be shifted.
     refinements : Refinements
@@ -86,7 +84,7 @@ class Prepared:
     problem: Problem
     penalty: _core.Penalty
     domain: SearchDomain
-    windows: Windows
+    settings: Settings
     given: tuple[Recording, ...]
     refinements: Refinements
     selection: Selection | None = None
@@ -119,7 +117,7 @@ class Prepared:
         known: tuple[Cause, ...] = ()
         if steady is not None:
             problem, drift = steady
-            penalty = penalty_as_fitted(problem, self.windows, self.domain)
+            penalty = penalty_as_fitted(problem, self.settings.windows, self.domain)
             other = replace(self, problem=problem, penalty=penalty)
             found = run_search(search, other.penalty, other.domain)
             again = other._inferred(search, found, started, known=(drift,))
@@ -130,7 +128,7 @@ class Prepared:
             given=self.given,
             known=known,
             domain=self.domain,
-            windows=self.windows,
+            windows=self.settings.windows,
             search=search,
             again=functools.partial(self._again, search),
             attributed=functools.partial(self.estimate, search, outcome, started) if left else None,
@@ -168,10 +166,12 @@ class Prepared:
             domain=domain,
             best=best,
             balance=known_there,
-            shifts=other_windows(self.problem, self.penalty, domain, self.windows, best),
+            shifts=other_windows(self.problem, self.penalty, domain, self.settings.windows, best),
             beside={
-                "residual_side": of_residual_side(self.problem, self.windows, domain, best),
-                "given": of_given_facts(self.problem, self.windows, domain, best),
+                "residual_side": of_residual_side(
+                    self.problem, self.settings.windows, domain, best
+                ),
+                "given": of_given_facts(self.problem, self.settings.windows, domain, best),
                 "symmetry": of_symmetry(self.problem.joint, domain, best),
             },
             convergence=outcome.convergence,
@@ -190,7 +190,7 @@ class Prepared:
         """Return the estimate from other recordings with the same terms, windows and domain."""
         started = time.perf_counter()
         problem = replace(self.problem, recordings=recordings)
-        penalty = penalty_as_fitted(problem, self.windows, self.domain)
+        penalty = penalty_as_fitted(problem, self.settings.windows, self.domain)
         refinements = replace(self.refinements, mends=((),) * len(recordings))
         other = replace(self, problem=problem, penalty=penalty, refinements=refinements)
         quick = Search("separable", seed=search.seed, threads=search.threads)
@@ -203,7 +203,7 @@ class Prepared:
     def _choices(self, search: Search) -> dict[str, Any]:
         """The settings without the recordings, whose fingerprints take a look at every byte."""
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
-        return {
+        choices = {
             "version": _core.__version__,
             "kind": self.given[0].kind,
             "method": search.chosen_method,
@@ -224,6 +224,9 @@ class Prepared:
             "ga": None if search.chosen_method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
         }
+        unusual = self.settings.unusual.items()  # `parameters` are in the joint
+        others = {n: v for n, v in unusual if n not in choices and n != "parameters"}
+        return choices | others
 
 
 def _of_instant(instant: SensorInstant | None) -> dict[str, Any]:
@@ -256,15 +259,8 @@ def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
 def prepare(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None,
+    settings: Settings = USUAL,
     *,
-    model: Model | str | Mapping[str, Any] | None = None,
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    residual: str | None = None,
-    windows: Windows = None,
-    torque_hold: str | None = None,
-    mask_standstill: bool = True,
-    shift: Mapping[str, float] | None = None,
-    min_speed: float | None = None,
     threads: int = 0,
     choose: bool = False,
     unfit: Mapping[str, str] | None = None,
@@ -272,7 +268,7 @@ def prepare(
     measure: bool = True,
     instant: bool = True,
 ) -> Prepared:
-    """Return an identification ready to search; parameters as in `identify`.
+    """Return an identification ready to search.
 
     Parameters
     ----------
@@ -298,11 +294,7 @@ def prepare(
     raise_if_still(given)
     runs, mends = zip(*(mended(run) for run in given), strict=True)
     require_joint(joint)
-    if not isinstance(mask_standstill, bool):
-        raise InputError(
-            "true or false is expected", argument="mask_standstill", value=mask_standstill
-        )
-    stated = Model.of(model)
+    stated, windows = settings.model, settings.windows
     merged = stated if joint is None else stated.over(joint.model)
     if merged.name == AUTO and not choose:
         raise InputError(
@@ -314,38 +306,39 @@ def prepare(
     if joint is not None and stated.stated():
         # What only this call's recordings have apart does not become a property of the joint.
         joint = joint.replace(model=merged.replace(per_recording=joint.model.per_recording))
-    request = Request(model=stated, residual=residual)
+    request = Request(model=stated, residual=settings.residual)
     problem = Problem(
         recordings=runs,
         joint=joint,
         choice=choose_terms(runs, joint, request),
-        torque_hold=torque_hold,
-        mask_standstill=mask_standstill,
+        torque_hold=settings.torque_hold,
+        mask_standstill=settings.mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
     )
-    speed = checked_speed(min_speed)
     selection = None
     try:
         if choose and not merged.named:
             problem, delays, selection = chosen_without_delays(
-                problem, request, parameters, windows, shift, unfit or {}
+                problem, request, settings, unfit or {}
             )
         elif on_time:
             delays = {}
         else:
-            problem, delays = without_delays(problem, shift, measure=measure)
-        if problem.torque_hold != torque_hold:
+            problem, delays = without_delays(problem, settings.shift, measure=measure)
+        if problem.torque_hold != settings.torque_hold:
             mends = tuple(
                 (*found, Mend(code="held_torque", count=len(run), size=run.sample_period))
                 for found, run in zip(mends, runs, strict=True)
             )
-        problem, penalty, slow_motion = without_creep(problem, windows, speed)
+        problem, penalty, slow_motion = without_creep(problem, windows, settings.min_speed)
         sensor_instant = None
         if instant:
             problem, penalty, sensor_instant = without_early_reading(problem, penalty, windows)
-        known = known_parameters(tuple(penalty.names), problem.joint, parameters)
-        problem, penalty = with_instruments(problem, penalty, known, windows, residual is not None)
-        domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed, known)
+        known = known_parameters(tuple(penalty.names), problem.joint, settings.parameters)
+        problem, penalty = with_instruments(
+            problem, penalty, known, windows, settings.residual is not None
+        )
+        domain = domain_for(penalty, problem.joint, settings.parameters, problem.peak_speed, known)
         own = problem.choice.model.resolved.terms
         if own.each:
             from jointid.identification.search.own_duplicates import refuse_duplicates
@@ -363,7 +356,7 @@ def prepare(
         problem=problem,
         penalty=penalty,
         domain=domain,
-        windows=windows,
+        settings=settings,
         given=given,
         refinements=Refinements(
             mends=mends, delays=delays, slow_motion=slow_motion, sensor_instant=sensor_instant

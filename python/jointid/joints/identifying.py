@@ -5,49 +5,41 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.base.options import takes
 from jointid.identification.identification import identify
-from jointid.identification.search.search import Method, Search
+from jointid.identification.options import IdentifyOptions
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model, ModelName
-from jointid.joint.parameters import Parameter
+from jointid.joint.model import Model
 from jointid.joints.citing import cited
 from jointid.joints.coupling import shares_of_others
 from jointid.joints.record import FAILED, IDENTIFIED, JointResult
 from jointid.joints.result import JointEstimates
-from jointid.problem.terms import Residual
-from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
-from jointid.recording.signals import TorqueHold
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
 
 
+@takes(IdentifyOptions)
 def identify_joints(
     robot: RobotRecording,
     joints: Iterable[str | int] | str | None = None,
     *,
     joint: Joint | Mapping[str, Joint] | None = None,
-    model: Model | ModelName | Mapping[str, Any] | None = None,
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    search: Search | Method | None = None,
-    residual: Residual | None = None,
-    windows: Windows = None,
-    torque_hold: TorqueHold | None = None,
-    mask_standstill: bool = True,
-    shift: Mapping[str, float] | None = None,
-    min_speed: float | None = None,
     couplings: bool = True,
     callback: Callable[[str, int, int], None] | None = None,
+    **options: Unpack[IdentifyOptions],
 ) -> JointEstimates:
     """Identify several joints from one recording, each for itself, and say what they owe to each other.
 
     No joint's estimate depends on the others, or on how many threads there are. What a joint's model leaves
-    unexplained is then held against the motion of all other joints of the recording, out of sample.
+    unexplained is then held against the motion of all other joints of the recording, out of sample. The options of
+    `identify` hold for each joint.
 
     Parameters
     ----------
@@ -57,12 +49,11 @@ def identify_joints(
     joint : Joint or mapping of str to Joint, optional
         What is known of the joints: one for all, or by name. A gear ratio other than 1 is used where the recording
         has none. Default: nothing.
-    model, parameters, search, residual, windows, torque_hold, mask_standstill, shift, min_speed
-        As in `identify`, for each joint.
     couplings : bool
         Whether the residuals are held against the other joints' motion. Default True.
     callback : callable, optional
         Called before each joint with its name, its number from 0, and how many there are.
+    **options
 
     Returns
     -------
@@ -88,17 +79,7 @@ def identify_joints(
     names = _wanted(robot, joints)
     known = {name: _known(joint, name) for name in robot.names}
     robot = _with_ratios(robot, known)
-    options = {
-        "parameters": parameters,
-        "search": Search.of(search),
-        "residual": residual,
-        "windows": windows,
-        "torque_hold": torque_hold,
-        "mask_standstill": mask_standstill,
-        "shift": shift,
-        "min_speed": min_speed,
-        "model": Model.of(model),
-    }
+    options["search"], options["model"] = Search.of(options["search"]), Model.of(options["model"])
     recordings = dict(robot)
     results: dict[str, JointResult] = {}
     for number, name in enumerate(names):
@@ -108,7 +89,7 @@ def identify_joints(
         side = str(recording.metadata.get("side", "joint"))
         try:
             described = _described(known[name], name, robot, recording)
-            estimate = identify(recording, described, **options)  # type: ignore[arg-type]
+            estimate = identify(recording, described, **options)
         except InputError as error:
             failed = _of_each(error, len(names)).at(f"joint {name}")
             results[name] = JointResult(name=name, status=FAILED, error=failed, side=side)

@@ -19,29 +19,9 @@ _WINDOWS_EXPECTED = (
 _LARGEST = 1e15  # number or duration of windows that the core can represent
 
 
-def window_options(windows: Windows, recordings: Sequence[Recording]) -> _core.WindowOptions:
-    """Return the argument `windows` of a call as options of the core.
-
-    Parameters
-    ----------
-    windows : int, float, "cumulative", WindowOptions or None
-        An int is the number of windows, a float their duration [s].
-    recordings : sequence of Recording
-        Their shortest sample period is the duration of cumulative windows.
-
-    Raises
-    ------
-    InputError
-        Neither a positive number nor "cumulative".
-    """
-    if isinstance(windows, str):
-        if windows != "cumulative":
-            raise InputError(_WINDOWS_EXPECTED, argument="windows", value=windows)
-        period = min(recording.sample_period for recording in recordings)
-        return _core.WindowOptions(duration=period, cumulative=True)
-    if windows is None:
-        return _core.WindowOptions()
-    if isinstance(windows, _core.WindowOptions):
+def checked_windows(windows: Windows) -> Windows:
+    """Return the argument `windows` of a call, or refuse what cannot be windows of any recording."""
+    if windows is None or isinstance(windows, _core.WindowOptions) or windows == "cumulative":
         return windows
     if isinstance(windows, bool) or not isinstance(windows, numbers.Real):
         raise InputError(_WINDOWS_EXPECTED, argument="windows", value=windows)
@@ -49,6 +29,26 @@ def window_options(windows: Windows, recordings: Sequence[Recording]) -> _core.W
         raise InputError(
             f"a value above 0 and below {_LARGEST:g} is expected", argument="windows", value=windows
         )
+    return windows
+
+
+def window_options(windows: Windows, recordings: Sequence[Recording]) -> _core.WindowOptions:
+    """Return windows as `checked_windows` passes them as options of the core.
+
+    Parameters
+    ----------
+    windows : int, float, "cumulative", WindowOptions or None
+        An int is the number of windows, a float their duration [s].
+    recordings : sequence of Recording
+        Their shortest sample period is the duration of cumulative windows.
+    """
+    if windows is None:
+        return _core.WindowOptions()
+    if isinstance(windows, _core.WindowOptions):
+        return windows
+    if isinstance(windows, str):
+        period = min(recording.sample_period for recording in recordings)
+        return _core.WindowOptions(duration=period, cumulative=True)
     if isinstance(windows, numbers.Integral):
         return _core.WindowOptions(count=int(windows))
     return _core.WindowOptions(duration=float(windows))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import numbers
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,21 +9,15 @@ from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.identification.prepared import prepare
+from jointid.base.options import options_of
 from jointid.identification.search.search import Search
 from jointid.joint.checks import check_flag, check_mapping, finite_number, is_number
 from jointid.joint.model import Model
+from jointid.problem.settings import ProblemOptions
 from jointid.simulation.scenario import Scenario
 
-# Fields of the search, and arguments of `prepare` that a study passes on: the same for all cells, or swept.
-OPTIONS = (
-    *("method", "ga"),
-    *(
-        n
-        for n in inspect.signature(prepare).parameters
-        if n not in ("recordings", "joint", "threads")
-    ),
-)
+OPTIONS = ("method", "ga", *options_of(ProblemOptions))
+"""Fields of the search, and options that a study passes on: the same for all cells, or swept."""
 
 _TOO_LARGE = 2**31  # for a whole number of the core
 
@@ -51,7 +44,7 @@ class Cell:
         return base.changed({n: v for n, v in self.values.items() if not is_option(n)})
 
     def options(self, common: Mapping[str, Any]) -> dict[str, Any]:
-        """Return arguments of `prepare`: the study's, overridden by this cell's."""
+        """Return the options of a problem: the study's, overridden by this cell's."""
         chosen = dict(common)
         fixed: dict[str, Any] = _changes(common.get("parameters"))
         model = Model.of(self.values.get("model")).over(Model.of(common.get("model")))

@@ -10,8 +10,8 @@ from jointid.base.errors import InputError
 from jointid.identification.prepared import require_joint
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
 from jointid.problem.recordings import listed
+from jointid.problem.settings import stated_model
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
 from jointid.study.grid import cells_of
@@ -35,7 +35,7 @@ def work_of(
     joint: Joint | None,
     grid: Mapping[str, Any] | None,
     search: Search,
-    common: dict[str, Any],
+    options: Mapping[str, Any],
     standard_errors: bool,
     tracking: bool,
 ) -> Work:
@@ -43,8 +43,8 @@ def work_of(
 
     Parameters
     ----------
-    common : dict of str to object
-        Arguments of `prepare` for all cells.
+    options : mapping of str to object
+        Options of a problem for all cells.
 
     Others are those of `sweep`.
 
@@ -54,6 +54,8 @@ def work_of(
         An argument, or a value of the grid, that cannot be used with any recording.
     """
     search = _checked(search)
+    common = {name: value for name, value in options.items() if name != "terms"}
+    common["model"] = stated_model(options)
     for name, flag in (("standard_errors", standard_errors), ("tracking", tracking)):
         if not isinstance(flag, bool):
             raise InputError("true or false is expected", argument=name, value=flag)
@@ -76,7 +78,7 @@ def work_of(
     work = Work(
         subject=scenario if scenario is not None else listed(subject),  # type: ignore[arg-type]
         joint=joint,
-        common=common | {"model": Model.of(common["model"])},
+        common=common,
         search=search,
         cells=cells_of(grid or {}, scenario),
         standard_errors=standard_errors,

@@ -17,6 +17,7 @@ from jointid.identification.search.engine import Engine, Outcome
 from jointid.identification.search.run import concluded, separable
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
+from jointid.problem.settings import Settings
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
 from jointid.study.row import REFUSED, Row
@@ -121,7 +122,7 @@ class Runner:
             ]
             if self._ready is None or self._ready[0] != key:
                 self._ready = None  # frees the memory of the last one first
-                prepared = prepare(recordings, joint, **options, threads=work.threads)
+                prepared = prepare(recordings, joint, Settings.of(options), threads=work.threads)
                 # A search by projection needs none.
                 engine: Callable[[], Engine] = functools.cache(
                     functools.partial(Engine.of, prepared.penalty, prepared.domain, work.threads)

@@ -8,18 +8,16 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Unpack
 
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path, whole_number
 from jointid.base.errors import InputError
-from jointid.identification.search.search import Method, Search
+from jointid.base.options import takes
+from jointid.identification.options import IdentifyOptions
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model, ModelName
-from jointid.problem.terms import Residual
-from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
-from jointid.recording.signals import TorqueHold
 from jointid.simulation.scenario import Scenario
 from jointid.study import study_file
 from jointid.study.execution import finished_rows
@@ -102,21 +100,13 @@ class StudyBrokenError(RuntimeError):
 _TRIALS = 10  # where they differ
 
 
+@takes(IdentifyOptions)
 def sweep(
     subject: Recording | Sequence[Recording] | Scenario,
     joint: Joint | None = None,
     *,
     grid: Mapping[str, Any] | None = None,
     trials: int | None = None,
-    model: Model | ModelName | Mapping[str, Any] | None = None,
-    parameters: Mapping[str, Any] | None = None,
-    search: Search | Method | None = None,
-    residual: Residual | None = None,
-    windows: Windows = None,
-    torque_hold: TorqueHold | None = None,
-    mask_standstill: bool = True,
-    shift: Mapping[str, float] | None = None,
-    min_speed: float | None = None,
     standard_errors: bool = True,
     tracking: bool = False,
     truth: Mapping[str, float] | None = None,
@@ -124,8 +114,14 @@ def sweep(
     callback: Callable[[StudyStep], object] | None = None,
     output: str | os.PathLike[str] | None = None,
     resume: bool = False,
+    **options: Unpack[IdentifyOptions],
 ) -> Study:
     """Identify with every combination of some settings, several times each.
+
+    The options of `identify` hold for all cells. A model without a name is "coulomb_viscous". In every cell, trial t
+    adds t to the seed of `search`, for the search and for the noise of a simulated recording; `identify` with a row's
+    seed gives the row. Threads of 0 are all threads in this process, and 1 for each trial in an executor. A grid over
+    "ga" or a field of it means the method "ga", unless one is stated. Callback, checkpoint and resume are refused.
 
     Parameters
     ----------
@@ -142,13 +138,6 @@ def sweep(
     trials : int, optional
         Number for each combination. Default: 10 where trials differ (a scenario's noise, a random search), and 1
         where they do not.
-    model, parameters, residual, windows, torque_hold, mask_standstill, shift, min_speed
-        As in `identify`, for all cells, except that a model without a name is "coulomb_viscous".
-    search : Search or str, optional
-        As in `identify`. In every cell, trial t adds t to its seed, for the search and for the noise of a
-        simulated recording; `identify` with a row's seed gives the row. Threads of 0 are all threads in
-        this process, and 1 for each trial in an executor. A grid over "ga" or a field of it means the method
-        "ga", unless one is stated. Callback, checkpoint and resume are refused.
     standard_errors : bool
         Whether to compute standard errors, which takes some milliseconds per trial. Default True.
     tracking : bool
@@ -166,6 +155,7 @@ def sweep(
         File (.jsonl) that each row is written to when it is done.
     resume : bool
         Whether to continue an existing `output`, also with more trials. Default False.
+    **options
 
     Returns
     -------
@@ -189,17 +179,8 @@ def sweep(
     4
     """
     began = time.perf_counter()
-    common = {
-        "model": model,
-        "parameters": parameters,
-        "residual": residual,
-        "windows": windows,
-        "torque_hold": torque_hold,
-        "mask_standstill": mask_standstill,
-        "shift": shift,
-        "min_speed": min_speed,
-    }
-    work = work_of(subject, joint, grid, Search.of(search), common, standard_errors, tracking)
+    search = Search.of(options.pop("search"))
+    work = work_of(subject, joint, grid, search, options, standard_errors, tracking)
     if work.threads == 0 and executor is not None:
         work = replace(work, threads=1)
     if trials is None:

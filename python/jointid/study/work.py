@@ -32,7 +32,7 @@ class Work:
     subject : tuple of Recording, or Scenario
     joint : Joint or None
     common : dict of str to object
-        Arguments of `prepare`, the same in all cells.
+        Options of a problem, the same in all cells.
     search : Search
         Trial t adds t to its seed.
     cells : tuple of Cell

@@ -17,7 +17,6 @@ from jointid.identification.refinements.slow_motion import contradicting
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 from jointid.recording.mending import Mend
-from jointid.recording.shifting import checked_shift
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,11 +54,11 @@ def without_delays(
     Raises
     ------
     InputError
-        A shift that cannot be used.
+        A shift that these recordings cannot have.
     """
     if not measure:
-        return delays_removed(problem, checked_shift(shift or {})), {}
-    return refined_delays(problem, None if shift is None else checked_shift(shift))
+        return delays_removed(problem, shift or {}), {}
+    return refined_delays(problem, shift)
 
 
 def without_creep(

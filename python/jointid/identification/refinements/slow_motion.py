@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.base.errors import InputError
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.problem.problem import Problem
 
@@ -23,26 +22,6 @@ _DWELL = 3.0  # times the share of time that an oscillation spends below a speed
 _LEAST_SHARE, _LARGEST_SHARE = 0.05, 0.35  # of the time
 _CONTRADICTS = 3.0  # standard errors of independent windows
 _WEIGHTY = 0.25  # of the dry friction
-
-
-def checked_speed(min_speed: object) -> float | None:
-    """Return a least speed [rad/s or m/s], or None for one to be chosen.
-
-    Raises
-    ------
-    InputError
-        Neither None nor a finite number of 0 or more.
-    """
-    if min_speed is None:
-        return None
-    number = isinstance(min_speed, int | float | np.number) and not isinstance(min_speed, bool)
-    if not number or not 0.0 <= float(min_speed) < 1e6:  # type: ignore[arg-type]
-        raise InputError(
-            "a speed of 0 or more is expected, in rad/s or m/s",
-            argument="min_speed",
-            value=min_speed,
-        )
-    return float(min_speed)  # type: ignore[arg-type]
 
 
 def slow_disagreement(

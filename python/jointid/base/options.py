@@ -1,0 +1,130 @@
+"""What functions take by keyword, declared once: default, check, help, and the name on the command line.
+
+A `TypedDict` lists the options, each as ``Annotated[TYPE, Option(...)]``. A function takes them as
+``**options: Unpack[THAT]``, which type checkers expand; `takes` shows them where the program runs.
+"""
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from jointid.base.values import dataclass
+
+_WIDTH = 100  # of lines in docstrings
+
+Taker = TypeVar("Taker", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Option:
+    """One keyword of a function, with all that is said of it anywhere.
+
+    Attributes
+    ----------
+    kind : str
+        Its type, as the reference words it.
+    help : str
+        What it means, for the reference.
+    default : object
+    checked : callable
+        Returns a value as it is used, or raises an `InputError`. Default: any value as it is.
+    flag : str
+        Its name on the command line; empty: it has none.
+    phrase : str
+        What the command line says of it.
+    form : str
+        How it is typed there: "text", "number", "windows", "numbers by name" or "texts by name".
+    metavar : str, optional
+        What stands for its value there. Default: its name.
+    """
+
+    kind: str
+    help: str
+    default: object = None
+    checked: Callable[[Any], Any] = lambda value: value
+    flag: str = ""
+    phrase: str = ""
+    form: str = "text"
+    metavar: str | None = None
+
+
+def options_of(options: type) -> dict[str, Option]:
+    """The options that a `TypedDict` lists, by name."""
+    return {name: hint.__metadata__[0] for name, hint in options.__annotations__.items()}
+
+
+def checked(options: type, stated: Mapping[str, Any]) -> dict[str, Any]:
+    """All options of a `TypedDict`, each stated or by default, as they are used.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used.
+    """
+    return {
+        name: option.checked(stated.get(name, option.default))
+        for name, option in options_of(options).items()
+    }
+
+
+def takes(options: type) -> Callable[[Taker], Taker]:
+    """Decorate what takes ``**options``: signature and docstring list them, and the call gets each, or its default."""
+    entries = options_of(options)
+    defaults = {name: option.default for name, option in entries.items()}
+
+    def decorate(taker: Taker) -> Taker:
+        if isinstance(taker, type):
+            setattr(taker, "__init__", decorate(vars(taker)["__init__"]))  # noqa: B010 (of a class, to the type checker)
+            taker.__doc__ = _documented(taker.__doc__, entries)
+            return taker
+        signature = inspect.signature(taker)
+        own = [each for each in signature.parameters.values() if each.kind != each.VAR_KEYWORD]
+        known = {each.name for each in own} | entries.keys()
+
+        @functools.wraps(taker)
+        def call(*unnamed: Any, **named: Any) -> Any:
+            for name in named:
+                if name not in known:
+                    raise TypeError(
+                        f"{taker.__qualname__}() got an unexpected keyword argument {name!r}"
+                    )
+            return taker(*unnamed, **(defaults | named))
+
+        shown = [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=option.default,
+                annotation=options.__annotations__[name].__origin__,
+            )
+            for name, option in entries.items()
+        ]
+        described: Any = call
+        described.__signature__ = signature.replace(parameters=[*own, *shown])
+        described.__doc__ = _documented(taker.__doc__, entries)
+        return described  # type: ignore[no-any-return]
+
+    return decorate
+
+
+def _documented(text: str | None, entries: Mapping[str, Option]) -> str | None:
+    """A docstring with the options in the place of its line ``**options``."""
+    before, mark, behind = (text or "").partition("**options\n")
+    if not mark:
+        return text
+    indent = before[before.rfind("\n") + 1 :]
+    lines = []
+    for name, option in entries.items():
+        lines += [f"{name} : {option.kind}", *_wrapped(option.help, f"{indent}    ")]
+    return f"{before}{f'{chr(10)}{indent}'.join(lines)}\n{behind}"
+
+
+def _wrapped(text: str, indent: str) -> list[str]:
+    """A paragraph as lines; `textwrap` is slow to import."""
+    lines = [""]
+    for word in text.split():
+        if lines[-1] and len(indent) + len(lines[-1]) + len(word) >= _WIDTH:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}" if lines[-1] else f"    {word}"
+    return lines
