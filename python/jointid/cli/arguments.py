@@ -200,19 +200,6 @@ def method_argument(command: CommandParser) -> None:
     )
 
 
-def term_argument(command: argparse.ArgumentParser) -> None:
-    """Add the own terms of a model."""
-    command.add_argument(
-        "--term",
-        action="append",
-        type=pair,
-        default=[],
-        metavar="SIGNAL=KIND",
-        help="own term: a column (or --extra) and its kind: viscous, coulomb, known, scaled, inertia, ...; "
-        "viscous@rate+coulomb@rate: of its rate; may be repeated",
-    )
-
-
 def with_terms(model: str | None, arguments: argparse.Namespace) -> Model:
     """The model of --model, with the own terms of --term added.
 
@@ -224,50 +211,9 @@ def with_terms(model: str | None, arguments: argparse.Namespace) -> Model:
     from jointid.joint.model import Model
 
     stated = Model.of(model)
-    if not arguments.term:
+    if not arguments.terms:
         return stated
-    return stated.replace(terms={**(stated.terms or {}), **by_name("terms", arguments.term)})
-
-
-def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
-    """Values that --set fixes, by parameter name (SI).
-
-    Raises
-    ------
-    InputError
-        Not a number, or a name is given twice.
-    """
-    return numbers_by_name("parameters", arguments.set)
-
-
-def refinement_arguments(command: argparse.ArgumentParser) -> None:
-    """Add what is done to the data before the search."""
-    command.add_argument(
-        "--shift",
-        action="append",
-        type=pair,
-        metavar="SIGNAL=SECONDS",
-        help="delay of torque, sensor or velocity to remove, positive: late; torque=0 removes none (default: delays "
-        "that are certain)",
-    )
-    command.add_argument(
-        "--min-speed",
-        type=decimal,
-        help="leave out motion slower than this, rad/s or m/s; 0: leave out nothing (default: chosen from the data)",
-    )
-
-
-def refinements(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The delays and the least speed of a command, as arguments of `identify`.
-
-    Raises
-    ------
-    InputError
-        Not a number, or a signal is given twice.
-    """
-    given = arguments.shift
-    shift = None if given is None else numbers_by_name("shift", given)
-    return {"shift": shift, "min_speed": arguments.min_speed}
+    return stated.replace(terms={**(stated.terms or {}), **by_name("terms", arguments.terms)})
 
 
 def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:

@@ -9,9 +9,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import fixed_values, refinements, with_terms
+from jointid.cli.arguments import with_terms
 from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.joint_options import joint_file, joint_of, torque_needed
+from jointid.cli.options import stated_options
 from jointid.cli.outputs import (
     check_output_folder,
     check_outputs,
@@ -82,7 +83,7 @@ def identify(arguments: argparse.Namespace) -> int:
         from jointid.cli.joints import identify_several
 
         return identify_several(arguments, several)
-    changes = fixed_values(arguments)
+    options = stated_options(arguments)
     check_outputs(arguments)
     budget = {
         name: getattr(arguments, name)
@@ -120,13 +121,9 @@ def identify(arguments: argparse.Namespace) -> int:
         estimate = identification.identify(
             recordings,
             joint,
-            parameters=changes or None,
             model=model,
             search=search,
-            residual=arguments.residual,
-            windows=arguments.windows,
-            torque_hold=arguments.torque_hold,
-            **refinements(arguments),
+            **options,
         )
     tested = estimate.selftest(seed=arguments.seed) if arguments.selftest else None
     draws = arguments.bootstrap
@@ -185,11 +182,11 @@ def compare(arguments: argparse.Namespace) -> int:
 
         return compare_whole_robot(arguments)
     _for_one_joint(arguments)
-    changes = fixed_values(arguments)
+    options = stated_options(arguments)
     check_outputs(arguments)
     file = joint_file(arguments)
     models = arguments.models
-    if arguments.term:
+    if arguments.terms:
         models = [with_terms(text, arguments) for text in models or ("coulomb_viscous", "stribeck")]
     merged = [Model.of(each) for each in models or (None,)]
     merged = [each if file is None else each.over(file.model) for each in merged]
@@ -202,13 +199,9 @@ def compare(arguments: argparse.Namespace) -> int:
             joint,
             models=models,
             folds=arguments.folds,
-            parameters=changes or None,
             search=Search(arguments.method, seed=arguments.seed, threads=arguments.threads),
-            residual=arguments.residual,
-            windows=arguments.windows,
-            torque_hold=arguments.torque_hold,
-            **{name: given for name, given in refinements(arguments).items() if given is not None},
             callback=progress,
+            **options,
         )
     refused = _write(comparison.estimate, arguments, comparison)
     wording = Wording.of(arguments)

@@ -9,15 +9,11 @@ from jointid.cli.arguments import (
     Once,
     file_kinds,
     method_argument,
-    pair,
     reading_arguments,
-    refinement_arguments,
     several_recordings,
-    term_argument,
     verbose_argument,
     whole,
     whole_seed,
-    windows,
 )
 from jointid.cli.joint_options import joint_arguments
 from jointid.cli.parser import CommandParser
@@ -188,27 +184,11 @@ def add_info(info: CommandParser) -> None:
 
 
 def _identification_arguments(command: CommandParser) -> None:
+    from jointid.cli.options import declared_arguments
+
     joint_arguments(command)
     method_argument(command)
-    command.add_argument("--residual", help="residual to minimise: instruments, sensor or torque")
-    command.add_argument(
-        "--torque-hold", help="torque between samples: zoh (held command) or linear (measured)"
-    )
-    command.add_argument(
-        "--windows",
-        type=windows,
-        help="number of windows, duration (0.05s) or cumulative; default: as short as the noise allows",
-    )
-    refinement_arguments(command)
-    term_argument(command)
-    command.add_argument(
-        "--set",
-        action="append",
-        type=pair,
-        default=[],
-        metavar="PARAMETER=VALUE",
-        help="fix a parameter (SI)",
-    )
+    declared_arguments(command)
     command.add_argument(
         "--seed",
         type=whole_seed,

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.cli.arguments import fixed_values, refinements, with_terms
+from jointid.cli.arguments import with_terms
 from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.joint_options import facts_of, joint_file, with_facts
+from jointid.cli.options import stated_options
 from jointid.cli.outputs import check_folder, check_page, estimate_file, say_written
 from jointid.cli.progress import JointsProgress
 from jointid.cli.reading import as_given, gear_ratios, how_to_read
@@ -39,7 +40,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
     from jointid.report.saving import save_report
 
     _check(arguments)
-    changes = fixed_values(arguments)
+    options = stated_options(arguments)
     budget = {
         name: getattr(arguments, name)
         for name in ("population", "generations")
@@ -76,18 +77,14 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
             robot,
             joint=joint,
             model=model,
-            parameters=changes or None,
             search=Search(
                 arguments.method,
                 ga=GaOptions(**budget) if budget else None,
                 seed=arguments.seed,
                 threads=arguments.threads,
             ),
-            residual=arguments.residual,
-            windows=arguments.windows,
-            torque_hold=arguments.torque_hold,
             callback=progress,
-            **refinements(arguments),
+            **options,
         )
     wording, saved = Wording.of(arguments), estimate_file(arguments)
     if arguments.report is not None:

@@ -1,8 +1,26 @@
-"""Which option of a command stands for which argument of Python."""
+"""Which option of a command stands for which argument of Python; those of `identify` from their declaration."""
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Mapping
+from typing import Any
+
+from jointid.base.options import options_of
+from jointid.cli.arguments import decimal, numbers_by_name, pair, windows
+from jointid.identification.options import IdentifyOptions
+
+# By the form of an option: how argparse takes it.
+_FORMS: Mapping[str, Mapping[str, Any]] = {
+    "text": {},
+    "number": {"type": decimal},
+    "windows": {"type": windows},
+    "numbers by name": {"type": pair, "action": "append"},
+    "texts by name": {"type": pair, "action": "append"},
+}
+
+DECLARED = {name: option for name, option in options_of(IdentifyOptions).items() if option.flag}
+"""Those that the command line has, by name; `--model` differs from command to command."""
 
 _READING = {
     "columns": "--column",
@@ -33,14 +51,8 @@ _IDENTIFICATION = {
     "joint": "--joint",
     **_FACTS,
     "model": "--model",
-    "terms": "--term",
     "method": "--method",
-    "residual": "--residual",
-    "torque_hold": "--torque-hold",
-    "windows": "--windows",
-    "shift": "--shift",
-    "min_speed": "--min-speed",
-    "parameters": "--set",
+    **{name: option.flag for name, option in DECLARED.items()},
     "seed": "--seed",
     "threads": "--threads",
 }
@@ -87,11 +99,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
     "sweep": {
-        **{
-            name: option
-            for name, option in _IDENTIFICATION.items()
-            if name not in ("torque_hold", "terms", *_FACTS)
-        },
+        **{name: option for name, option in _IDENTIFICATION.items() if name not in _FACTS},
         **_SCENARIO,
         "simulate": "--simulate",
         "subject": "--simulate",
@@ -176,9 +184,7 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--where": "VALUE",
     "--extra": "HEADER",
     "--side": "SIDE",
-    "--term": "KIND",
-    "--set": "VALUE",
-    "--shift": "SECONDS",
+    **{o.flag: o.metavar.partition("=")[2] for o in DECLARED.values() if o.metavar},
     "--gain": "VALUE",
     "--sensor": "VALUE",
     "--grid": "VALUE",
@@ -268,3 +274,31 @@ def option_of(command: str, argument: str) -> tuple[str, str]:
         if name in table:
             return table[name], ""
     return (table[root], key) if root in table else ("", "")
+
+
+def declared_arguments(command: argparse.ArgumentParser) -> None:
+    """Add them."""
+    for name, option in DECLARED.items():
+        command.add_argument(
+            option.flag,
+            dest=name,
+            metavar=option.metavar,
+            help=option.phrase,
+            **_FORMS[option.form],
+        )
+
+
+def stated_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Those that a command was called with, but for own terms, which `with_terms` adds to the model.
+
+    Raises
+    ------
+    InputError
+        Not a number, or a name is given twice.
+    """
+    typed = {name: getattr(arguments, name) for name in DECLARED if name != "terms"}
+    return {
+        name: numbers_by_name(name, value) if DECLARED[name].form == "numbers by name" else value
+        for name, value in typed.items()
+        if value is not None
+    }

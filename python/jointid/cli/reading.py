@@ -174,9 +174,7 @@ def gear_ratios(arguments: argparse.Namespace) -> list[float] | None:
 def as_given(error: InputError, arguments: argparse.Namespace) -> InputError:
     """An error about an extra signal that only an own term names: on the command line it is the term's."""
     root, _, name = error.argument.partition(".")
-    if root != "extra" or name not in by_name(
-        "terms", arguments.term if "term" in arguments else []
-    ):
+    if root != "extra" or name not in by_name("terms", getattr(arguments, "terms", None) or []):
         return error
     if name in by_name("extra", arguments.extra):
         return error

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.advice import without_options
-from jointid.cli.arguments import refinements, with_terms
+from jointid.cli.arguments import with_terms
+from jointid.cli.options import stated_options
 from jointid.cli.outputs import check_folder, check_page, estimate_file, say_written
 from jointid.cli.reading import as_given, gear_ratios, how_to_read, joints_wanted
 from jointid.cli.requirement import required
@@ -21,10 +22,9 @@ if TYPE_CHECKING:
     from jointid.robot.result import RobotEstimate
     from jointid.robot.robot import Robot
 
-_OF_ONE_JOINT = (
-    *("joint", "checkpoint", "resume", "selftest", "causes", "residual", "population"),
-    "generations",
-)
+_OF_ONE_JOINT = ("joint", "checkpoint", "resume", "selftest", "causes", "population", "generations")
+_OF_ROBOTS = ("windows", "shift", "min_speed")
+_READ = ("torque_hold", "terms")  # with the recordings, and with the model
 
 
 def identify_whole_robot(arguments: argparse.Namespace) -> int:
@@ -32,7 +32,7 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
     from jointid.report.saving import save_report
     from jointid.robot.identifying import identify_robot
 
-    _check(arguments)
+    options = _checked(arguments)
     model = with_terms(arguments.model, arguments)
     robot, recordings = _read(arguments, [model])
     found = identify_robot(
@@ -40,8 +40,7 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
         robot,
         inertia=arguments.inertia or "urdf",
         model=model,
-        windows=arguments.windows,
-        **refinements(arguments),
+        **options,
     )
     draws = arguments.bootstrap
     drawn = found.bootstrap(draws, arguments.seed) if draws is not None else None
@@ -74,15 +73,14 @@ def compare_whole_robot(arguments: argparse.Namespace) -> int:
     from jointid.robot.comparing import compare_robot_models
     from jointid.robot.comparison_result import answer_of_comparison
 
-    _check(arguments)
+    options = _checked(arguments)
     asked = {"models": arguments.models, "inertia": arguments.inertia}
     robot, recordings = _read(arguments, [Model.of(each) for each in arguments.models or (None,)])
     found = compare_robot_models(
         recordings,
         robot,
         folds=arguments.folds,
-        windows=arguments.windows,
-        **refinements(arguments),
+        **options,
         **{name: given for name, given in asked.items() if given is not None},
     )
     wording, saved = _of_identify(arguments, found.winner.inertia), estimate_file(arguments)
@@ -154,22 +152,24 @@ def saved_robot(path: Path) -> RobotEstimate | None:
     return RobotEstimate.load(path) if kind == KIND else None
 
 
-def _check(arguments: argparse.Namespace) -> None:
-    """Refuse what holds for one joint only, before the work."""
+def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The options of a robot; refuse what holds for one joint only, before the work."""
+    options = stated_options(arguments)
     for name in _OF_ONE_JOINT:
         if getattr(arguments, name, None) not in (None, False):
             raise InputError(
                 "this is for one joint, not for a robot",
                 argument=f"ga.{name}" if name in ("population", "generations") else name,
             )
-    for name in ("set", "drop_copies", "drop_invalid"):
-        if getattr(arguments, name, None):
-            raise InputError(
-                "this is for one joint, not for a robot",
-                argument="parameters" if name == "set" else name,
-            )
+    of_one = [name for name in options if name not in (*_OF_ROBOTS, *_READ)]
+    for name in (
+        *of_one,
+        *(n for n in ("drop_copies", "drop_invalid") if getattr(arguments, n, None)),
+    ):
+        raise InputError("this is for one joint, not for a robot", argument=name)
     save = arguments.save
     if save is not None and save.suffix != ".json":
         raise InputError("a robot's estimate is saved as .json", argument="save", value=save)
     check_folder("save", save)
     check_page("report", arguments.report)
+    return {name: value for name, value in options.items() if name in _OF_ROBOTS}

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.cli.arguments import fixed_values, with_terms
+from jointid.cli.arguments import with_terms
 from jointid.cli.joint_options import joint_of
+from jointid.cli.options import stated_options
 from jointid.cli.outputs import check_outputs, estimate_file, say_written
 from jointid.cli.reading import as_given, how_to_read
 from jointid.cli.requirement import required
@@ -26,8 +27,10 @@ if TYPE_CHECKING:
 # Options of a joint whose torque is known.
 _OF_TORQUE = (
     *("checkpoint", "resume", "selftest", "bootstrap", "causes", "population", "generations"),
-    *("residual", "torque_hold", "shift", "term"),
+    "terms",
 )
+# By option of `identify`: what it is called of a servo.
+_OF_SERVOS = {"windows": "window", "min_speed": "slowest", "parameters": "parameters"}
 
 
 def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
@@ -46,18 +49,13 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     from jointid.servo.rolling_out import rollout
     from jointid.servo.tables import text_report
 
-    _check(arguments)
+    options = _checked(arguments)
     drive = joint.voltage
     assert drive is not None
-    values = fixed_values(arguments)
+    values = options.pop("parameters", {})
     runs = _load(arguments, drive)
     joint = joint_of(arguments, joint, runs) or joint  # with the facts that options state
     joint = joint.replace(parameters=_fixed(joint, values))
-    options: dict[str, Any] = {}
-    if arguments.windows is not None:
-        options["window"] = _duration(arguments.windows)
-    if arguments.min_speed is not None:
-        options["slowest"] = arguments.min_speed
     found = identify_servo(
         runs, joint, model=with_terms(arguments.model, arguments), seed=arguments.seed, **options
     )
@@ -84,15 +82,19 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     return required({"": found.verdict}, arguments)
 
 
-def _check(arguments: argparse.Namespace) -> None:
-    """Refuse what a servo without a torque signal does not have, before the work."""
-    for name in _OF_TORQUE:
-        if getattr(arguments, name) not in (None, False, []):
-            raise InputError(
-                "a servo with a voltage as input has no such option",
-                argument="n" if name == "bootstrap" else "terms" if name == "term" else name,
-            )
+def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The options of a servo; refuse what one without a torque signal does not have, before the work."""
+    options = stated_options(arguments)
+    stated = (name for name in _OF_TORQUE if getattr(arguments, name) not in (None, False))
+    for name in (*stated, *(options.keys() - _OF_SERVOS)):
+        raise InputError(
+            "a servo with a voltage as input has no such option",
+            argument="n" if name == "bootstrap" else name,
+        )
     check_outputs(arguments)
+    if "windows" in options:
+        options["windows"] = _duration(options["windows"])
+    return {_OF_SERVOS[name]: value for name, value in options.items()}
 
 
 def _duration(windows: object) -> float:

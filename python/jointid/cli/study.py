@@ -14,19 +14,15 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import (
     by_name,
-    fixed_values,
     method_argument,
     number_or_text,
     pair,
-    refinement_arguments,
-    refinements,
     several_recordings,
-    term_argument,
     whole,
     whole_seed,
-    windows,
     with_terms,
 )
+from jointid.cli.options import declared_arguments, stated_options
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.parser import CommandParser
 from jointid.cli.reading import load_all
@@ -74,25 +70,10 @@ def add_sweep(sweep: CommandParser) -> None:
     for name, explanation in (
         ("--ga", "options of the genetic algorithm: default, thesis or thesis_code"),
         ("--model", "friction model, such as stribeck:ripple=2"),
-        ("--residual", "residual to minimise: instruments, sensor or torque"),
     ):
         sweep.add_argument(name, help=explanation)
     method_argument(sweep)
-    term_argument(sweep)
-    sweep.add_argument(
-        "--windows",
-        type=windows,
-        help="number of windows, duration (0.05s) or cumulative; default: as short as the noise allows",
-    )
-    refinement_arguments(sweep)
-    sweep.add_argument(
-        "--set",
-        action="append",
-        type=pair,
-        default=[],
-        metavar="PARAMETER=VALUE",
-        help="fix a parameter (SI)",
-    )
+    declared_arguments(sweep)
     sweep.add_argument(
         "--standard-errors",
         action=argparse.BooleanOptionalAction,
@@ -144,21 +125,12 @@ def sweep(arguments: argparse.Namespace) -> None:
         if arguments.recordings:
             raise InputError("recordings were given, and --simulate; they exclude each other")
         raise InputError("nothing to identify", remedy="give recordings or --simulate JOINT")
-    fixed = fixed_values(arguments)
-    options = {
-        name: getattr(arguments, name)
-        for name in ("model", "residual", "windows")
-        if getattr(arguments, name) is not None
-    } | refinements(arguments)
+    options = stated_options(arguments)
     subject: Any
     unnamed = False
     model = with_terms(arguments.model, arguments)
-    if arguments.term:
-        if arguments.simulate is not None:
-            raise InputError(
-                "a simulation has no extra signals", argument="terms", value=model.terms
-            )
-        options["model"] = model
+    if arguments.terms and arguments.simulate is not None:
+        raise InputError("a simulation has no extra signals", argument="terms", value=model.terms)
     if arguments.simulate is not None:
         subject = scenario_of(arguments.simulate, arguments)
     else:
@@ -187,8 +159,8 @@ def sweep(arguments: argparse.Namespace) -> None:
             callback=progress,
             output=arguments.output,
             resume=arguments.resume,
+            model=model,
             **options,
-            parameters=fixed or None,
         )
     _write(study, arguments)
     if unnamed and "model" not in study.swept and not arguments.json:

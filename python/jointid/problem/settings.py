@@ -170,20 +170,6 @@ class ModelOptions(TypedDict, total=False):
             checked=Model.of,
         ),
     ]
-    min_speed: Annotated[
-        float | None,
-        Option(
-            kind="float, optional",
-            help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless "
-            "slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose friction "
-            'depends on slow motion, such as "stribeck". The estimate\'s `slow_motion` tells it.',
-            checked=_min_speed,
-            flag="--min-speed",
-            phrase="leave out motion slower than this, rad/s or m/s; 0: leave out nothing (default: chosen from the "
-            "data)",
-            form="number",
-        ),
-    ]
     terms: Annotated[
         Mapping[str, str] | None,
         Option(
@@ -196,6 +182,20 @@ class ModelOptions(TypedDict, total=False):
             "viscous@rate+coulomb@rate: of its rate; may be repeated",
             form="texts by name",
             metavar="SIGNAL=KIND",
+        ),
+    ]
+    min_speed: Annotated[
+        float | None,
+        Option(
+            kind="float, optional",
+            help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless "
+            "slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose friction "
+            'depends on slow motion, such as "stribeck". The estimate\'s `slow_motion` tells it.',
+            checked=_min_speed,
+            flag="--min-speed",
+            phrase="leave out motion slower than this, rad/s or m/s; 0: leave out nothing (default: chosen from the "
+            "data)",
+            form="number",
         ),
     ]
 
