@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointid.app.call import Call
+from jointid.base.options import options_of
 from jointid.base.values import dataclass
 
 if TYPE_CHECKING:
@@ -65,21 +66,13 @@ def compare(report: Report, call: Call, models: Sequence[str]) -> Comparison:
     """The comparison of some models; the default ones where none is named."""
     from jointid.comparison.comparison import compare_models
     from jointid.comparison.fitter import ComparisonStep
+    from jointid.identification.options import CompareOptions
 
     def shown(step: ComparisonStep) -> None:
         report(step.number / step.total, f"fit {step.number} of {step.total}: {step.model}")
 
-    allowed = (
-        "parameters",
-        "residual",
-        "windows",
-        "torque_hold",
-        "mask_standstill",
-        "shift",
-        "min_speed",
-        "terms",
-    )
-    arguments = {name: value for name, value in call.identify.items() if name in allowed}
+    shared = options_of(CompareOptions).keys() - {"search"}
+    arguments = {name: value for name, value in call.identify.items() if name in shared}
     if models:
         arguments["models"] = list(models)
     return compare_models(call.recordings(), call.joint, callback=shown, **arguments)
