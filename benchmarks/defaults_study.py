@@ -29,9 +29,7 @@ def problem(
     name = model.pop("model", None)
     request = Request(model=jid.Model(name, **model), residual=residual)
     choice = choose_terms((recording,), joint, request)
-    whole = Problem(
-        recordings=(recording,), joint=joint, choice=choice, torque_hold=None, mask_standstill=True
-    )
+    whole = Problem(recordings=(recording,), joint=joint, choice=choice)
     penalty = whole.penalty(None)
     return penalty, domain_for(penalty, joint, None, whole.peak_speed)
 

@@ -46,9 +46,7 @@ class Given:
 def given(name: str, recordings: tuple[jid.Recording, ...], joint: jid.Joint, model: str) -> Given:
     """The default penalty of `identify` for these recordings."""
     choice = choose_terms(recordings, joint, Request(model=Model.of(model)))
-    problem = Problem(
-        recordings=recordings, joint=joint, choice=choice, torque_hold=None, mask_standstill=True
-    )
+    problem = Problem(recordings=recordings, joint=joint, choice=choice)
     direct = problem.penalty(None)
     domain = domain_for(direct, joint, None, problem.peak_speed)
     usable = [np.asarray(_core.usable_intervals(each), dtype=np.bool_) for each in problem.in_core]

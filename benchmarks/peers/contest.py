@@ -113,9 +113,7 @@ def problem_of(
 ) -> tuple[Problem, _core.Penalty]:
     """The problem and its direct penalty as `identify` makes them for the residual of the thesis."""
     choice = choose_terms((recording,), joint, Request(residual="sensor"))
-    problem = Problem(
-        recordings=(recording,), joint=joint, choice=choice, torque_hold=None, mask_standstill=True
-    )
+    problem = Problem(recordings=(recording,), joint=joint, choice=choice)
     return problem, problem.penalty(windows)
 
 

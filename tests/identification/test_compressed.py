@@ -59,8 +59,6 @@ def made(recording: jid.Recording, case: Case) -> tuple[_core.Penalty, SearchDom
         recordings=(recording,),
         joint=joint,
         choice=choice,
-        torque_hold=None,
-        mask_standstill=True,
     )
     penalty = problem.penalty(None)
     return penalty, domain_for(penalty, joint, None, problem.peak_speed)

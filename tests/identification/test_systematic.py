@@ -28,7 +28,8 @@ def test_who_says_that_a_torque_is_held(
     call: Any, recording: Any, joint: Any, is_held: bool
 ) -> None:
     problem: Any = SimpleNamespace(
-        torque_hold=call, joint=None if joint is None else SimpleNamespace(torque_hold=joint)
+        settings=SimpleNamespace(torque_hold=call),
+        joint=None if joint is None else SimpleNamespace(torque_hold=joint),
     )
     run: Any = SimpleNamespace(torque_hold=recording)
     assert held(problem, run) == is_held

@@ -9,9 +9,9 @@ from online_feeding import blocks, fed, shifted
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
-from jointid.online.settings import Settings
+from jointid.online.settings import OnlineSettings
 from jointid.online.sliding import Sliding
-from jointid.problem.terms import Request
+from jointid.problem.settings import USUAL
 
 
 @pytest.fixture(scope="module")
@@ -61,15 +61,11 @@ def test_follows_a_joint_that_changes() -> None:
 
 
 def test_holds_no_more_than_its_window(excited: jid.Recording) -> None:
-    settings = Settings(
+    settings = OnlineSettings(
         joint=jid.thesis_joint(),
         window=3.0,
         update=0.5,
-        request=Request(),
-        parameters=None,
-        windows=None,
-        torque_hold=None,
-        mask_standstill=True,
+        posed=USUAL,
     )
     sliding = Sliding(settings, ("time", "position", "velocity", "torque", "sensor"))
     held = []

@@ -11,7 +11,7 @@ from online_feeding import fed
 import jointid as jid
 from jointid.online import sliding
 from jointid.online.plan import Plan, make_plan
-from jointid.online.settings import Settings
+from jointid.online.settings import OnlineSettings
 
 Array = NDArray[np.float64]
 COUNTS = 808_000  # of the encoder, a turn of the output
@@ -153,7 +153,7 @@ def test_windows_are_as_long_as_asked(excited: jid.Recording, duration: float) -
 def test_rest_is_looked_at_once_an_update(monkeypatch: pytest.MonkeyPatch) -> None:
     planned: list[float] = []
 
-    def counted(settings: Settings, recording: jid.Recording, fastest: float) -> Plan | None:
+    def counted(settings: OnlineSettings, recording: jid.Recording, fastest: float) -> Plan | None:
         planned.append(recording.time[-1])
         return make_plan(settings, recording, fastest)
 

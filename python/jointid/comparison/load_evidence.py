@@ -124,7 +124,7 @@ def _other_causes(problem: Problem, penalty: _core.Penalty) -> list[Array]:
         found.append(recording.velocity[last] - recording.velocity[first])
         columns.append(found)
     joined = [np.concatenate(parts) for parts in zip(*columns, strict=True)]
-    joined.append(np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill)))
+    joined.append(np.asarray(penalty.torque_steps(*problem.masked)))
     return joined
 
 

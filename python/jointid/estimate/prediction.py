@@ -18,6 +18,7 @@ from jointid.estimate.settings import model_of
 from jointid.joint.joint import Joint
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
+from jointid.problem.settings import Settings
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
 from jointid.recording.mending import mended
@@ -149,10 +150,7 @@ def _posed(fitted: FittedModel, recording: Recording) -> Problem:
         recordings=tuple(shifted(mended(run)[0], shift) for run in listed(recording)),
         joint=fitted.joint,
         choice=choice,
-        torque_hold=settings["torque_hold"],
-        mask_standstill=settings["mask_standstill"],
-        shift=shift,
-        min_speed=settings.get("min_speed", 0.0),
+        settings=Settings.of({**settings, "model": choice.model, "terms": None, "shift": shift}),
     )
 
 

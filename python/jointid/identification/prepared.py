@@ -215,8 +215,8 @@ class Prepared:
             **_of_gain(choice, penalty),
             "windows": penalty.window_duration,
             "cumulative": penalty.cumulative,
-            "torque_hold": problem.torque_hold,
-            "mask_standstill": problem.mask_standstill,
+            "torque_hold": problem.settings.torque_hold,
+            "mask_standstill": problem.settings.mask_standstill,
             "shift": dict(problem.shift),
             "min_speed": problem.min_speed,
             **_of_instant(self.refinements.sensor_instant),
@@ -311,8 +311,7 @@ def prepare(
         recordings=runs,
         joint=joint,
         choice=choose_terms(runs, joint, request),
-        torque_hold=settings.torque_hold,
-        mask_standstill=settings.mask_standstill,
+        settings=replace(settings, shift={}, min_speed=0.0),  # until they are taken away
         threads=whole_number("threads", threads, 0, 1024),
     )
     selection = None
@@ -325,7 +324,7 @@ def prepare(
             delays = {}
         else:
             problem, delays = without_delays(problem, settings.shift, measure=measure)
-        if problem.torque_hold != settings.torque_hold:
+        if problem.settings.torque_hold != settings.torque_hold:
             mends = tuple(
                 (*found, Mend(code="held_torque", count=len(run), size=run.sample_period))
                 for found, run in zip(mends, runs, strict=True)

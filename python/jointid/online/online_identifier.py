@@ -6,28 +6,29 @@ import threading
 import weakref
 from collections.abc import Callable, Mapping
 from types import TracebackType
-from typing import Any, Self
+from typing import Self, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.errors import InputError
+from jointid.base.options import checked as checked_options
+from jointid.base.options import takes
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model, ModelName
-from jointid.joint.parameters import Parameter
 from jointid.online.online_estimate import OnlineEstimate
+from jointid.online.options import OnlineOptions
 from jointid.online.samples import checked
-from jointid.online.settings import Settings
+from jointid.online.settings import OnlineSettings
 from jointid.online.worker import Worker
-from jointid.problem.terms import Request, Residual
-from jointid.recording.signals import TorqueHold
+from jointid.problem.settings import Settings
 
 Array = NDArray[np.float64]
 
 _OPTIONAL = ("velocity", "sensor", "motor_torque", "current")
 
 
+@takes(OnlineOptions)
 class OnlineIdentifier:
     """Identify a joint while it runs, from the last seconds of its motion.
 
@@ -36,7 +37,8 @@ class OnlineIdentifier:
     takes a few milliseconds at any sample rate, and nothing older than the window is kept. Windows of
     integration and bounds are chosen as in `identify`; they are checked while the window fills, and then
     once per window. A window of integration has at least five samples: below about 50 samples per second
-    the default window of 30 s has few of them, and the estimate is less accurate near reversals.
+    the default window of 30 s has few of them, and the estimate is less accurate near reversals. The gain is
+    found by regression: `residual` is "sensor" (default with a sensor) or "torque".
 
     `close`, or the end of a `with` block, ends the thread; so does deleting the identifier, unless its
     callback refers to it.
@@ -51,12 +53,7 @@ class OnlineIdentifier:
     update : float
         Time between estimates, and duration of a piece [s], rounded up to a whole number of integration
         windows; default 0.5.
-    model, residual, parameters, torque_hold, mask_standstill
-        As for `identify`; only models with at most one shape parameter, and the gain by regression:
-        `residual` is "sensor" (default with a sensor) or "torque".
-    windows : float, optional
-        Duration of an integration window [s]; `window` must contain more than two per parameter.
-        Default: from the noise of the samples.
+    **options
     callback : callable, optional
         Called with each `OnlineEstimate`, on the identifier's thread. The next call, or the end of the
         `with` block, raises the exceptions of the callback.
@@ -88,25 +85,16 @@ class OnlineIdentifier:
         *,
         window: float = 30.0,
         update: float = 0.5,
-        model: Model | ModelName | Mapping[str, Any] | None = None,
-        residual: Residual | None = None,
-        parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-        windows: float | None = None,
-        torque_hold: TorqueHold | None = None,
-        mask_standstill: bool = True,
         callback: Callable[[OnlineEstimate], object] | None = None,
+        **options: Unpack[OnlineOptions],
     ) -> None:
         if callback is not None and not callable(callback):
             raise InputError("a function is expected", argument="callback", value=callback)
-        self._settings = Settings(
+        self._settings = OnlineSettings(
             joint=joint,
             window=window,
             update=update,
-            request=Request(model=Model.of(model), residual=residual),
-            parameters=parameters,
-            windows=windows,
-            torque_hold=torque_hold,
-            mask_standstill=mask_standstill,
+            posed=Settings.of(checked_options(OnlineOptions, options)),
         )
         self._signals: tuple[str, ...] | None = None
         self._last_time = -np.inf

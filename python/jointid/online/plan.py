@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.identification.search.domain import SearchDomain, domain_for
-from jointid.online.settings import Settings
+from jointid.online.settings import OnlineSettings
 from jointid.problem.problem import Problem
 from jointid.problem.terms import choose_terms
 from jointid.recording.recording import Recording
@@ -71,12 +71,12 @@ class Plan:
     full: bool
 
 
-def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan | None:
+def make_plan(settings: OnlineSettings, recording: Recording, fastest: float) -> Plan | None:
     """Return a plan from the samples in memory; None while they do not suffice.
 
     Parameters
     ----------
-    settings : Settings
+    settings : OnlineSettings
     recording : Recording
         The samples in memory.
     fastest : float
@@ -93,12 +93,12 @@ def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan 
     problem = settings.problem(recording, choice)
     core = problem.in_core[0]
     scale = _core.MotionScale(core)
-    if not scale.moves or not _core.usable_intervals(core, settings.mask_standstill).any():
+    if not scale.moves or not problem.usable(0).any():
         return None
     full = recording.duration >= settings.window
     try:
         frame = problem.penalty(settings.windows)
-        domain = domain_for(frame, settings.joint, settings.parameters, problem.peak_speed)
+        domain = domain_for(frame, settings.joint, settings.posed.parameters, problem.peak_speed)
     except InputError:
         if full:
             raise  # more samples of the same motion do not help
@@ -113,7 +113,7 @@ def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan 
         residual=_core.Residual[choice.residual],
         gear_ratio=choice.gear_ratio,
         window_duration=duration,
-        mask_standstill=settings.mask_standstill,
+        mask_standstill=settings.posed.mask_standstill,
         scale=scale,
         lower=domain.lower,
         upper=domain.upper,
@@ -140,7 +140,7 @@ def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan 
     )
 
 
-def outdated(plan: Plan, settings: Settings, recording: Recording) -> bool:
+def outdated(plan: Plan, settings: OnlineSettings, recording: Recording) -> bool:
     """Return whether the samples in memory need another plan because of noise, speed or rate."""
     core = settings.problem(recording, plan.problem.choice).in_core[0]
     scale = _core.MotionScale(core)
@@ -154,6 +154,8 @@ def outdated(plan: Plan, settings: Settings, recording: Recording) -> bool:
     return any(max(a, b) > limit * min(a, b) for a, b in pairs)
 
 
-def _wanted_duration(core: _core.Recording, domain: SearchDomain, settings: Settings) -> float:
+def _wanted_duration(
+    core: _core.Recording, domain: SearchDomain, settings: OnlineSettings
+) -> float:
     """Return the window duration for the velocity's noise; the frame's divides the recording evenly instead."""
-    return _core.window_duration(core, len(domain.names), settings.mask_standstill)
+    return _core.window_duration(core, len(domain.names), settings.posed.mask_standstill)

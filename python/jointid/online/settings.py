@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numbers
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,20 +11,24 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.prepared import require_joint
 from jointid.identification.search.stated_bounds import parameter_bounds
-from jointid.joint.checks import finite_number, is_number
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO
-from jointid.joint.parameters import Parameter
+from jointid.online.options import checked_duration
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
+from jointid.problem.settings import Settings
 from jointid.problem.terms import Request, TermChoice, choose_terms
-from jointid.recording.attributes import check_torque_hold
 from jointid.recording.recording import Recording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Settings:
+class OnlineSettings:
     """Settings of an on-line identification; see `OnlineIdentifier`.
+
+    Attributes
+    ----------
+    posed : Settings
+        How the samples of a window pose a problem.
 
     Raises
     ------
@@ -37,38 +39,23 @@ class Settings:
     joint: Joint | None
     window: float
     update: float
-    request: Request
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None
-    windows: float | None
-    torque_hold: str | None
-    mask_standstill: bool
+    posed: Settings
 
     def __post_init__(self) -> None:
         require_joint(self.joint)
         if self.joint is not None:
             own = self.joint.model
-            model = self.request.model.over(own).replace(per_recording=own.per_recording)
+            model = self.posed.model.over(own).replace(per_recording=own.per_recording)
             object.__setattr__(self, "joint", self.joint.replace(model=model))
-        for name in ("window", "update", "windows"):
-            _check_duration(name, getattr(self, name), optional=name == "windows")
+        for name in ("window", "update"):
+            checked_duration(name, getattr(self, name))
         if self.window < 4.0 * self.update:
             raise InputError(
                 f"at least four times update, {self.update:g} s, is expected",
                 argument="window",
                 value=self.window,
             )
-        if isinstance(self.windows, numbers.Integral):
-            raise InputError(
-                "the duration of a window in seconds is expected, like 0.02",
-                argument="windows",
-                value=self.windows,
-            )
-        if not isinstance(self.mask_standstill, bool):
-            raise InputError(
-                "true or false is expected", argument="mask_standstill", value=self.mask_standstill
-            )
-        check_torque_hold(self.torque_hold)
-        if self.request.residual == "instruments":
+        if self.posed.residual == "instruments":
             raise InputError(
                 "instruments need the whole recording; on line the gain is found by regression",
                 argument="residual",
@@ -77,14 +64,25 @@ class Settings:
             )
         self._check_terms()
 
+    @property
+    def request(self) -> Request:
+        """The terms and the residual that the call asks for."""
+        return Request(model=self.posed.model, residual=self.posed.residual)
+
+    @property
+    def windows(self) -> float | None:
+        """Duration of an integration window, if it is stated [s]."""
+        windows = self.posed.windows
+        assert windows is None or isinstance(windows, float)
+        return windows
+
     def problem(self, recording: Recording, choice: TermChoice) -> Problem:
         """Return the problem for these samples."""
         return Problem(
             recordings=(recording,),
             joint=self.joint,
             choice=choice,
-            torque_hold=self.torque_hold,
-            mask_standstill=self.mask_standstill,
+            settings=self.posed,
         )
 
     def check_signals(self, signals: tuple[str, ...]) -> None:
@@ -114,7 +112,7 @@ class Settings:
         output_torque(recording, joint)
         choice = choose_terms((recording,), joint, self.request)
         names = tuple(self.problem(recording, choice).penalty(None).names)
-        parameter_bounds(names, joint, self.parameters)
+        parameter_bounds(names, joint, self.posed.parameters)
         if self.windows is not None and self.window <= 2 * len(names) * self.windows:
             raise InputError(
                 f"{len(names)} parameters need more than {2 * len(names)} windows of integration within window, "
@@ -126,7 +124,7 @@ class Settings:
 
     def _check_terms(self) -> None:
         """Refuse settings that are wrong for any samples; only the samples show whether there is a sensor."""
-        model = self.request.model
+        model = self.posed.model
         chosen = (model if self.joint is None else self.joint.model).resolved
         if (model if self.joint is None else self.joint.model).name == AUTO:
             raise InputError(
@@ -170,21 +168,6 @@ class Settings:
             self.check_signals(with_sensor)
         except InputError:
             self.check_signals(with_sensor[:-1])
-
-
-def _check_duration(name: str, value: object, *, optional: bool) -> None:
-    if optional and value is None:
-        return
-    if not is_number(value):
-        raise InputError("a duration in seconds is expected", argument=name, value=value)
-    try:
-        seconds = finite_number("", name, value)
-    except InputError as error:
-        value, seconds = error.value, 0.0
-    if seconds <= 0.0:
-        raise InputError(
-            "a duration above 0 and finite [s] is expected", argument=name, value=value
-        )
 
 
 def _example(signals: tuple[str, ...], kind: str) -> Recording:

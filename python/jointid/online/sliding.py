@@ -18,7 +18,7 @@ from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.pieces import SHORTEST, next_piece
 from jointid.online.plan import Plan, make_plan, outdated
 from jointid.online.samples import Samples
-from jointid.online.settings import Settings
+from jointid.online.settings import OnlineSettings
 from jointid.problem.constant_torque import balanced, undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.recording.recording import Recording
@@ -39,7 +39,7 @@ class Sliding:
 
     Parameters
     ----------
-    settings : Settings
+    settings : OnlineSettings
     signals : tuple of str
         "time" and others.
     closed : callable, optional
@@ -48,7 +48,7 @@ class Sliding:
 
     def __init__(
         self,
-        settings: Settings,
+        settings: OnlineSettings,
         signals: tuple[str, ...],
         closed: Callable[[], bool] = lambda: False,
     ) -> None:

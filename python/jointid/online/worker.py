@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
 from jointid.online.online_estimate import OnlineEstimate
-from jointid.online.settings import Settings
+from jointid.online.settings import OnlineSettings
 from jointid.online.sliding import Sliding
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ class Worker:
     """
 
     def __init__(
-        self, settings: Settings, callback: Callable[[OnlineEstimate], object] | None
+        self, settings: OnlineSettings, callback: Callable[[OnlineEstimate], object] | None
     ) -> None:
         self._settings = settings
         self._callback = callback

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from dataclasses import field
-from typing import TypeVar
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.problem.own_integrals import known_torque, own_series
 from jointid.problem.recordings import output_torque, raise_if_slowly_sampled
+from jointid.problem.settings import USUAL, Settings
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import WindowTable
 from jointid.problem.windows import Windows, window_options
@@ -38,25 +39,31 @@ class Problem:
     recordings : tuple of Recording
     joint : Joint or None
     choice : TermChoice
-    torque_hold : str or None
-        Overrides that of the recording and of the joint.
-    mask_standstill : bool
+    settings : Settings
+        Of the call, with what was chosen and done where it left the choice.
     threads : int
         0 (default): all.
-    shift : mapping of str to float
-        Delays that were taken away from the signals [s]. Default: none.
-    min_speed : float
-        What is slower is left out [rad/s or m/s]. Default 0: nothing.
     """
 
     recordings: tuple[Recording, ...]
     joint: Joint | None
     choice: TermChoice
-    torque_hold: str | None
-    mask_standstill: bool
+    settings: Settings = USUAL
     threads: int = 0
-    shift: Mapping[str, float] = field(default_factory=dict)
-    min_speed: float = 0.0
+
+    def changed(self, **settings: Any) -> Problem:
+        """Return the problem with some settings changed."""
+        return replace(self, settings=replace(self.settings, **settings))
+
+    @property
+    def shift(self) -> Mapping[str, float]:
+        """Delays that were taken away from the signals [s]."""
+        return self.settings.shift or {}
+
+    @property
+    def min_speed(self) -> float:
+        """What is slower is left out [rad/s or m/s]."""
+        return self.settings.min_speed or 0.0
 
     def penalty(self, windows: Windows) -> _core.Penalty:
         """Return the penalty over these windows: an int is their number, a float their duration [s].
@@ -124,7 +131,7 @@ class Problem:
                 terms=list(self.choice.terms),
                 windows=options,
                 residual=_core.Residual[residual or self.choice.residual],
-                mask_standstill=self.mask_standstill,
+                mask_standstill=self.settings.mask_standstill,
                 gear_ratio=self.choice.gear_ratio,
                 per_recording=list(self.choice.per_recording),
                 threads=self.threads,
@@ -217,9 +224,19 @@ class Problem:
         """The recordings for the core; they share the arrays, and each computes its mask once."""
         return [self._in_core(number) for number in range(len(self.recordings))]
 
+    @property
+    def masked(self) -> tuple[list[_core.Recording], bool]:
+        """The recordings for the core, and whether it leaves out where they stand still."""
+        return self.in_core, self.settings.mask_standstill
+
+    def usable(self, number: int) -> NDArray[np.uint8]:
+        """Whether each interval between samples of a recording is used."""
+        recordings, standstill = self.masked
+        return np.asarray(_core.usable_intervals(recordings[number], standstill))
+
     def hold(self, number: int) -> str:
         """How the torque of a recording varies between samples: "zoh" or "linear"."""
-        hold = self.torque_hold
+        hold: str | None = self.settings.torque_hold
         if hold is None:
             hold = self.recordings[number].torque_hold
         if hold is None:
@@ -232,7 +249,7 @@ class Problem:
         """Whether anybody says how the torque varies between samples."""
         of_joint = self.joint is not None and self.joint.torque_hold is not None
         of_runs = any(run.torque_hold is not None for run in self.recordings)
-        return self.torque_hold is not None or of_joint or of_runs
+        return self.settings.torque_hold is not None or of_joint or of_runs
 
     def output_torque(self, number: int) -> Array:
         """The drive's torque of a recording at the output [N·m or N]."""

@@ -207,8 +207,7 @@ def _delay(fit: Fitted) -> Iterator[Candidate]:
     Of a signal whose delay was measured by itself, that says more than the misfit of the whole balance.
     """
     if "torque" not in fit.prompt:
-        runs = fit.problem.in_core
-        late = -fit.summed(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
+        late = -fit.summed(fit.penalty.torque_steps(*fit.problem.masked))
         yield Candidate(name="delay", columns=late[:, None], detail="torque")
     if "sensor_gain" in fit.names and "sensor" not in fit.prompt:
         gain = fit.value("sensor_gain")

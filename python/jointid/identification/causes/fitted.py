@@ -156,9 +156,8 @@ class Fitted:
             return self.beside.weights
         problem = self.problem
         return [
-            np.diff(recording.time)
-            * np.asarray(_core.usable_intervals(core, problem.mask_standstill), dtype=np.float64)
-            for recording, core in zip(problem.recordings, problem.in_core, strict=True)
+            np.diff(recording.time) * problem.usable(number).astype(np.float64)
+            for number, recording in enumerate(problem.recordings)
         ]
 
     def value(self, name: str) -> float:

@@ -34,7 +34,7 @@ def other_windows(
         penalty,
         recordings=problem.in_core,
         terms=list(problem.choice.terms),
-        mask_standstill=problem.mask_standstill,
+        mask_standstill=problem.settings.mask_standstill,
         gear_ratio=problem.choice.gear_ratio,
         per_recording=list(problem.choice.per_recording),
         lower=lower,
@@ -166,7 +166,7 @@ def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array) -> Array
         for number, recording in enumerate(problem.recordings)
     ]
     slow = 1.0  # of a column that is not used here
-    motion = penalty.link_motion(problem.in_core, problem.mask_standstill, periods, slow)
+    motion = penalty.link_motion(*problem.masked, periods, slow)
     link, stepped = motion[:, [0, 1, 2, 3, 9]], motion[:, 4]
     for number in range(len(holds)):
         if not holds[number]:  # it tells nothing of the link's share in a step
@@ -195,7 +195,7 @@ def _of_curvature(problem: Problem, penalty: _core.Penalty, best: Array) -> Arra
         return None
     if penalty.cumulative:
         return None
-    lacking = np.asarray(penalty.bending(problem.in_core, problem.mask_standstill, best))
+    lacking = np.asarray(penalty.bending(*problem.masked, best))
     if penalty.residual == _core.Residual.sensor:
         lacking = lacking / float(best[names.index("sensor_gain")])
     return lacking
@@ -203,7 +203,7 @@ def _of_curvature(problem: Problem, penalty: _core.Penalty, best: Array) -> Arra
 
 def held(problem: Problem, recording: Recording) -> bool:
     """Return whether the torque is held between samples."""
-    hold = problem.torque_hold or recording.torque_hold
+    hold = problem.settings.torque_hold or recording.torque_hold
     if hold is None and problem.joint is not None:
         hold = problem.joint.torque_hold
     return hold == "zoh"

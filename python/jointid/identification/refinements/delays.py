@@ -98,7 +98,7 @@ def refined_delays(
         )
     if choose:
         problem = mended
-    return replace(problem, shift=shift) if shift else problem, found
+    return problem.changed(shift=shift) if shift else problem, found
 
 
 def _with_held_torque(problem: Problem, delay: float) -> Problem | None:
@@ -109,7 +109,7 @@ def _with_held_torque(problem: Problem, delay: float) -> Problem | None:
     period = problem.recordings[0].sample_period
     if delay > -_HELD * period or problem.states_hold:
         return None
-    held = replace(problem, torque_hold="zoh")
+    held = problem.changed(torque_hold="zoh")
     if not fits_better(problem, held, _HELD_GAIN):
         return None
     moved = _shifted(problem, {"torque": delay})
@@ -120,7 +120,7 @@ def _with_held_torque(problem: Problem, delay: float) -> Problem | None:
 
 def delays_removed(problem: Problem, given: Mapping[str, float]) -> Problem:
     """Return the problem with delays that are known taken away [s], without a look at others."""
-    return replace(_shifted(problem, given), shift=dict(given)) if given else problem
+    return _shifted(problem, given).changed(shift=dict(given)) if given else problem
 
 
 def _shifted(problem: Problem, shift: Mapping[str, float]) -> Problem:

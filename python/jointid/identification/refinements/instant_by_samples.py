@@ -82,9 +82,7 @@ def _rows(problem: Problem) -> Iterator[Array]:
         if not coarse or problem.hold(number) != "zoh":
             continue
         velocity, time = recording.velocity, recording.time
-        usable = np.asarray(
-            _core.usable_intervals(problem.in_core[number], problem.mask_standstill)
-        )
+        usable = problem.usable(number)
         at = np.arange(_BEFORE + 1, len(time) - 1)
         kept = np.abs(velocity[at]) > _SLOW * problem.peak_speed
         for near in range(-_BEFORE - 1, 1):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from jointid import _core
 from jointid.base.advice import Action
@@ -83,14 +82,14 @@ def without_creep(
         return problem, penalty, None
     slow = contradicting(problem, penalty)
     if slow is not None:
-        problem = replace(problem, min_speed=slow.speed)
+        problem = problem.changed(min_speed=slow.speed)
         penalty = problem.penalty(windows)
     return problem, penalty, slow
 
 
 def _faster(problem: Problem, windows: Windows, min_speed: float) -> Problem:
     """The problem without motion that is slower; an error tells what the speed leaves."""
-    faster = replace(problem, min_speed=min_speed)
+    faster = problem.changed(min_speed=min_speed)
     try:
         faster.parts(windows)
     except InputError as error:

@@ -156,7 +156,7 @@ def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Ar
         for number, recording in enumerate(problem.recordings)
     ]
     slow = 0.1 * problem.peak_speed
-    moved = penalty.link_motion(problem.in_core, problem.mask_standstill, periods, slow)
+    moved = penalty.link_motion(*problem.masked, periods, slow)
     rows, duration, lasting = moved[:, :-1], moved[:, 3], moved[:, -1]
     whole = np.abs(lasting - duration) < 1e-9 * lasting + 1e-12
     return rows if whole.all() else np.compress(whole, rows.T, axis=1).T  # still by columns
@@ -179,7 +179,7 @@ def _rests_on_a_limit(recording: Recording) -> bool:
 def _with_step(problem: Problem, number: int, step: float) -> Recording:
     """A recording with so much of each step of the torque added to its reading."""
     recording, torque = problem.recordings[number], problem.output_torque(number)
-    usable = np.asarray(_core.usable_intervals(problem.in_core[number], problem.mask_standstill))
+    usable = problem.usable(number)
     # Where friction is set-valued, it answers the step.
     used = np.append(usable, 0) | np.append(0, usable)
     change = np.diff(torque, prepend=torque[0]) * (used > 0)

@@ -1,0 +1,63 @@
+"""What `OnlineIdentifier` takes by keyword besides joint, window and update."""
+
+import numbers
+from collections.abc import Mapping
+from typing import Annotated, Any, TypedDict
+
+from jointid.base.errors import InputError
+from jointid.base.options import Option
+from jointid.joint.checks import finite_number, is_number
+from jointid.joint.model import Model, ModelName
+from jointid.problem.settings import BalanceOptions
+
+
+def checked_duration(name: str, value: Any) -> float:
+    """Return a duration [s], or refuse what is none."""
+    if not is_number(value):
+        raise InputError("a duration in seconds is expected", argument=name, value=value)
+    try:
+        seconds = finite_number("", name, value)
+    except InputError as error:
+        value, seconds = error.value, 0.0
+    if seconds <= 0.0:
+        raise InputError(
+            "a duration above 0 and finite [s] is expected", argument=name, value=value
+        )
+    return seconds
+
+
+def _windows(value: Any) -> float | None:
+    if value is None:
+        return None
+    seconds = checked_duration("windows", value)
+    if isinstance(value, numbers.Integral):
+        raise InputError(
+            "the duration of a window in seconds is expected, like 0.02",
+            argument="windows",
+            value=value,
+        )
+    return seconds
+
+
+class _OwnOptions(TypedDict, total=False):
+    model: Annotated[
+        Model | ModelName | Mapping[str, Any] | None,
+        Option(
+            kind="Model, str or mapping, optional",
+            help="As for `identify`, with at most one shape parameter; it is not chosen here. Default: the joint's, "
+            'or "coulomb_viscous".',
+        ),
+    ]
+    windows: Annotated[
+        float | None,
+        Option(
+            kind="float, optional",
+            help="Duration of an integration window [s]; `window` must contain more than two per parameter. Default: "
+            "from the noise of the samples.",
+            checked=_windows,
+        ),
+    ]
+
+
+class OnlineOptions(_OwnOptions, BalanceOptions, total=False):
+    """Those of the balance, and its own."""
