@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import jointid as jid
-from jointid.estimate.causes import MEANINGS
+from jointid.identification.causes.families import BY_NAME
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from plants import Bench, Law, Log, Plant, chirp, simulate, sines, thesis, trapezoids
@@ -245,7 +245,7 @@ def named(case: Case, recording: jid.Recording, estimate: jid.Estimate) -> list[
         causes = estimate.causes({"other axis": signal}).found
         return found + [_full(each.name, each.detail) for each in causes]
     for finding in estimate.findings:
-        if finding.code in MEANINGS and finding.severity != "info":
+        if finding.code in BY_NAME and finding.severity != "info":
             detail = finding.message.partition(" (")[2].partition(",")[0]
             found.append(_full(finding.code, detail))
     return found

@@ -106,7 +106,8 @@ FOLDERS: dict[str, Folder] = {
         may_use={"balance", *_FOUND, "identification/search"}, packages={"numpy"}
     ),
     "identification/warnings": Folder(
-        may_use={"balance", *_FOUND, "identification/inference"}, packages={"numpy"}
+        may_use={"balance", *_FOUND, "identification/inference", "identification/causes"},
+        packages={"numpy"},
     ),
     "comparison": Folder(may_use={"balance", *_SOUGHT, "servo"}, packages={"numpy", "pandas"}),
     "joints": Folder(

@@ -11,11 +11,11 @@ import pytest
 from plants import Bench, Law, Log, Plant, simulate, sines, thesis
 
 import jointid as jid
-from jointid.estimate.causes import MEANINGS
 from jointid.estimate.delays import Delay
 from jointid.identification.causes import causes, fitted
 from jointid.identification.causes.attributed import Attributed
-from jointid.identification.causes.candidates import Candidate, listed_candidates
+from jointid.identification.causes.candidates import Candidate
+from jointid.identification.causes.families import BY_NAME, listed_candidates
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, first_windows, summed
 from jointid.identification.causes.suspicion import suspicious
@@ -66,7 +66,7 @@ def estimates(runs: dict[str, jid.Recording]) -> dict[str, jid.Estimate]:
 
 def _named(estimate: jid.Estimate) -> list[str]:
     """Causes that a warning names; a note of a harmless one is none."""
-    return [found.code for found in estimate.warnings if found.code in MEANINGS]
+    return [found.code for found in estimate.warnings if found.code in BY_NAME]
 
 
 @pytest.mark.parametrize("name", [name for name in _BROKEN if name not in _OF_THEIR_OWN])
@@ -182,14 +182,14 @@ def test_sums_of_windows_end_with_their_stretch(
     every = Fitted.of(problem, penalty, best, (1, 2))
     fit = Fitted.of(problem, penalty, best, (1, 2), most=256, beside=every)
     assert fit.chosen is not None
-    assert len(fit.residual) == len(fit.bounds) == len(fit.run) == 256
+    assert len(fit.residual) == len(fit.spans) == len(fit.run) == 256
     windows = np.arange(penalty.window_count)[fit.chosen]
     for factor in (4, 16, 64):
         first = first_windows(fit.neighbours, factor)
         last = np.append(first[1:], 256) - 1
         assert (windows[last] - windows[first] < factor).all()
         assert (fit.run[last] == fit.run[first]).all()
-    np.testing.assert_array_equal(fit.bounds, every.bounds[fit.chosen])
+    np.testing.assert_array_equal(fit.spans, every.spans[fit.chosen])
     np.testing.assert_array_equal(fit.residual, every.residual[fit.chosen])
     square = every.integral_of_each(lambda _, run: run.velocity**2)
     found = fit.integral_of_each(lambda _, run: run.velocity**2)
@@ -362,7 +362,7 @@ def test_a_velocity_that_is_measured_as_prompt_is_no_cause(
 
 def test_noise_of_a_sensor_is_no_structure(runs: dict[str, jid.Recording]) -> None:
     estimate = jid.identify(runs["loud sensor"], jid.thesis_joint(), search="separable")
-    assert not {"structured_residual", *MEANINGS} & {found.code for found in estimate.findings}
+    assert not {"structured_residual", *BY_NAME} & {found.code for found in estimate.findings}
 
 
 def test_a_clipped_torque_is_its_own_cause(runs: dict[str, jid.Recording]) -> None:

@@ -11,6 +11,7 @@ from jointid.estimate.causes import Cause
 from jointid.estimate.findings import TITLE
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.changes import from_to
+from jointid.identification.causes.families import BY_NAME
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +66,7 @@ def test_a_change_of_a_value_near_zero_is_no_share(
 def test_a_title_has_the_changes_that_fit_into_a_line_and_the_details_have_all() -> None:
     cause = Cause(
         name="inertia_varies",
+        meaning=BY_NAME["inertia_varies"].meaning,
         detail="2 × angle",
         size="±18 %",
         share=0.9,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.identification.causes.remedies import advice_against
+from jointid.identification.causes.families import against_delay
 from jointid.identification.chosen_model import unfit_in
 from jointid.identification.prepared import prepare
 from jointid.problem.settings import Settings
@@ -129,11 +129,11 @@ def test_a_held_torque_is_proposed(
     settings = Settings.of({"torque_hold": torque_hold, "model": "coulomb_viscous"})
     problem = prepare(held, None, settings).problem
     late = -early * held.sample_period
-    fit = SimpleNamespace(problem=problem)
+    fit = SimpleNamespace(sample_period=held.sample_period, torque_held=problem.hold(0) == "zoh")
     cause = SimpleNamespace(
         candidate=SimpleNamespace(name="delay", detail="torque"), coefficients=np.array([late])
     )
-    advice = advice_against(fit, cause)  # type: ignore[arg-type]
+    advice = against_delay(fit, cause)  # type: ignore[arg-type]
     calls = [dict(each.arguments) for each in advice if each.kind == "call"]
     assert calls == ([{"torque_hold": "zoh"}] if proposed else [])
     assert advice[-1].kind == "inspect"

@@ -7,9 +7,9 @@ import pytest
 from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
-from jointid.estimate.causes import MEANINGS
 from jointid.estimate.delays import Delay
 from jointid.identification.causes.causes import _prompt
+from jointid.identification.causes.families import BY_NAME
 from jointid.identification.causes.suspicion import correlated, suspicious
 from jointid.identification.warnings.inspection import inspect
 from jointid.identification.warnings.spikes import _without_kicks
@@ -63,7 +63,7 @@ def test_structure_that_moves_nothing_is_worth_knowing_only(
 def test_a_misfit_names_all_friction_at_low_speed(
     estimates: dict[str, jid.Estimate], name: str
 ) -> None:
-    first = next(found for found in estimates[name].findings if found.code in MEANINGS)
+    first = next(found for found in estimates[name].findings if found.code in BY_NAME)
     assert {"static", "stribeck"} <= set(first.parameters)
     assert _wide(estimates[name]) - {"sensor_offset"} <= set(first.parameters)
 

@@ -13,9 +13,9 @@ from jointid.identification.causes import attribution, changes, events, fitted, 
 from jointid.identification.causes.attribution import Score, score_of
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
+from jointid.identification.causes.families import against_delay
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds
-from jointid.identification.causes.remedies import advice_against
 from jointid.identification.causes.slow_passages import slow_rows
 
 
@@ -144,8 +144,8 @@ def _fit(speed: Any, **given: Any) -> Any:
         "integral_of_each": lambda _: np.asarray(speed, dtype=float),
         "run": np.zeros(count, dtype=int),
         "neighbours": np.zeros(count, dtype=int),
-        "bounds": np.column_stack([np.arange(count), np.arange(count) + 1]),
-        "problem": SimpleNamespace(recordings=(SimpleNamespace(time=np.arange(count + 1.0)),)),
+        "spans": np.column_stack([np.arange(count), np.arange(count) + 1.0]),
+        "runs": (SimpleNamespace(time=np.arange(count + 1.0)),),
     }
     return SimpleNamespace(**(usual | given))
 
@@ -316,8 +316,8 @@ def test_a_torque_rests_on_its_limit(samples: int, limit: bool, side: float) -> 
 @pytest.mark.parametrize(("resting", "kept"), [(49, 51), (50, 100)])
 def test_windows_on_a_limit_are_left_out_unless_most_are(resting: int, kept: int) -> None:
     fit = _fit(np.arange(100) < resting)
-    fit.problem.joint = None
-    fit.problem.recordings[0].torque = np.zeros(101)
+    recording = SimpleNamespace(torque=np.zeros(101))
+    fit.problem = SimpleNamespace(joint=None, recordings=(recording,))
     assert Fitted.trusted.func(fit).sum() == kept  # type: ignore[attr-defined]
 
 
@@ -328,15 +328,12 @@ def test_windows_on_a_limit_are_left_out_unless_most_are(resting: int, kept: int
     ("early", "held"), [(0.301, True), (0.299, False), (0.699, True), (0.701, False)]
 )
 def test_a_torque_that_is_half_a_sample_early_is_held(early: float, held: bool) -> None:
-    choice = SimpleNamespace(model=SimpleNamespace(resolved=None))
-    run = SimpleNamespace(sample_period=1e-3)
-    problem = SimpleNamespace(choice=choice, recordings=(run,), hold=lambda _: "linear")
     late: Any = SimpleNamespace(
         candidate=_candidate(1, "delay"), coefficients=np.array([-early * 1e-3])
     )
     late.candidate = SimpleNamespace(name="delay", detail="torque")
-    fit: Any = SimpleNamespace(problem=problem)
-    assert ("torque_hold" in advice_against(fit, late)[0].arguments) == held
+    fit: Any = SimpleNamespace(sample_period=1e-3, torque_held=False)
+    assert ("torque_hold" in against_delay(fit, late)[0].arguments) == held
 
 
 @pytest.mark.parametrize(

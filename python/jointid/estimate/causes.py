@@ -24,6 +24,8 @@ class Cause:
     ----------
     name : str
         E.g. "gravity", "load_friction", "drift"; the guide lists them.
+    meaning : str
+        What the name means, as the beginning of a sentence.
     detail : str
         Which of its kind: the coefficient that drifts, the order of a harmonic, the signal that is late.
     share : float
@@ -55,6 +57,7 @@ class Cause:
     """
 
     name: str
+    meaning: str = ""
     detail: str = ""
     share: float
     scale: float
@@ -86,7 +89,7 @@ class Cause:
     def title(self) -> str:
         """What is missing, its size, and what it moves, as much as a title holds."""
         inside = ", ".join(filter(None, (self.detail, self.size.partition(", ")[0])))
-        what = MEANINGS[self.name] + (f" ({inside})" if inside else "")
+        what = self.meaning + (f" ({inside})" if inside else "")
         if not self.harmful:
             return f"{what}: harmless"
         if self.effect:  # says more than a title holds
@@ -251,24 +254,3 @@ def _seconds(value: float) -> str:
 
 def _in_errors(size: float) -> str:
     return f"{size:.2g} of its {'error' if size < 1.0 else 'errors'}"
-
-
-MEANINGS = {
-    "gravity": "gravity that the model lacks",
-    "inertia_varies": "inertia that varies with the angle",
-    "load_friction": "friction that grows with the load",
-    "slow_motion": "low-speed friction that the model lacks",
-    "presliding": "friction that builds up after each reversal",
-    "stribeck_exponent": "another decay of friction with speed",
-    "drift": "drift of a coefficient",
-    "harmonic": "torque over the joint angle",
-    "ripple": "torque over the motor angle",
-    "delay": "late or early signal",
-    "other_signal": "another signal that acts on the joint",
-    "disturbance": "short disturbance",
-    "asymmetry": "friction that differs between directions",
-    "offset": "constant torque that the model lacks",
-    "wrong_scale": "known inertia that does not fit the torque",
-    "other_run": "a recording with other values than the rest",
-}
-"""What each name means, as the beginning of a sentence."""

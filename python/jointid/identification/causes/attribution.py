@@ -12,7 +12,7 @@ from jointid.base.values import dataclass
 from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
-from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.fitted_balance import FittedBalance
 from jointid.identification.causes.folds import Folds, summed
 from jointid.identification.causes.slow_passages import SlowRows, slow_rows
 from jointid.identification.causes.whole_recording import WholeRecording
@@ -45,13 +45,13 @@ class Score:
 
 
 def attribute(
-    fit: Fitted, tried: list[Candidate], whole: Fitted | None = None
+    fit: FittedBalance, tried: list[Candidate], whole: FittedBalance | None = None
 ) -> tuple[Attributed, ...] | None:
     """Return the candidates that explain the misfit, one after the other.
 
     Parameters
     ----------
-    whole : Fitted, optional
+    whole : FittedBalance, optional
         All of a recording of which `fit` has stretches. Those tell which candidates explain the misfit; events,
         sizes and what they move are taken from all of it. Default: `fit` has everything.
 
@@ -118,7 +118,7 @@ def attribute(
     return tuple(found)
 
 
-def shares(fit: Fitted, tried: list[Candidate]) -> list[float]:
+def shares(fit: FittedBalance, tried: list[Candidate]) -> list[float]:
     """Return the shares of the misfit that candidates explain, each by itself, of those that surely do."""
     base = list(range(fit.jacobian.shape[1]))
     found = []
@@ -131,7 +131,7 @@ def shares(fit: Fitted, tried: list[Candidate]) -> list[float]:
     return found
 
 
-def _of_the_limit(fit: Fitted, base: Array, residual: Array) -> bool:
+def _of_the_limit(fit: FittedBalance, base: Array, residual: Array) -> bool:
     """Whether the misfit is gone from the other windows once those on the torque's limit are left out."""
     kept = fit.trusted
     if kept.all():
@@ -144,7 +144,7 @@ def _of_the_limit(fit: Fitted, base: Array, residual: Array) -> bool:
 
 
 def _of_event(
-    fit: Fitted, matrix: Array, base: list[int], event: LocalEvent, reached: Array
+    fit: FittedBalance, matrix: Array, base: list[int], event: LocalEvent, reached: Array
 ) -> Attributed:
     """The shifts when the event is left out."""
     steps = fit.solve(matrix[:, base], matrix[:, -1])
@@ -157,7 +157,7 @@ def _of_event(
     )
 
 
-def _of_slow_rows(fit: Fitted, matrix: Array, slow: SlowRows) -> Attributed:
+def _of_slow_rows(fit: FittedBalance, matrix: Array, slow: SlowRows) -> Attributed:
     """The shifts when slow motion is left out, of what is known without it."""
     kept = np.where(slow.rows[:, None], 0.0, matrix)
     number = ("speed", slow.speed, "/s")
@@ -175,7 +175,7 @@ def _of_slow_rows(fit: Fitted, matrix: Array, slow: SlowRows) -> Attributed:
     )
 
 
-def _without_slow(fit: Fitted, kept: Array, matrix: Array) -> Array:
+def _without_slow(fit: FittedBalance, kept: Array, matrix: Array) -> Array:
     """Steps without the slow windows; none for what only these windows show."""
     count = len(fit.start)
     left = np.einsum("ni,ni->i", kept[:, :count], kept[:, :count])
@@ -194,7 +194,7 @@ def _family(candidate: Candidate) -> str:
     return candidate.family or candidate.name
 
 
-def at_scales(fit: Fitted, matrix: Array) -> list[tuple[int, Folds]]:
+def at_scales(fit: FittedBalance, matrix: Array) -> list[tuple[int, Folds]]:
     """Return the folds of columns and residual, its last column, for sums of 1, 4, 16 and 64 windows."""
     scaled = []
     for factor in SCALES:
@@ -276,7 +276,7 @@ def _parsimonious(scores: dict[int, Score], tried: list[Candidate]) -> int:
 
 
 def _attributed(
-    fit: Fitted,
+    fit: FittedBalance,
     matrix: Array,
     base: list[int],
     tried: list[Candidate],

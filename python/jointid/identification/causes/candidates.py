@@ -1,27 +1,21 @@
-"""The table of candidates: what a model may lack, by name, as integrals over the windows.
-
-A new cause is a function here and a line in `FAMILIES`.
-"""
+"""What a model may lack as integrals over the windows: one function for each row in the table of `families`."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.fitted_balance import LATE, FittedBalance
 from jointid.identification.causes.samples import Samples, WaySinceReversal, all_samples
-from jointid.problem.recordings import recording_names
 from jointid.recording.order_statistics import quantile_of_sizes
-from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-FILTERED = "velocity, which is not the position's rate"
 _PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
 _MOST_RUNS = 3  # recordings of which each is tried by itself
 
@@ -54,13 +48,12 @@ class Candidate:
     finest: bool = False
 
 
-def listed_candidates(fit: Fitted, only: str = "") -> list[Candidate]:
-    """Return all candidates that the model lacks and the recordings can show, or those of one family."""
-    families = [family for family in FAMILIES if only in ("", family.__name__[1:])]
-    return [each for family in families for each in family(fit) if np.any(each.columns)]
+def nothing(_: FittedBalance) -> Iterator[Candidate]:
+    """No columns: it is found otherwise."""
+    return iter(())
 
 
-def _gravity(fit: Fitted) -> Iterator[Candidate]:
+def gravity(fit: FittedBalance) -> Iterator[Candidate]:
     """Without a sensor, which feels the link's: beside one it would take the place of a wrong gain.
 
     Also beside the weight of a link as described, which may be described wrongly.
@@ -71,7 +64,7 @@ def _gravity(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(name="gravity", columns=_angle(fit, 1.0))
 
 
-def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
+def inertia_varies(fit: FittedBalance) -> Iterator[Candidate]:
     """From Lagrange's equation of an inertia M(q): M a + M' v² / 2, integrated without the acceleration."""
     if not _revolute(fit):
         return
@@ -87,13 +80,13 @@ def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(name="inertia_varies", columns=columns, detail=detail)
 
 
-def _mean_of_basis(fit: Fitted, order: float) -> Array:
+def _mean_of_basis(fit: FittedBalance, order: float) -> Array:
     """Means of cosine and sine of a multiple of the angle over all samples."""
     sums, count = np.zeros(2), 0
-    for recording in fit.problem.recordings:
-        for part in all_samples(recording):
+    for run in fit.runs:
+        for part in all_samples(run):
             sums += _pair(order * part.position).sum(axis=0)
-        count += len(recording)
+        count += len(run.time)
     return sums / count
 
 
@@ -105,12 +98,12 @@ def _centrifugal(_: int, run: Samples, order: float) -> Array:
     return np.asarray(order * _slope(order * run.position) * run.velocity[:, None] ** 2)
 
 
-def inertia_basis(fit: Fitted, order: float) -> Array:
+def inertia_basis(fit: FittedBalance, order: float) -> Array:
     """Cosine and sine of a multiple of the angle at all samples, shape (samples, 2)."""
-    return np.concatenate([_pair(order * run.position) for run in fit.problem.recordings])
+    return np.concatenate([_pair(order * run.position) for run in fit.runs])
 
 
-def _load_friction(fit: Fitted) -> Iterator[Candidate]:
+def load_friction(fit: FittedBalance) -> Iterator[Candidate]:
     """With the load from the sensor, or from the model's gravity and inertia; never from the drive's torque."""
     if "load_friction" in fit.names:
         return
@@ -128,10 +121,10 @@ def _load_friction(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(name="load_friction", columns=load[:, None])
 
 
-def _slow(fit: Fitted) -> Iterator[Candidate]:
+def slow_motion(fit: FittedBalance) -> Iterator[Candidate]:
     """Friction at low speed: another decay, or the position since the last reversal."""
     fast = _typical_speed(fit)
-    reach = max(float(np.ptp(run.position)) for run in fit.problem.recordings)
+    reach = max(float(np.ptp(run.position)) for run in fit.runs)
     speeds = fast * np.array([0.02, 0.05, 0.1, 0.2, 0.4])
     ways = reach * np.array([1e-4, 1e-3, 1e-2])
     linear = fit.integral_of_each(
@@ -139,7 +132,7 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
             np.exp(-np.abs(run.velocity)[:, None] / speeds) * np.sign(run.velocity)[:, None]
         )
     )
-    ways_gone = [WaySinceReversal(run) for run in fit.problem.recordings]
+    ways_gone = [WaySinceReversal(run) for run in fit.runs]
     since = fit.integral_of_each(
         lambda number, run: (
             np.exp(-ways_gone[number].of(run.cut)[:, None] / ways) * np.sign(run.velocity)[:, None]
@@ -166,33 +159,37 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
     yield Candidate(name="slow_motion", columns=np.hstack([linear[:, ::2], since]), family=family)
 
 
-def _drift(fit: Fitted) -> Iterator[Candidate]:
+def drift(fit: FittedBalance) -> Iterator[Candidate]:
     """Coefficients that change evenly with time."""
-    middle = fit.integral(lambda _, run: run.time - run.time[0]) / fit.duration
+    middle = fit.integral_of_each(lambda _, run: run.time - run.begin) / fit.duration
     progress = middle - np.average(middle, weights=fit.duration)
-    for index, term in enumerate(fit.penalty.terms):
+    for index, term in enumerate(fit.terms):
         name = fit.names[index]
         if index not in fit.free:
             continue
-        if term.friction or name in ("torque_offset", "sensor_offset", "sensor_gain"):
+        if (term is not None and term.friction) or name in (
+            "torque_offset",
+            "sensor_offset",
+            "sensor_gain",
+        ):
             column = progress * fit.columns[:, index]
             yield Candidate(name="drift", columns=column[:, None], detail=name)
 
 
-def _harmonic(fit: Fitted) -> Iterator[Candidate]:
+def harmonic(fit: FittedBalance) -> Iterator[Candidate]:
+    """Of the angles of which the motion covers enough."""
     if not _revolute(fit):
         return
-    reach = max(float(np.ptp(run.position)) for run in fit.problem.recordings)
+    reach = max(float(np.ptp(run.position)) for run in fit.runs)
     for order in range(2, 7):
         # Less than half a period is a slope, which other candidates are, too.
         if order * reach > _PERIOD and not _has_order(fit, "position", float(order)):
             yield Candidate(name="harmonic", columns=_angle(fit, float(order)), detail=str(order))
 
 
-def _ripple(fit: Fitted) -> Iterator[Candidate]:
+def ripple(fit: FittedBalance) -> Iterator[Candidate]:
     """Over longer windows only the ripple at reversals is left, which any cause at reversals resembles."""
-    joint = fit.problem.joint
-    gear = abs(joint.gear_ratio) if joint is not None else 1.0
+    gear = fit.gear_ratio
     if gear == 1.0 or not _revolute(fit) or fit.group > 1:
         return
     for order in (0.5, 1.0, 2.0, 3.0, 4.0):
@@ -201,96 +198,59 @@ def _ripple(fit: Fitted) -> Iterator[Candidate]:
             yield Candidate(name="ripple", columns=columns, detail=f"{order:g}", finest=True)
 
 
-def _delay(fit: Fitted) -> Iterator[Candidate]:
+def delay(fit: FittedBalance) -> Iterator[Candidate]:
     """To first order, the integral of a signal that is late changes by its rise over the window.
 
     Of a signal whose delay was measured by itself, that says more than the misfit of the whole balance.
     """
-    if "torque" not in fit.prompt:
-        late = -fit.summed(fit.penalty.torque_steps(*fit.problem.masked))
-        yield Candidate(name="delay", columns=late[:, None], detail="torque")
-    if "sensor_gain" in fit.names and "sensor" not in fit.prompt:
-        gain = fit.value("sensor_gain")
-        rise = gain * fit.rise_of_each(lambda _, run: _present(run.sensor))
-        yield Candidate(name="delay", columns=rise[:, None], detail="sensor")
-    if not fit.problem.recordings[0].velocity_derived and "velocity" not in fit.prompt:
-        rise = fit.rise(lambda _, run: _of_velocity(fit, run))
-        yield Candidate(name="delay", columns=rise[:, None], detail="velocity")
+    for signal in LATE:
+        change = fit.late(signal)
+        if change is not None:
+            yield Candidate(name="delay", columns=change[:, None], detail=signal)
 
 
-def _velocity(fit: Fitted) -> Iterator[Candidate]:
-    """A velocity that is not the position's rate, as behind a filter: what the model says with either."""
-    if fit.filtered and not fit.problem.recordings[0].velocity_derived:
-        rise = fit.value("inertia") * fit.rise(lambda _, run: _rate(run) - run.velocity)
-        torque = fit.integral(
-            lambda _, run: _friction(fit, _rate(run)) - _friction(fit, run.velocity)
-        )
-        yield Candidate(name="delay", columns=(rise + torque)[:, None], detail=FILTERED)
-
-
-def _rate(run: Recording) -> Array:
-    return np.asarray(np.gradient(run.position, run.time))
-
-
-def _of_velocity(fit: Fitted, run: Recording) -> Array:
-    """Torque of the terms that the velocity enters: inertia and friction, but for what the travel gives."""
-    total = fit.value("inertia") * np.gradient(run.velocity, run.time)
-    return np.asarray(total + _friction(fit, run.velocity))
-
-
-def _friction(fit: Fitted, velocity: Array) -> Array:
-    """The friction at a velocity, without its viscous part: over a window that is the travel's."""
-    total = -fit.value("viscous") * velocity
-    shapes = {shape: fit.value(shape) for term in fit.penalty.terms for shape in term.shapes}
-    for index, term in enumerate(fit.penalty.terms):
-        if term.friction and not term.needs_load:
-            values = np.array([shapes[shape] for shape in term.shapes])
-            total += fit.best[index] * _core.friction_basis(term.key, velocity, values)
-    return np.asarray(total)
-
-
-def _asymmetry(fit: Fitted) -> Iterator[Candidate]:
-    if any(name.endswith("_positive") for name in fit.names):
+def asymmetry(fit: FittedBalance) -> Iterator[Candidate]:
+    """In proportion to the speed: half the difference of constant friction is an offset."""
+    if fit.is_asymmetric:
         return
     speed = fit.integral_of_each(lambda _, run: np.abs(run.velocity))
     yield Candidate(name="asymmetry", columns=speed[:, None])
 
 
-def _offset(fit: Fitted) -> Iterator[Candidate]:
+def offset(fit: FittedBalance) -> Iterator[Candidate]:
+    """Where the model has none."""
     if not {"torque_offset", "sensor_offset"} & set(fit.names):
         yield Candidate(name="offset", columns=fit.duration[:, None])
 
 
-def _scale(fit: Fitted) -> Iterator[Candidate]:
+def wrong_scale(fit: FittedBalance) -> Iterator[Candidate]:
     """A given inertia that does not fit the torque's scale; one at its bound was not given."""
     if "inertia" in fit.given:
         column = fit.columns[:, fit.names.index("inertia")]
         yield Candidate(name="wrong_scale", columns=column[:, None])
 
 
-def _other_signal(fit: Fitted) -> Iterator[Candidate]:
+def other_signal(fit: FittedBalance) -> Iterator[Candidate]:
     """Signals beside those of the model, and the friction's change with them."""
-    signals = dict(fit.signals)
-    first = fit.problem.recordings[0]
-    if len(fit.problem.recordings) == 1 and first.temperature is not None:
-        signals.setdefault("temperature", first.temperature)
-    for name, values in signals.items():
+    for name, values in fit.further_signals.items():
         level = values - values.mean()
+
+        def signal(_: int, run: Samples, level: Array = level) -> Array:
+            return level[run.cut]
+
         yield Candidate(
-            name="other_signal",
-            columns=fit.integral(lambda *_, x=level: x)[:, None],
-            detail=name,
+            name="other_signal", columns=fit.integral_of_each(signal)[:, None], detail=name
         )
         yield Candidate(
             name="other_signal",
-            columns=fit.rise(lambda *_, x=level: x)[:, None],
+            columns=fit.rise_of_each(signal)[:, None],
             detail=f"the change of {name}",
         )
 
 
-def _other_run(fit: Fitted) -> Iterator[Candidate]:
+def other_run(fit: FittedBalance) -> Iterator[Candidate]:
     """Values of its own of one recording; of many recordings those that are most likely to have them."""
-    runs = fit.problem.recordings
+    runs = fit.runs
     if len(runs) == 1:
         return
     found = {}
@@ -301,32 +261,17 @@ def _other_run(fit: Fitted) -> Iterator[Candidate]:
         if columns.shape[1] and np.count_nonzero(here) > columns.shape[1]:
             along = np.linalg.qr(columns[here])[0].T @ fit.residual[here]
             found[number] = (float(along @ along), columns)
-    names = recording_names(runs)
+    names = fit.run_names
     for number in sorted(found, key=lambda each: -found[each][0])[:_MOST_RUNS]:
         detail = names[number] if len(runs) > 2 else f"{names[0]} and {names[1]}"
         yield Candidate(name="other_run", columns=found[number][1], detail=detail)
 
 
-FAMILIES: tuple[Callable[[Fitted], Iterator[Candidate]], ...] = (
-    *(_gravity, _inertia_varies, _load_friction, _slow, _drift, _harmonic, _ripple),
-    *(_delay, _velocity, _asymmetry, _offset, _scale, _other_signal, _other_run),
-)
+def _revolute(fit: FittedBalance) -> bool:
+    return fit.kind == "revolute"
 
 
-def same_candidate(fit: Fitted, wanted: Candidate) -> Candidate | None:
-    """Return a candidate for another fit of the same recordings; None of a ripple, which sums do not show."""
-    slow = dict.fromkeys(("slow_motion", "presliding", "stribeck_exponent"), _slow)
-    makers = {family.__name__[1:]: family for family in FAMILIES} | slow | {"wrong_scale": _scale}
-    maker = makers["velocity" if wanted.detail == FILTERED else wanted.name]
-    of_its_name = (each for each in maker(fit) if each.name == wanted.name)
-    return next((each for each in of_its_name if each.detail == wanted.detail), None)
-
-
-def _revolute(fit: Fitted) -> bool:
-    return fit.problem.recordings[0].kind == "revolute"
-
-
-def _has_order(fit: Fitted, family: str, order: float) -> bool:
+def _has_order(fit: FittedBalance, family: str, order: float) -> bool:
     return f"{family}_cos_{order:g}" in fit.names
 
 
@@ -339,7 +284,7 @@ def _slope(angle: Array) -> Array:
     return np.column_stack([-np.asarray(sine), cosine])
 
 
-def _angle(fit: Fitted, order: float) -> Array:
+def _angle(fit: FittedBalance, order: float) -> Array:
     """Cosine and sine without their means, so that they leave an offset where it is."""
     columns = fit.integral_of_each(lambda _, run: _pair(order * run.position))
     if not {"torque_offset", "sensor_offset"} & set(fit.names):
@@ -348,10 +293,5 @@ def _angle(fit: Fitted, order: float) -> Array:
     return np.asarray(columns - fit.duration[:, None] * mean)
 
 
-def _typical_speed(fit: Fitted) -> float:
-    return max(quantile_of_sizes(run.velocity, 0.9) for run in fit.problem.recordings)
-
-
-def _present(signal: Array | None) -> Array:
-    assert signal is not None
-    return signal
+def _typical_speed(fit: FittedBalance) -> float:
+    return max(quantile_of_sizes(run.velocity, 0.9) for run in fit.runs)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,11 +14,12 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.record import EstimateRecord
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attributed import Attributed
-from jointid.identification.causes.candidates import listed_candidates
+from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.changes import from_to, of_a_scale
+from jointid.identification.causes.families import BY_NAME, listed_candidates
 from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.fitted_balance import FittedBalance
 from jointid.identification.causes.harm import ERRORS, MOVED, error_of, harm_of, scale_of
-from jointid.identification.causes.remedies import advice_against
 from jointid.identification.causes.sizes import described, of_itself, off_scale
 from jointid.problem.problem import Problem
 
@@ -71,6 +72,28 @@ def find_causes(
     if causes is None:
         fit, tried = whole, listed_candidates(whole)
         causes = attribute(fit, tried) or ()
+    return _causes(fit, causes, tried, parameters, torque_level, delays)
+
+
+def causes_of(
+    fit: FittedBalance, parameters: Mapping[str, ParameterEstimate], torque_level: float
+) -> Causes:
+    """Attribute the misfit of any balance; arguments as for `find_causes`."""
+    from jointid.identification.causes.attribution import attribute
+
+    tried = listed_candidates(fit)
+    return _causes(fit, attribute(fit, tried) or (), tried, parameters, torque_level, {})
+
+
+def _causes(
+    fit: FittedBalance,
+    causes: Sequence[Attributed],
+    tried: Sequence[Candidate],
+    parameters: Mapping[str, ParameterEstimate],
+    torque_level: float,
+    delays: Mapping[str, Delay],
+) -> Causes:
+    """What was attributed, with what it moves, harmful or not."""
     found: list[Cause] = []
     harmless: list[Cause] = []
     errors = np.inf if fit.is_faint(_FAINT) else ERRORS
@@ -239,7 +262,7 @@ def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
 
 
 def _cause(
-    fit: Fitted,
+    fit: FittedBalance,
     each: Attributed,
     parameters: Mapping[str, ParameterEstimate],
     torque_level: float,
@@ -272,11 +295,13 @@ def _cause(
     }
     known = {name: error_of(parameters[name]) for name in shifts}
     detail, size, numbers = described(fit, each, delays)
+    family = BY_NAME[each.candidate.name]
     return Cause(
-        name=each.candidate.name,
+        name=family.name,
+        meaning=family.meaning,
         detail=detail,
         share=each.share,
-        scale=each.factor * fit.group * float(fit.penalty.window_duration),
+        scale=each.factor * fit.group * fit.window_duration,
         size=size,
         numbers=numbers,
         shifts=shifts,
@@ -291,5 +316,5 @@ def _cause(
         effect=effect,
         harmful=max(harm.values(), default=0.0) > 1.0,
         alike=each.alike,
-        advice=advice_against(fit, each),
+        advice=family.advice(fit, each),
     )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
-from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.fitted_balance import FittedBalance
 from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
@@ -51,7 +51,7 @@ class LocalEvent:
         return self.share > share + _MORE * (1.0 - share)
 
 
-def local_event(fit: Fitted, base: Array, residual: Array) -> LocalEvent | None:
+def local_event(fit: FittedBalance, base: Array, residual: Array) -> LocalEvent | None:
     """Return the stretches that hold most of what is left of the residual; None where it is spread."""
     length = max(3, round(_LENGTH * len(residual)))
     if len(residual) < 20 * length:
@@ -81,7 +81,7 @@ def local_event(fit: Fitted, base: Array, residual: Array) -> LocalEvent | None:
     )
 
 
-def _is_slow(fit: Fitted, power: Array) -> bool:
+def _is_slow(fit: FittedBalance, power: Array) -> bool:
     speed = fit.integral_of_each(lambda _, run: np.abs(run.velocity)) / fit.duration
     slow = speed < quantile(speed, _SLOW)
     return float(power[slow].sum()) > 0.5 * float(power.sum())
@@ -105,13 +105,12 @@ def _stretches(power: Array, length: int) -> list[tuple[int, int]]:
     return []
 
 
-def _when(fit: Fitted, stretches: list[tuple[int, int]]) -> str:
-    bounds = fit.bounds
+def _when(fit: FittedBalance, stretches: list[tuple[int, int]]) -> str:
+    spans = fit.spans
     texts = []
     for low, high in sorted(stretches):
         run = int(fit.run[low])
-        time = fit.problem.recordings[run].time
         last = min(high - 1, int(np.searchsorted(fit.run, run + 1)) - 1)
-        place = f" of recording {run}" if len(fit.problem.recordings) > 1 else ""
-        texts.append(f"{time[bounds[low, 0]]:.4g} to {time[bounds[last, 1]]:.4g} s{place}")
+        place = f" of recording {run}" if len(fit.runs) > 1 else ""
+        texts.append(f"{spans[low, 0]:.4g} to {spans[last, 1]:.4g} s{place}")
     return " and ".join(texts)

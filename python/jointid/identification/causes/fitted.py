@@ -1,21 +1,24 @@
-"""A fit as the attribution sees it: residuals, derivatives, windows, and integrals of any signal over them."""
+"""The fit of one joint as the attribution sees it: of a problem and its penalty."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.values import dataclass
+from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
 from jointid.identification.causes.folds import BLOCKS, first_windows
+from jointid.identification.causes.late_signals import by_velocity, friction_at, rate
 from jointid.identification.causes.samples import Samples, window_blocks
 from jointid.problem.problem import Problem
-from jointid.problem.recordings import output_torque
+from jointid.problem.recordings import output_torque, recording_names
 from jointid.recording.order_statistics import distinct
 from jointid.recording.recording import Recording
 
@@ -28,28 +31,18 @@ _STRETCH = 1024  # windows; a multiple of the largest sum that is looked at
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fitted:
+class Fitted(FittedBalance):
     """A minimum of the penalty.
+
+    The residual is on the torque's side; derivatives by the sensor's gain are by what the motion says of its reading,
+    so that its noise counts for nothing.
 
     Attributes
     ----------
     problem : Problem
     penalty : Penalty
-    best : ndarray
-        Parameters, in the order of `penalty.names`.
-    free : tuple of int
-        Those that vary and that no bound holds.
-    residual : ndarray, shape (windows,)
-        Torque that the model lacks, integrated [N·m·s].
-    jacobian : ndarray, shape (windows, free)
-        Derivatives of the residuals by the free parameters; the sensor's reading by what the motion
-        says of it, so that its noise counts for nothing.
-    start : ndarray, shape (free,)
-        What has been added to the parameters in `residual`.
     chosen : ndarray of int, or None
         The penalty's windows that are looked at; None: all of them.
-    group : int
-        Windows of the penalty that one window here is the sum of.
     beside : Fitted, optional
         Another fit of the same recordings, whose integration times are taken: they have a value a sample.
     signals : mapping of str to ndarray
@@ -58,24 +51,15 @@ class Fitted:
         Signals that are known not to be late.
     filtered : bool
         Whether the velocity was late against the position: a filter does more than that.
-    given : frozenset of str
-        Parameters that were not searched for.
     """
 
     problem: Problem
     penalty: _core.Penalty
-    best: Array
-    free: tuple[int, ...]
-    residual: Array
-    jacobian: Array
-    start: Array
     chosen: NDArray[np.int64] | None = None
-    group: int = 1
     beside: Fitted | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
     prompt: frozenset[str] = frozenset()
     filtered: bool = False
-    given: frozenset[str] = frozenset()
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
@@ -96,11 +80,107 @@ class Fitted:
         return np.concatenate([[0], np.cumsum(ends)])
 
     @functools.cached_property
-    def bounds(self) -> NDArray[np.int64]:
-        """First and last sample of each window, shape (windows, 2)."""
+    def spans(self) -> Array:
+        """First and last instant of each window."""
         every = self._windows
         last = np.append(self._firsts[1:], len(every)) - 1
-        return np.column_stack([every[self._firsts, 0], every[last, 1]])
+        found = np.column_stack([every[self._firsts, 0], every[last, 1]])
+        times = np.empty(found.shape)
+        for number, recording in enumerate(self.problem.recordings):
+            here = self.run == number
+            times[here] = recording.time[found[here]]
+        return times
+
+    @functools.cached_property
+    def terms(self) -> Sequence[_core.Term]:
+        """Those of the penalty."""
+        return tuple(self.penalty.terms)
+
+    @property
+    def window_duration(self) -> float:
+        """That of the penalty."""
+        return float(self.penalty.window_duration)
+
+    @property
+    def runs(self) -> Sequence[Recording]:
+        """The recordings."""
+        return self.problem.recordings
+
+    @property
+    def run_names(self) -> Sequence[str]:
+        """Names of the recordings."""
+        return recording_names(self.problem.recordings)
+
+    @property
+    def kind(self) -> Literal["revolute", "prismatic"]:
+        """That of the recordings."""
+        return self.problem.recordings[0].kind
+
+    @property
+    def gear_ratio(self) -> float:
+        """That of the joint."""
+        joint = self.problem.joint
+        return abs(joint.gear_ratio) if joint is not None else 1.0
+
+    @property
+    def further_signals(self) -> Mapping[str, Array]:
+        """The given ones, and the temperature."""
+        signals, first = dict(self.signals), self.problem.recordings[0]
+        if len(self.problem.recordings) == 1 and first.temperature is not None:
+            signals.setdefault("temperature", first.temperature)
+        return signals
+
+    @property
+    def sample_period(self) -> float:
+        """That of the first recording."""
+        return self.problem.recordings[0].sample_period
+
+    @property
+    def torque_held(self) -> bool:
+        """Whether the problem takes it so."""
+        return self.problem.hold(0) == "zoh"
+
+    @property
+    def model_name(self) -> str:
+        """That of the resolved model."""
+        return str(self.problem.choice.model.resolved.name)
+
+    @property
+    def orders(self) -> Mapping[str, tuple[float, ...]]:
+        """Those of the resolved model."""
+        model = self.problem.choice.model.resolved
+        return {"harmonics": model.harmonics, "ripple": model.ripple}
+
+    def identified_with(self, **changes: Any) -> tuple[Action, ...]:
+        """A call of `identify`; the text of the model has every field that is stated."""
+        return (Action("call", {"model": str(self.problem.choice.model.replace(**changes))}),)
+
+    def compared_with(self, **changes: Any) -> tuple[Action, ...]:
+        """A call of `compare_models`."""
+        model = self.problem.choice.model
+        models = (str(model), str(model.replace(**changes)))
+        return (Action("call", {"models": models}, function="compare_models"),)
+
+    def late(self, signal: str) -> Array | None:
+        """Of torque, sensor and velocity, and of a velocity behind a filter."""
+        recorded = not self.problem.recordings[0].velocity_derived
+        if signal == FILTERED and self.filtered and recorded:
+            inertia = self.value("inertia")
+            rise = inertia * self.rise(lambda _, run: rate(run) - run.velocity)
+            torque = self.integral(
+                lambda _, run: friction_at(self, rate(run)) - friction_at(self, run.velocity)
+            )
+            return rise + torque
+        if signal in self.prompt:
+            return None
+        if signal == "torque":
+            return -self.summed(self.penalty.torque_steps(*self.problem.masked))
+        if signal == "sensor" and "sensor_gain" in self.names:
+            gain = self.value("sensor_gain")
+            return gain * self.rise(lambda _, run: np.asarray(run.sensor))
+        if signal == "velocity" and recorded:
+            return self.rise(lambda _, run: by_velocity(self, run))
+        return None
 
     def summed(self, values: Array) -> Array:
         """Sums of what the penalty's windows have over the windows here."""
@@ -160,31 +240,6 @@ class Fitted:
             for number, recording in enumerate(problem.recordings)
         ]
 
-    def value(self, name: str) -> float:
-        """Value of a parameter; 0 without it."""
-        return float(self.best[self.names.index(name)]) if name in self.names else 0.0
-
-    def is_faint(self, least: float) -> bool:
-        """Whether the misfit is less than a part of the friction: sampling alone leaves as much."""
-        left = self.residual + self.jacobian @ (
-            self.solve(self.jacobian, self.residual) - self.start
-        )
-        friction = np.zeros(len(left))
-        for index, term in enumerate(self.penalty.terms):
-            if term.friction and not term.needs_load:
-                friction += self.best[index] * self.columns[:, index]
-        return float(np.sum(left**2)) < least**2 * float(np.sum(friction**2))
-
-    def solve(self, columns: Array, residual: Array) -> Array:
-        """Return the least-squares steps along columns that take the residual away; the first are parameters."""
-        size = np.sqrt(np.einsum("ij,ij->j", columns, columns))
-        size = np.where(size > 0.0, size, 1.0)
-        scaled = columns / size
-        square = np.einsum("ni,nj->ij", scaled, scaled) + 1e-12 * np.eye(len(size))
-        found = np.linalg.solve(square, -np.einsum("ni,n->i", scaled, residual)) / size
-        found[: len(self.start)] += self.start
-        return np.asarray(found)
-
     def errors_beside(self, torque: Array) -> dict[str, float]:
         """Return the errors that a further torque adds to those of the values.
 
@@ -215,11 +270,11 @@ class Fitted:
         return self._by_window(signal, rise=True)
 
     def integral_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """As `integral`, of a signal that depends on each sample alone: of some samples at a time."""
+        """As `integral`, of some samples at a time."""
         return self._by_samples(signal, rise=False)
 
     def rise_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """As `rise`, of a signal that depends on each sample alone: of some samples at a time."""
+        """As `rise`, of some samples at a time."""
         return self._by_samples(signal, rise=True)
 
     @classmethod
@@ -316,11 +371,6 @@ def _stretches(count: int, most: int) -> NDArray[np.int64]:
     return np.asarray((first[:, None] + np.arange(length)).ravel())
 
 
-def _present(signal: Array | None) -> Array:
-    assert signal is not None
-    return signal
-
-
 def _on_a_limit(torque: Array) -> NDArray[np.bool_]:
     """Where the torque is its largest or its smallest value, if that is so often."""
     resting = np.zeros(len(torque), dtype=bool)
@@ -335,7 +385,7 @@ def _on_a_limit(torque: Array) -> NDArray[np.bool_]:
 def _explained(fit: Fitted, reading: Array) -> Array:
     """The part of the reading that a rigid link's motion explains: its acceleration and its gravity."""
     motion = [fit.rise_of_each(lambda _, run: run.velocity), fit.duration]
-    if fit.problem.recordings[0].kind == "revolute":
+    if fit.kind == "revolute":
         motion += [
             fit.integral_of_each(lambda _, run: np.cos(run.position)),
             fit.integral_of_each(lambda _, run: np.sin(run.position)),

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.fitted_balance import FittedBalance
 
 Array = NDArray[np.float64]
 
@@ -26,13 +26,13 @@ _GRAVITY = (
 )
 
 
-def load_friction_of_sensor(fit: Fitted) -> Array | None:
+def load_friction_of_sensor(fit: FittedBalance) -> Array | None:
     """Return the size of the sensed load times the direction; None without an offset of the sensor."""
     names = ("sensor_gain", "sensor_offset")
     return _of_load(fit, names, 0.0) if set(names) <= set(fit.names) else None
 
 
-def load_frictions_of_motion(fit: Fitted) -> Iterator[Array]:
+def load_frictions_of_motion(fit: FittedBalance) -> Iterator[Array]:
     """Yield the same of each load that gravity may be, with the share of the inertia that fits best."""
     shares = _SHARES if "inertia" in fit.names else (0.0,)
     parts = [names for names in _GRAVITY if set(names) <= set(fit.names)]
@@ -43,7 +43,7 @@ def load_frictions_of_motion(fit: Fitted) -> Iterator[Array]:
         yield _of_load(fit, (), 1.0)
 
 
-def _of_load(fit: Fitted, names: tuple[str, ...], share: float) -> Array:
+def _of_load(fit: FittedBalance, names: tuple[str, ...], share: float) -> Array:
     """Size of a load times the direction, the load being fitted with this friction in the model."""
     turned = fit.integral_of_each(lambda _, run: np.sign(run.velocity)) / fit.duration
     places = [fit.names.index(name) for name in names]
@@ -62,7 +62,7 @@ def _of_load(fit: Fitted, names: tuple[str, ...], share: float) -> Array:
     return np.asarray(column)
 
 
-def _misfit(fit: Fitted, column: Array) -> float:
+def _misfit(fit: FittedBalance, column: Array) -> float:
     both = np.column_stack([fit.jacobian, column])
     steps = fit.solve(both, fit.residual)
     steps[: len(fit.start)] -= fit.start

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
-from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
@@ -16,38 +16,72 @@ Array = NDArray[np.float64]
 AT_A_TIME = 1 << 15
 
 
+class Run(Protocol):
+    """The motion of one joint in a recording, in SI units; each signal has the shape (samples,)."""
+
+    @property
+    def time(self) -> Array:
+        """[s]."""
+
+    @property
+    def position(self) -> Array:
+        """[rad or m]."""
+
+    @property
+    def velocity(self) -> Array:
+        """[rad/s or m/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Motion:
+    """A run of which a fit holds nothing but the motion of one joint."""
+
+    time: Array
+    position: Array
+    velocity: Array
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Samples:
-    """Samples of a recording, in SI units.
+    """Samples of a run, in SI units.
 
     Attributes
     ----------
     cut : slice
-        Which of the recording's they are.
-    position, velocity : ndarray, shape (samples,)
-    sensor : ndarray, shape (samples,), or None
+        Which of the run's they are.
+    time, position, velocity : ndarray, shape (samples,)
+    begin : float
+        First instant of the run [s].
     """
 
     cut: slice
+    time: Array
     position: Array
     velocity: Array
-    sensor: Array | None
+    begin: float
 
     @classmethod
-    def of(cls, recording: Recording, cut: slice) -> Samples:
-        """Return some samples of a recording."""
+    def of(cls, run: Run, cut: slice) -> Samples:
+        """Return some samples of a run."""
         return cls(
             cut=cut,
-            position=recording.position[cut],
-            velocity=recording.velocity[cut],
-            sensor=None if recording.sensor is None else recording.sensor[cut],
+            time=run.time[cut],
+            position=run.position[cut],
+            velocity=run.velocity[cut],
+            begin=float(run.time[0]),
         )
 
 
-def all_samples(recording: Recording) -> Iterator[Samples]:
-    """Yield all samples of a recording, so many at a time."""
-    for first in range(0, len(recording), AT_A_TIME):
-        yield Samples.of(recording, slice(first, min(len(recording), first + AT_A_TIME)))
+def all_samples(run: Run) -> Iterator[Samples]:
+    """Yield all samples of a run, so many at a time."""
+    count = len(run.time)
+    for first in range(0, count, AT_A_TIME):
+        yield Samples.of(run, slice(first, min(count, first + AT_A_TIME)))
+
+
+def span_of(run: Run) -> float:
+    """Return how long a run lasts [s]."""
+    return float(run.time[-1] - run.time[0])
 
 
 def window_blocks(bounds: NDArray[np.int64]) -> Iterator[tuple[slice, slice]]:
@@ -75,10 +109,10 @@ class WaySinceReversal:
 
     Parameters
     ----------
-    run : Recording
+    run : Run
     """
 
-    def __init__(self, run: Recording) -> None:
+    def __init__(self, run: Run) -> None:
         self._run = run
         # Of each block of samples: all of the way before it, and of that what was gone at the last reversal.
         self._before = [(0.0, 0.0)]
@@ -90,7 +124,7 @@ class WaySinceReversal:
         found = []
         for block in range(first, -(-cut.stop // size)):
             begin = block * size
-            end = min(len(self._run), begin + size)
+            end = min(len(self._run.time), begin + size)
             gone = self._block(block, slice(begin, end))
             found.append(gone[max(cut.start - begin, 0) : max(cut.stop - begin, 0)])
         return np.concatenate(found)

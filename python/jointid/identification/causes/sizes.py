@@ -10,13 +10,14 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Measured
 from jointid.estimate.wording import percent
 from jointid.identification.causes.attributed import Attributed
-from jointid.identification.causes.candidates import FILTERED, inertia_basis
-from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.candidates import inertia_basis
+from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
+from jointid.identification.causes.samples import span_of
 
 _OF = {"ripple": "motor "}
 
 
-def of_itself(fit: Fitted, each: Attributed) -> dict[str, float]:
+def of_itself(fit: FittedBalance, each: Attributed) -> dict[str, float]:
     """A coefficient that is no constant: half of its range."""
     name, detail = each.candidate.name, each.candidate.detail
     if name == "drift" and detail in fit.names:
@@ -30,38 +31,34 @@ def of_itself(fit: Fitted, each: Attributed) -> dict[str, float]:
     return {}
 
 
-def off_scale(fit: Fitted, each: Attributed) -> float:
+def off_scale(fit: FittedBalance, each: Attributed) -> float:
     """By what share the torque shows a larger inertia than the given one."""
     return float(each.coefficients[0]) / (fit.value("inertia") or 1.0)
 
 
-def _of_a_scale(fit: Fitted, share: float) -> dict[str, float]:
+def _of_a_scale(fit: FittedBalance, share: float) -> dict[str, float]:
     """A wrong torque scales the friction with it; a wrong inertia does not, and nothing tells which it is."""
-    frictions = [
-        fit.names[index]
-        for index, term in enumerate(fit.penalty.terms)
-        if term.friction and index in fit.free and not term.needs_load
-    ]
+    frictions = [fit.names[index] for index in fit.friction if index in fit.free]
     return {name: -share * fit.value(name) for name in frictions}
 
 
-def _half_range(fit: Fitted, each: Attributed) -> float:
+def _half_range(fit: FittedBalance, each: Attributed) -> float:
     """Half of the range of an inertia that varies, over the angles of the recordings."""
     orders = [float(order) for order in each.candidate.detail.split(" and ")]
     basis = np.hstack([inertia_basis(fit, order) for order in orders])
     return 0.5 * float(np.ptp(basis @ each.coefficients))
 
 
-def _span(fit: Fitted) -> float:
-    return max(run.duration for run in fit.problem.recordings)
+def _span(fit: FittedBalance) -> float:
+    return max(map(span_of, fit.runs))
 
 
 def described(
-    fit: Fitted, each: Attributed, delays: Mapping[str, Delay]
+    fit: FittedBalance, each: Attributed, delays: Mapping[str, Delay]
 ) -> tuple[str, str, dict[str, Measured]]:
     """Detail and size as texts, and their numbers."""
     name, found = each.candidate.name, each.coefficients
-    prismatic = fit.problem.recordings[0].kind == "prismatic"
+    prismatic = fit.kind == "prismatic"
     length, torque = ("m", "N") if prismatic else ("rad", "N·m")
     detail, size = each.candidate.detail, ""
     numbers = {key: Measured(value, length + unit) for key, value, unit in each.candidate.numbers}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.values import dataclass
-from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.fitted_balance import FittedBalance
 from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ class SlowRows:
     speed: float
 
 
-def slow_rows(fit: Fitted, base: Array, residual: Array) -> SlowRows | None:
+def slow_rows(fit: FittedBalance, base: Array, residual: Array) -> SlowRows | None:
     """Return the slow windows if they hold most of the misfit, in several passages; else None."""
     velocity = fit.integral_of_each(lambda _, run: np.abs(run.velocity)) / fit.duration
     speed = quantile(velocity, _SLOW)

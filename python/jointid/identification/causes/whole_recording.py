@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from jointid.identification.causes.attributed import Attributed
-from jointid.identification.causes.candidates import same_candidate
 from jointid.identification.causes.events import LocalEvent, local_event
-from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.families import same_candidate
+from jointid.identification.causes.fitted_balance import FittedBalance
 
 
 class WholeRecording:
@@ -17,13 +17,13 @@ class WholeRecording:
 
     Parameters
     ----------
-    fit : Fitted
+    fit : FittedBalance
         Sums of neighbouring windows.
-    stretches : Fitted
+    stretches : FittedBalance
         Some of the windows.
     """
 
-    def __init__(self, fit: Fitted, stretches: Fitted) -> None:
+    def __init__(self, fit: FittedBalance, stretches: FittedBalance) -> None:
         self._fit = fit
         self._columns = fit.jacobian
         self._reached = np.zeros(fit.jacobian.shape[1])

@@ -4,30 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from jointid.estimate.causes import MEANINGS, Cause
+from jointid.estimate.causes import Cause
 from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.identification.causes.families import FAMILIES
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.ripple import RIPPLE
 from jointid.identification.warnings.torque_balance import GROSS, WRONG_SCALE, scaled_with_torque
 from jointid.identification.warnings.undetermined import listed, wide, with_partners
-
-_REMEDIES = {
-    "gravity": "identify gravity, too: `stribeck:gravity=free`",
-    "inertia_varies": "move about one pose",
-    "load_friction": "add load_friction to the model",
-    "slow_motion": "use the model stribeck",
-    "presliding": "record longer strokes with fewer reversals",
-    "stribeck_exponent": "use the model stribeck_general, which has a free exponent",
-    "drift": "record after warming up, or identify first and last part separately",
-    "harmonic": "add harmonics of that order to the model",
-    "delay": "correct the time stamps of that signal",
-    "other_signal": "record with everything else at rest",
-    "disturbance": "leave that stretch of time out",
-    "asymmetry": "add asymmetric to the model",
-    "offset": "give the joint a torque_offset",
-    "other_run": "look for another unit, sign, zero or load in it; identify it alone",
-}
 
 _LITTLE = 0.1  # of the squares
 _APART = 0.1  # of a value that one recording moves: it holds for none of them
@@ -35,16 +19,17 @@ _NOTED = (
     0.3  # share of the misfit that a harmless cause explains; of less `estimate.causes()` speaks
 )
 
+_OWN = {each.code: each for each in (RIPPLE, WRONG_SCALE)}
 TYPES = {
-    name: FindingType(
-        code=name,
-        meaning=f"{MEANINGS[name]} explains the misfit in parts of the log that it was not fitted to. Info: no "
+    family.name: FindingType(
+        code=family.name,
+        meaning=f"{family.meaning} explains the misfit in parts of the log that it was not fitted to. Info: no "
         "parameter moves by more than 5 % or two errors",
-        advice=remedy,
+        advice=family.remedy,
         picture="windows",
     )
-    for name, remedy in _REMEDIES.items()
-} | {"ripple": RIPPLE, "wrong_scale": WRONG_SCALE}
+    for family in FAMILIES
+} | _OWN
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -120,4 +105,4 @@ def _measured(cause: Cause, shifts: Mapping[str, float]) -> dict[str, Measured]:
     return measured | {f"{name}.shift": Measured(share) for name, share in shifts.items()}
 
 
-CHECK = Check(_find, tuple(TYPES[name] for name in _REMEDIES))
+CHECK = Check(_find, tuple(each for code, each in TYPES.items() if code not in _OWN))

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from jointid.base.advice import Action
-from jointid.estimate.causes import MEANINGS
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
@@ -74,7 +73,7 @@ def excluded(evidence: Evidence, what: str = "it") -> str:
     """
     if evidence.causes is not None and evidence.causes.harmless:
         cause = evidence.causes.harmless[0]
-        return f"{MEANINGS[cause.name]}: explains {percent(cause.share)} of {what}, and is harmless"
+        return f"{cause.meaning}: explains {percent(cause.share)} of {what}, and is harmless"
     count = len(evidence.causes.excluded) if evidence.causes is not None else 0
     return f"none of {count} known causes explains {what}" if count else ""
 

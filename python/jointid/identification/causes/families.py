@@ -1,0 +1,241 @@
+"""The table of causes that a misfit may have: each is one row, for a joint, a robot's joint and a servo alike.
+
+A new cause is a row here and a function in `candidates`: its name, its meaning and its advice follow everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from jointid.base.advice import Action
+from jointid.base.values import dataclass
+from jointid.identification.causes import candidates as of
+from jointid.identification.causes.candidates import Candidate
+from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
+
+if TYPE_CHECKING:
+    from jointid.identification.causes.attributed import Attributed
+
+_HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
+_HELD = Action(
+    "call", {"torque_hold": "zoh"}, text="if the torque is a command that is held between samples"
+)
+_EARLY = "the sampling times of torque and position, and the gear's play"
+_SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion by itself"),)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Family:
+    """One cause.
+
+    Attributes
+    ----------
+    name : str
+        Also the code of its finding.
+    meaning : str
+        As the beginning of a sentence.
+    remedy : str
+        What to do in general, for tables of findings.
+    candidates : callable
+        Yields what of it a model may lack; nothing where the balance cannot show it. Causes that share a function
+        are told apart by the names of its candidates. Default: it is found without columns.
+    advice : callable
+        Actions against a cause that was found.
+    """
+
+    name: str
+    meaning: str
+    remedy: str
+    candidates: Callable[[FittedBalance], Iterator[Candidate]] = of.nothing
+    advice: Callable[[FittedBalance, Attributed], tuple[Action, ...]]
+
+
+def _always(*actions: Action) -> Callable[..., tuple[Action, ...]]:
+    """Return a remedy that is the same for every fit."""
+    return lambda *_: actions
+
+
+def _with_order(fit: FittedBalance, field: str, cause: Attributed) -> tuple[Action, ...]:
+    """Identify with one order more."""
+    orders = (*fit.orders.get(field, ()), float(cause.candidate.detail))
+    return fit.identified_with(**{field: orders})
+
+
+def _against_asymmetry(fit: FittedBalance, _: Attributed) -> tuple[Action, ...]:
+    """Compare, where no sensor's offset looks like it."""
+    if "sensor_offset" in fit.names:
+        return (Action("inspect", text="the friction in each direction"),)
+    return fit.compared_with(asymmetric=True)
+
+
+def against_delay(fit: FittedBalance, cause: Attributed) -> tuple[Action, ...]:
+    """State that the torque is held, or look for the delay."""
+    detail = cause.candidate.detail
+    if detail == FILTERED:
+        return (Action("call", {"columns": {"velocity": None}}, function="load"),)
+    early = -float(cause.coefficients[0]) / fit.sample_period
+    look = Action("inspect", text=f"when the {detail} is sampled and logged")
+    if detail == "torque" and early > 0.0:  # a torque does not come before its motion
+        look = Action("inspect", text=_EARLY)
+    unheld = detail == "torque" and not fit.torque_held
+    return (_HELD, look) if unheld and abs(early - 0.5) < _HALF else (look,)
+
+
+def _against_slow_motion(fit: FittedBalance, _: Attributed) -> tuple[Action, ...]:
+    """Compare with the next richer law of friction, where there is one."""
+    name = fit.model_name
+    richer = {"coulomb_viscous": "stribeck", "stribeck": "stribeck_general"}.get(name)
+    if richer is None or (richer == "stribeck_general" and fit.is_asymmetric):
+        return _SLOW
+    return (*fit.compared_with(name=richer), *_SLOW)
+
+
+FAMILIES = (
+    Family(
+        name="gravity",
+        meaning="gravity that the model lacks",
+        remedy="identify gravity, too: `stribeck:gravity=free`",
+        candidates=of.gravity,
+        advice=lambda fit, _: fit.identified_with(gravity="free"),
+    ),
+    Family(
+        name="inertia_varies",
+        meaning="inertia that varies with the angle",
+        remedy="move about one pose",
+        candidates=of.inertia_varies,
+        advice=_always(
+            Action("record", text="motion about one pose, or with a gentler acceleration"),
+            Action("inspect", text="whether other joints change the inertia"),
+        ),
+    ),
+    Family(
+        name="load_friction",
+        meaning="friction that grows with the load",
+        remedy="add load_friction to the model",
+        candidates=of.load_friction,
+        advice=lambda fit, _: fit.compared_with(load_friction=True),
+    ),
+    Family(
+        name="slow_motion",
+        meaning="low-speed friction that the model lacks",
+        remedy="use the model stribeck",
+        candidates=of.slow_motion,
+        advice=_against_slow_motion,
+    ),
+    Family(
+        name="presliding",
+        meaning="friction that builds up after each reversal",
+        remedy="record longer strokes with fewer reversals",
+        candidates=of.slow_motion,
+        advice=_always(
+            Action("record", text="longer strokes with fewer reversals"),
+            Action("inspect", text="the friction just after each reversal"),
+        ),
+    ),
+    Family(
+        name="stribeck_exponent",
+        meaning="another decay of friction with speed",
+        remedy="use the model stribeck_general, which has a free exponent",
+        candidates=of.slow_motion,
+        advice=_against_slow_motion,
+    ),
+    Family(
+        name="drift",
+        meaning="drift of a coefficient",
+        remedy="record after warming up, or identify first and last part separately",
+        candidates=of.drift,
+        advice=_always(
+            Action("record", text="after warming up"),
+            Action("inspect", text="the values of the first and the last part of the recording"),
+        ),
+    ),
+    Family(
+        name="harmonic",
+        meaning="torque over the joint angle",
+        remedy="add harmonics of that order to the model",
+        candidates=of.harmonic,
+        advice=lambda fit, cause: _with_order(fit, "harmonics", cause),
+    ),
+    Family(
+        name="ripple",
+        meaning="torque over the motor angle",
+        remedy="add ripple of that order to the model",
+        candidates=of.ripple,
+        advice=lambda fit, cause: _with_order(fit, "ripple", cause),
+    ),
+    Family(
+        name="delay",
+        meaning="late or early signal",
+        remedy="correct the time stamps of that signal",
+        candidates=of.delay,
+        advice=against_delay,
+    ),
+    Family(
+        name="asymmetry",
+        meaning="friction that differs between directions",
+        remedy="add asymmetric to the model",
+        candidates=of.asymmetry,
+        advice=_against_asymmetry,
+    ),
+    Family(
+        name="offset",
+        meaning="constant torque that the model lacks",
+        remedy="give the joint a torque_offset",
+        candidates=of.offset,
+        advice=_always(Action("call", {"torque_offset": True}, function="Joint")),
+    ),
+    Family(
+        name="wrong_scale",
+        meaning="known inertia that does not fit the torque",
+        remedy="check gear ratio, torque constant and inertia",
+        candidates=of.wrong_scale,
+        advice=_always(Action("inspect", text="gear ratio, torque constant and inertia")),
+    ),
+    Family(
+        name="other_signal",
+        meaning="another signal that acts on the joint",
+        remedy="record with everything else at rest",
+        candidates=of.other_signal,
+        advice=_always(Action("record", text="with everything else at rest")),
+    ),
+    Family(
+        name="other_run",
+        meaning="a recording with other values than the rest",
+        remedy="look for another unit, sign, zero or load in it; identify it alone",
+        candidates=of.other_run,
+        advice=_always(
+            Action(
+                "inspect",
+                text="units, signs, zero position, load and temperature of that recording",
+            ),
+            Action("inspect", text="the values of each recording, identified by itself"),
+        ),
+    ),
+    Family(
+        name="disturbance",
+        meaning="short disturbance",
+        remedy="leave that stretch of time out",
+        advice=_always(
+            Action("record", text="without contact"),
+            Action("inspect", text="what happened at that time"),
+        ),
+    ),
+)
+
+BY_NAME = {family.name: family for family in FAMILIES}
+
+
+def listed_candidates(fit: FittedBalance, only: str = "") -> list[Candidate]:
+    """Return all candidates that the model lacks and the recordings can show, or those of one cause's function."""
+    families = FAMILIES if only == "" else (BY_NAME[only],)
+    makers = dict.fromkeys(family.candidates for family in families)
+    return [each for maker in makers for each in maker(fit) if each.columns.any()]
+
+
+def same_candidate(fit: FittedBalance, wanted: Candidate) -> Candidate | None:
+    """Return a candidate for another fit of the same recordings; None of a ripple, which sums do not show."""
+    of_its_name = (
+        each for each in BY_NAME[wanted.name].candidates(fit) if each.name == wanted.name
+    )
+    return next((each for each in of_its_name if each.detail == wanted.detail), None)
