@@ -72,10 +72,10 @@ if TYPE_CHECKING:
     from jointid.recording.wide.robot_recording import RobotRecording
     from jointid.report.saving import save_report
     from jointid.robot.comparing import compare_robot_models
-    from jointid.robot.comparison_result import RobotComparison
     from jointid.robot.identifying import identify_robot
-    from jointid.robot.result import RobotEstimate
-    from jointid.robot.robot import Robot
+    from jointid.robot.links.robot import Robot
+    from jointid.robot.result.comparison_result import RobotComparison
+    from jointid.robot.result.result import RobotEstimate
     from jointid.servo.comparing import ServoComparison, compare_servo_models
     from jointid.servo.estimate import ServoEstimate
     from jointid.servo.identifying import identify_servo
@@ -219,10 +219,10 @@ _HOMES = {
     "jointid.recording.wide.robot_recording": ("RobotRecording",),
     "jointid.report.saving": ("save_report",),
     "jointid.robot.comparing": ("compare_robot_models",),
-    "jointid.robot.comparison_result": ("RobotComparison",),
+    "jointid.robot.result.comparison_result": ("RobotComparison",),
     "jointid.robot.identifying": ("identify_robot",),
-    "jointid.robot.result": ("RobotEstimate",),
-    "jointid.robot.robot": ("Robot",),
+    "jointid.robot.result.result": ("RobotEstimate",),
+    "jointid.robot.links.robot": ("Robot",),
     "jointid.servo.comparing": ("ServoComparison", "compare_servo_models"),
     "jointid.servo.estimate": ("ServoEstimate",),
     "jointid.servo.identifying": ("identify_servo",),

@@ -11,7 +11,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.advice import words_of_action
 from jointid.cli.facts_advice import words_of_facts
-from jointid.robot.facts import read_facts
+from jointid.robot.links.facts import read_facts
 
 OTHERS = """joints = ["a", "b"]  # in order
 gravity = [

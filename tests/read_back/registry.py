@@ -21,7 +21,7 @@ from jointid.hardware.proof.result import FirstMotion
 from jointid.hardware.session.watchdog import Watchdog
 from jointid.joints.reading import load_estimate
 from jointid.recording.file_remarks import remarks
-from jointid.robot.facts import read_facts
+from jointid.robot.links.facts import read_facts
 from jointid.simulation.motion_file import load_motion
 from jointid.study import study_file
 from jointid.study.row import Row

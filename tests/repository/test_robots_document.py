@@ -7,8 +7,8 @@ from documents import blocks, read, run_python_blocks
 
 import jointid as jid
 from jointid.identification.warnings.table import table_rows
-from jointid.robot.facts import read_facts
-from jointid.robot.finding_types import TYPES
+from jointid.robot.links.facts import read_facts
+from jointid.robot.result.finding_types import TYPES
 
 pytest.importorskip("pinocchio")
 

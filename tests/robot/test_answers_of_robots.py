@@ -11,7 +11,7 @@ import small_arm
 import jointid as jid
 from jointid.cli import main
 from jointid.estimate.findings import Finding
-from jointid.robot.finding_types import TYPES
+from jointid.robot.result.finding_types import TYPES
 
 pytest.importorskip("pinocchio")
 

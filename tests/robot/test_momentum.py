@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from jointid.robot.link_tree import LinkTree
-from jointid.robot.momentum import columns_of
-from jointid.robot.reading_urdf import tree_of_urdf
+from jointid.robot.links.link_tree import LinkTree
+from jointid.robot.links.momentum import columns_of
+from jointid.robot.links.reading_urdf import tree_of_urdf
 
 Array = NDArray[np.float64]
 GRAVITY = (0.3, -1.2, -9.6)

@@ -7,8 +7,8 @@ import pytest
 from small_arm import COULOMB, ROTOR, URDF, VISCOUS, recording, urdf
 
 import jointid as jid
-from jointid.robot.bodies import possible
-from jointid.robot.possible_bodies import nearest_possible
+from jointid.robot.links.bodies import possible
+from jointid.robot.links.possible_bodies import nearest_possible
 
 pytest.importorskip("pinocchio")
 

@@ -11,9 +11,9 @@ import pytest
 import small_arm
 
 import jointid as jid
-from jointid.robot import motion
-from jointid.robot.loud_samples import quiet_velocity
-from jointid.robot.unexamined_causes import CAUSES
+from jointid.robot.facts.unexamined_causes import CAUSES
+from jointid.robot.motion import motion
+from jointid.robot.motion.loud_samples import quiet_velocity
 
 pytest.importorskip("pinocchio")
 

@@ -19,7 +19,7 @@ from simulated_arm import (
 )
 
 import jointid as jid
-from jointid.robot.inertia import Inertia
+from jointid.robot.balance.inertia import Inertia
 
 pytest.importorskip("pinocchio")
 

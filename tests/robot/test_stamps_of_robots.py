@@ -7,7 +7,7 @@ import pytest
 from simulated_arm import URDF, Sensors, random_arm, random_motion, recorded, run
 
 import jointid as jid
-from jointid.robot.stamps import on_even_clock
+from jointid.robot.motion.stamps import on_even_clock
 
 pytest.importorskip("pinocchio")
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.recording.recording import Recording
-    from jointid.robot.result import RobotEstimate
+    from jointid.robot.result.result import RobotEstimate
 
 
 def demo(arguments: argparse.Namespace) -> None:

@@ -60,7 +60,7 @@ def explain(arguments: argparse.Namespace) -> None:
 def _types() -> dict[str, Types]:
     """All types of findings, by what they are found of."""
     from jointid.identification.warnings.registry import finding_types
-    from jointid.robot.finding_types import TYPES as OF_ROBOTS
+    from jointid.robot.result.finding_types import TYPES as OF_ROBOTS
     from jointid.servo.finding_types import TYPES as OF_SERVOS
 
     return {_JOINT: finding_types(), _ROBOT: OF_ROBOTS, _SERVO: OF_SERVOS}
@@ -90,8 +90,8 @@ def _findings_of(path: Path) -> tuple[str, dict[str, Sequence[Finding]]]:
     from jointid.base.schema import read_text
     from jointid.joints.document import KIND as JOINTS
     from jointid.joints.reading import load_estimate
-    from jointid.robot.document import KIND as ROBOT
-    from jointid.robot.result import RobotEstimate
+    from jointid.robot.result.document import KIND as ROBOT
+    from jointid.robot.result.result import RobotEstimate
     from jointid.servo.estimate import ServoEstimate
     from jointid.servo.reading_back import KIND as SERVO
 

@@ -13,7 +13,7 @@ from jointid.cli.outputs import check_folder
 from jointid.cli.robot import saved_robot
 
 if TYPE_CHECKING:
-    from jointid.robot.result import RobotEstimate
+    from jointid.robot.result.result import RobotEstimate
 
 
 def add_export(export: argparse.ArgumentParser) -> None:

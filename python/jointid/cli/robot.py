@@ -19,8 +19,8 @@ from jointid.cli.requirement import required
 from jointid.cli.wording import Wording
 
 if TYPE_CHECKING:
-    from jointid.robot.result import RobotEstimate
-    from jointid.robot.robot import Robot
+    from jointid.robot.links.robot import Robot
+    from jointid.robot.result.result import RobotEstimate
 
 _OF_ONE_JOINT = ("joint", "checkpoint", "resume", "selftest", "causes", "population", "generations")
 _OF_ROBOTS = ("windows", "shift", "min_speed")
@@ -53,8 +53,8 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
         done = {} if drawn is None else {"bootstrap": drawn.document()}
         print(json.dumps(found.document() | done, indent=1, ensure_ascii=False, allow_nan=False))
     else:
-        from jointid.robot.answers import answer
-        from jointid.robot.tables import text_report
+        from jointid.robot.result.answers import answer
+        from jointid.robot.result.tables import text_report
 
         if arguments.verbose:
             print(text_report(found, wording.of_command))
@@ -71,7 +71,7 @@ def compare_whole_robot(arguments: argparse.Namespace) -> int:
     from jointid.joint.model import Model
     from jointid.report.saving import save_report
     from jointid.robot.comparing import compare_robot_models
-    from jointid.robot.comparison_result import answer_of_comparison
+    from jointid.robot.result.comparison_result import answer_of_comparison
 
     options = _checked(arguments)
     asked = {"models": arguments.models, "inertia": arguments.inertia}
@@ -111,7 +111,7 @@ def _of_identify(arguments: argparse.Namespace, inertia: str) -> Wording:
 def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, list[Any]]:
     """The robot and its recordings."""
     from jointid.recording.readers.loading_robot import load_robot
-    from jointid.robot.robot import Robot
+    from jointid.robot.links.robot import Robot
 
     robot = Robot.from_urdf(
         arguments.robot, gear_ratios=gear_ratios(arguments), facts=arguments.facts
@@ -139,8 +139,8 @@ def saved_robot(path: Path) -> RobotEstimate | None:
         It is one, and cannot be used.
     """
     from jointid.base.schema import read_text
-    from jointid.robot.document import KIND
-    from jointid.robot.result import RobotEstimate
+    from jointid.robot.result.document import KIND
+    from jointid.robot.result.result import RobotEstimate
 
     if path.suffix.lower() != ".json":
         return None

@@ -13,7 +13,7 @@ from jointid.base.files import write_whole
 from jointid.estimate.estimate import Estimate
 from jointid.joint.checks import check_flag, positive_number
 from jointid.joint.joint import Joint
-from jointid.robot.result import RobotEstimate
+from jointid.robot.result.result import RobotEstimate
 
 if TYPE_CHECKING:
     from jointid.exports.target import Existing, Target

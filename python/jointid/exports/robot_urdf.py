@@ -8,10 +8,10 @@ from jointid.exports.robot_inertia import with_link_inertias
 from jointid.exports.urdf_model import is_joint, with_children
 from jointid.exports.xml_patch import elements, only, with_attributes, with_comment
 from jointid.joint.checks import suggestion
-from jointid.robot.models import terms_of
-from jointid.robot.parameters import DIFFERENCE, MOTOR_TERMS
-from jointid.robot.record import RobotJoint
-from jointid.robot.result import RobotEstimate
+from jointid.robot.links.models import terms_of
+from jointid.robot.links.parameters import DIFFERENCE, MOTOR_TERMS
+from jointid.robot.result.record import RobotJoint
+from jointid.robot.result.result import RobotEstimate
 
 _WORDS = {"linear": "damping", "constant": "friction"}  # of the URDF, by the basis
 

@@ -15,11 +15,11 @@ from jointid.report.figure import captioned
 from jointid.report.joints_page import slug
 from jointid.report.rows import NamedRow, rows_panel
 from jointid.report.style import STYLE, WIDE
-from jointid.robot.comparison_result import RobotComparison
-from jointid.robot.friction import joint_friction
-from jointid.robot.record import RobotJoint
-from jointid.robot.result import RobotEstimate
-from jointid.robot.tables import base_rows, head, quality, rows
+from jointid.robot.result.comparison_result import RobotComparison
+from jointid.robot.result.friction import joint_friction
+from jointid.robot.result.record import RobotJoint
+from jointid.robot.result.result import RobotEstimate
+from jointid.robot.result.tables import base_rows, head, quality, rows
 
 _DRAWN = 20  # candidates; the table has all
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
     from jointid.joints.result import JointEstimates
     from jointid.recording.recording import Recording
-    from jointid.robot.comparison_result import RobotComparison
-    from jointid.robot.result import RobotEstimate
+    from jointid.robot.result.comparison_result import RobotComparison
+    from jointid.robot.result.result import RobotEstimate
     from jointid.servo.estimate import ServoEstimate
     from jointid.study.study_result import Study
 

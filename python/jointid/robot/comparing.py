@@ -15,17 +15,17 @@ from jointid.base.errors import InputError
 from jointid.comparison.judging import Entrant, judged
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.aligning import aligned
-from jointid.robot.attempt import Attempt, Request, fitted
-from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
-from jointid.robot.held_out import blocks_of, part_of_balance, predicted_torque
+from jointid.robot.balance.held_out import blocks_of, part_of_balance, predicted_torque
+from jointid.robot.balance.inertia import MODES, Inertia
+from jointid.robot.fit.aligning import aligned
+from jointid.robot.fit.attempt import Attempt, Request, fitted
 from jointid.robot.identifying import identify_robot
-from jointid.robot.inertia import MODES, Inertia
-from jointid.robot.models import MODELS, PLAIN, SHAPED, friction_models, name_of
-from jointid.robot.request import least_speeds, recordings_of
-from jointid.robot.robot import Robot
-from jointid.robot.shifts import Shift, shift_option
-from jointid.robot.stamps import all_on_even_clocks
+from jointid.robot.links.models import MODELS, PLAIN, SHAPED, friction_models, name_of
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.request import least_speeds, recordings_of
+from jointid.robot.motion.shifts import Shift, shift_option
+from jointid.robot.motion.stamps import all_on_even_clocks
+from jointid.robot.result.comparison_result import ComparedRobotModel, RobotComparison
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

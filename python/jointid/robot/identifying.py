@@ -14,26 +14,26 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import check_flag
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.aligning import aligned, delay_findings
-from jointid.robot.assumptions import assumption_findings
-from jointid.robot.asymmetry import asymmetry_findings
-from jointid.robot.attempt import Request, attempted
-from jointid.robot.cross_check import CrossCheck
-from jointid.robot.cross_checking import cross_checked, disagreement, slow_motion
-from jointid.robot.diagnosis import diagnosed
-from jointid.robot.findings import RANK
-from jointid.robot.inertia import FREE, MODES, Inertia
-from jointid.robot.models import friction_models
-from jointid.robot.naming import turned_zeros
-from jointid.robot.physical_inertia import impossible_links, with_possible_bodies
-from jointid.robot.plain_motion import plain_signals
-from jointid.robot.request import least_speeds, recordings_of
-from jointid.robot.result import RobotEstimate
-from jointid.robot.robot import Robot
-from jointid.robot.shifts import Shift, shift_option, torque_shift
-from jointid.robot.stamps import all_on_even_clocks
-from jointid.robot.torque_check import wrong_torques
-from jointid.robot.unexamined_causes import unexamined
+from jointid.robot.balance.inertia import FREE, MODES, Inertia
+from jointid.robot.checks.cross_checking import cross_checked, disagreement, slow_motion
+from jointid.robot.checks.torque_check import wrong_torques
+from jointid.robot.facts.assumptions import assumption_findings
+from jointid.robot.facts.asymmetry import asymmetry_findings
+from jointid.robot.facts.diagnosis import diagnosed
+from jointid.robot.facts.naming import turned_zeros
+from jointid.robot.facts.unexamined_causes import unexamined
+from jointid.robot.fit.aligning import aligned, delay_findings
+from jointid.robot.fit.attempt import Request, attempted
+from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
+from jointid.robot.links.models import friction_models
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.plain_motion import plain_signals
+from jointid.robot.motion.request import least_speeds, recordings_of
+from jointid.robot.motion.shifts import Shift, shift_option, torque_shift
+from jointid.robot.motion.stamps import all_on_even_clocks
+from jointid.robot.result.cross_check import CrossCheck
+from jointid.robot.result.findings import RANK
+from jointid.robot.result.result import RobotEstimate
 
 
 def identify_robot(

@@ -1,0 +1,1 @@
+"""The torque balance of all joints over windows, and its solution."""

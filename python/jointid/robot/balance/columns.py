@@ -1,0 +1,124 @@
+"""The linear parameters of a robot's balance, and their integrals over the windows of each joint."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.balance.windows import Windows, direction_integrals, interval_means
+from jointid.robot.links.parameters import (
+    CONSTANT,
+    DIFFERENCE,
+    LINEAR_TERMS,
+    MOTOR_TERMS,
+    VISCOUS,
+    least_of,
+)
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.motion import Motion
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Column:
+    """One linear parameter and what it adds to each joint's balance."""
+
+    joint: int  # whose parameter it is
+    name: str
+    values: Mapping[int, Array]  # joint whose balance it enters → its integrals over all windows
+    key: str = ""  # of the term in the core's table; empty of what every joint has
+    least: float = field(default=-np.inf)  # lower bound: 0 of what cannot be negative
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Summing:
+    """Integrals over intervals summed over the windows, of each joint's usable intervals alone."""
+
+    velocity: Array  # (n, samples), of the joints
+    usable: Flags  # (n, samples - 1), intervals in which a joint's balance holds
+    windows: Windows
+    step: Array  # (samples - 1,) [s]
+
+    @classmethod
+    def of(cls, robot: Robot, motion: Motion, windows: Windows) -> Summing:
+        """Return it for a motion: a joint's balance holds where every friction in it is known."""
+        usable = motion.moving.copy()
+        for joint in range(robot.n):
+            for motor in np.flatnonzero(robot.coupled & (robot.couplings[:, joint] != 0.0)):
+                usable[joint] &= motion.motor_moving[motor]
+        return cls(
+            velocity=motion.velocity, usable=usable, windows=windows, step=np.diff(motion.time)
+        )
+
+    def __call__(self, joint: int, intervals: Array) -> Array:
+        """Return the sums over the windows, of a joint's usable intervals."""
+        return self.windows.summed(np.where(self.usable[joint], intervals, 0.0))
+
+
+def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Column]:
+    """Return the columns of friction without shape parameters, of offsets, and of rotor inertias.
+
+    A joint's viscous coefficient is the torque at the joint per its own speed. What a coupled motor adds to it is in
+    it; its own coefficient says what it does beyond that: the torque at one joint per speed of another.
+    """
+    found: list[Column] = []
+    for joint in range(robot.n):
+        found += _of_joint(joint, motion, summing)
+        if robot.coupled[joint]:
+            found += _of_motor(joint, robot, motion, summing)
+        if robot.rotor_inertias[joint] is None:
+            values = rotor_values(joint, robot, motion, summing)
+            found.append(Column(joint=joint, name="rotor_inertia", values=values, least=0.0))
+    return found
+
+
+def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
+    velocity, travel = motion.velocity[joint], np.diff(motion.position[joint])
+
+    def column(name: str, intervals: Array, key: str = "", least: float = -np.inf) -> Column:
+        values = {joint: summing(joint, intervals)}
+        return Column(joint=joint, name=name, key=key, values=values, least=least)
+
+    return [
+        *(
+            column(t.name, _integrals(t, velocity, travel, summing.step), key, least_of(t))
+            for key, t in LINEAR_TERMS.items()
+        ),
+        column(DIFFERENCE, np.abs(travel)),
+        column("torque_offset", summing.step),
+    ]
+
+
+def _of_motor(motor: int, robot: Robot, motion: Motion, summing: Summing) -> list[Column]:
+    row, travel = robot.couplings[motor], np.diff(motion.motor_position[motor])
+    found = []
+    for name, term in MOTOR_TERMS.items():
+        whole = _integrals(term, motion.motor_velocity[motor], travel, summing.step)
+        values = {}
+        for joint in map(int, np.flatnonzero(row)):
+            own = row[joint] * np.diff(motion.position[joint])
+            beyond = whole - own if term.basis == VISCOUS.basis else whole
+            values[joint] = row[joint] * summing(joint, beyond)
+        found.append(Column(joint=motor, name=name, values=values, least=least_of(term)))
+    return found
+
+
+def _integrals(term: _core.Term, velocity: Array, travel: Array, step: Array) -> Array:
+    """Integrals of a term's basis over the intervals."""
+    if term.basis == CONSTANT.basis:
+        return direction_integrals(velocity, step)
+    if term.basis == VISCOUS.basis:
+        return travel
+    return interval_means(_core.friction_basis(term.key, velocity, ()), velocity) * step
+
+
+def rotor_values(motor: int, robot: Robot, motion: Motion, summing: Summing) -> dict[int, Array]:
+    """Integrals of the torque that a motor's inertia of 1 needs, at each joint that it turns with."""
+    row, change = robot.couplings[motor], np.diff(motion.motor_velocity[motor])
+    return {joint: row[joint] * summing(joint, change) for joint in map(int, np.flatnonzero(row))}

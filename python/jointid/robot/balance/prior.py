@@ -1,0 +1,79 @@
+"""What a URDF says of base parameters: a weak prior, and the inertial parameters next to the URDF's.
+
+A short motion leaves some base parameters nearly free; as plain least squares has them, they fit its noise and predict
+other motions worse. The URDF's values, each uncertain by as much as a link of its mass and size can have, keep them
+where the data say nothing; what the data determine they do not move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.links.robot import Robot
+
+Array = NDArray[np.float64]
+
+_LIGHTEST = 0.1  # of the links' mean mass: as uncertain is a link that weighs less
+_SHORTEST = 0.05  # [m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prior:
+    """A normal distribution of the base parameters."""
+
+    mean: Array  # (base,)
+    root: Array  # (base, base), takes differences from the mean to unit variance
+    urdf: Array  # (10 n,), inertial parameters
+    # (10 n, base), smallest change of the inertial parameters per change of the base parameters, in terms of their
+    # sizes
+    gain: Array
+    of_links: Array  # (base, 10 n), base parameters by the links' inertial parameters
+
+    @classmethod
+    def of(cls, robot: Robot, combined: Array, free: Sequence[int]) -> Self | None:
+        """Return the prior, or None where the URDF has no masses.
+
+        `combined`, (base, 10 n + rotors), is base parameters by those of links and free rotors; `free` are the rotors'
+        motors.
+        """
+        urdf = robot.tree.inertias.ravel()
+        mass = robot.tree.inertias[:, 0]
+        if not mass.mean() > 0.0:
+            return None
+        sizes = _sizes(robot, np.maximum(mass, _LIGHTEST * mass.mean()))
+        of_rotors = [10.0 * sizes[motor, 9] for motor in free]
+        scale = np.append(sizes.ravel(), of_rotors)
+        spread = combined * scale
+        covariance = spread @ spread.T
+        root = np.linalg.inv(np.linalg.cholesky(covariance))
+        # What a rotor has that no motion separates counts as the links', so that they explain all of the torque.
+        alone = combined[:, : urdf.size] * sizes.ravel()
+        gain = (alone * sizes.ravel()).T @ np.linalg.inv(alone @ alone.T)
+        return cls(
+            mean=combined[:, : urdf.size] @ urdf,
+            root=root,
+            urdf=urdf,
+            gain=gain,
+            of_links=combined[:, : urdf.size],
+        )
+
+    def completed(self, base: Array) -> Array:
+        """Return the inertial parameters with these base parameters that are nearest to the URDF's."""
+        return np.asarray(self.urdf + self.gain @ (base - self.mean))
+
+
+def _sizes(robot: Robot, mass: Array) -> Array:
+    """How large each inertial parameter of a link may be: of its mass at its distance."""
+    inertias = robot.tree.inertias
+    first = np.linalg.norm(inertias[:, 1:4], axis=1) / mass
+    trace = inertias[:, 4] + inertias[:, 6] + inertias[:, 9]
+    turning = np.sqrt(np.maximum(0.5 * trace, 0.0) / mass)
+    length = np.maximum(np.maximum(first, turning), _SHORTEST)
+    return np.column_stack(
+        [mass, *((mass * length)[:, None],) * 3, *((mass * length**2)[:, None],) * 6]
+    )

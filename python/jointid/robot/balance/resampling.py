@@ -1,0 +1,121 @@
+"""The block bootstrap of a robot's estimate: stretches of time, with all joints in them, are drawn anew."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.balance.resampling import Cells, cells_of, draws
+from jointid.balance.segments import segment_length
+from jointid.base.argument_checks import whole_number
+from jointid.base.errors import InputError
+from jointid.estimate.bootstrap import Bootstrap
+from jointid.identification.inference.bootstrap import drawn_parameter
+
+if TYPE_CHECKING:
+    from jointid.estimate.statistics import ParameterEstimate
+    from jointid.robot.balance.balance import Balance
+    from jointid.robot.balance.fit import Fit
+    from jointid.robot.balance.solving import PriorRows
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RobotDraws:
+    """The fit's sums over quarters of blocks: what is drawn from. No recording is kept."""
+
+    cells: Cells
+    block: float  # length [s]
+    lower: Array  # bounds of the parameters, in the order of `RobotEstimate.parameters`' labels
+    upper: Array  # the same
+    values: Array
+    labels: tuple[tuple[int | None, str], ...]
+
+    @classmethod
+    def of(cls, balance: Balance, fit: Fit, prior: PriorRows) -> Self:
+        """Return the sums of a fit; what is known beforehand of further parameters stands behind its own."""
+        rows = balance.rows
+        weight = 1.0 / fit.scatter[rows.joint]
+        length = segment_length(rows.start, rows.stop, rows.piece)
+        cells = cells_of(
+            fit.jacobian * weight[:, None],
+            -fit.residual * weight,
+            recording=rows.piece,
+            begin=rows.start,
+            end=rows.stop,
+            length=length,
+        )
+        prior = prior.padded(fit.values.size - prior.matrix.shape[1])
+        missed = prior.matrix @ fit.values - prior.target
+        lower, upper = np.array(fit.bounds).T
+        return cls(
+            cells=replace(
+                cells,
+                sure_square=prior.matrix.T @ prior.matrix,
+                sure_gradient=prior.matrix.T @ missed,
+            ),
+            block=length,
+            lower=lower,
+            upper=upper,
+            values=fit.values,
+            labels=fit.labels,
+        )
+
+    def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
+        """Leave the sums out of a pickled estimate."""
+        return _nothing, ()
+
+
+def bootstrapped(
+    source: RobotDraws | None,
+    every: Mapping[str, ParameterEstimate],
+    joints: Sequence[str],
+    count: int,
+    seed: int,
+) -> Bootstrap:
+    """Return the block bootstrap of all parameters of joints of these names; see `RobotEstimate.bootstrap`."""
+    count = whole_number("n", count, 20, 1_000_000)
+    seed = whole_number("seed", seed, 0, 2**64 - 1)
+    if source is None:
+        raise InputError(
+            "this estimate was read from a file, which does not hold the recordings",
+            argument="bootstrap",
+            remedy="identify again, and ask the new estimate",
+        )
+    below, above = source.lower - source.values, source.upper - source.values
+    moved = draws(source.cells, below, above, count, seed)
+    freedom = max(1, source.cells.blocks - 1)
+    wider = np.clip(_widening(source) * moved, below, above)
+    names = [name if joint is None else f"{joints[joint]}.{name}" for joint, name in source.labels]
+    return Bootstrap(
+        parameters={
+            name: replace(
+                drawn_parameter(every[name], wider[:, i], (below[i], above[i]), freedom), name=name
+            )
+            for i, name in enumerate(names)
+        },
+        samples=source.values + moved,
+        block=source.block,
+        blocks=source.cells.blocks,
+        seed=seed,
+    )
+
+
+def _widening(source: RobotDraws) -> float:
+    """Return the factor by which errors of so few blocks are larger than the draws say.
+
+    A fit takes part of each block's error away, as much as it has parameters for the blocks: the correction of
+    MacKinnon and White (1985, HC1) with a block as one observation, and the parameters of one joint.
+    """
+    joints = [joint for joint, _ in source.labels if joint is not None]
+    blocks, each = source.cells.blocks, len(joints) / max(1, len(set(joints)))
+    return float(np.sqrt(blocks / max(blocks - each, 0.5 * blocks, 1.0)))
+
+
+def _nothing() -> None:
+    return None

@@ -1,0 +1,300 @@
+"""Whether the torques are torques at all: one sign, one factor, a magnitude, degrees; before anything else is tried.
+
+The torques are regressed on what the URDF's links need, besides friction, a rotor and an offset of each joint. Such a
+fault makes every later finding a consequence, so that it is the only one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.problem.magnitude import BETTER, CLEAR, is_magnitude, is_one_sided, without
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.balance.inertia import InertiaColumns
+from jointid.robot.checks.plain_regression import Block, Columns
+from jointid.robot.checks.second_look import SETTINGS
+from jointid.robot.links.models import PLAIN
+from jointid.robot.links.parameters import CONSTANT
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.plain_motion import PlainSignals
+from jointid.robot.result.finding_types import TYPES, listed
+
+Array = NDArray[np.float64]
+
+_FAR = 1.6  # a factor on all torques: no URDF is off by so much in the weight of all links
+_CERTAIN = 2.5  # a factor that no load or link makes, which the URDF does not know
+_SEEN = 0.15  # of what friction leaves, squared: what the links may leave to say a factor
+_NEAR = 0.03  # of it: another reading is not tried
+_LINK = 0.5  # of what one link's other weight would leave, squared: what a factor has to leave
+_BOTH = 0.2  # of the rows in each direction
+_RANGE = 2.0  # times the URDF's range: no joint moves so far
+_DEGREES = np.pi / 180.0
+_MOVES = 0.05  # [rad or m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Factor:
+    """What one joint's rows say of its torque: its factor on the URDF's, and squared residuals over its torque."""
+
+    value: float
+    left: float  # residual with the factor
+    without: float  # residual without the links
+    given: float  # residual with a factor of 1
+
+    @property
+    def sure(self) -> bool:
+        """Whether the links explain enough to say it."""
+        return self.left < _SEEN * self.without and self.left < CLEAR**2
+
+
+def wrong_torques(
+    recordings: Sequence[RobotRecording], signals: Sequence[PlainSignals], robot: Robot
+) -> Finding | None:
+    """Return the blocking finding of torques, or positions, that are not what they are taken for."""
+    if not signals:
+        return None
+    blocks = _blocks(signals, robot)
+    found = _unsigned(recordings, robot, blocks)
+    if found is not None or not blocks:
+        return found
+    given = {joint: _factor(block) for joint, block in blocks.items()}
+    common = _common(given)
+    if common is not None and not 1.0 / _FAR < common < _FAR:
+        if max(abs(common), 1.0 / abs(common)) < _CERTAIN and common > 0.0:
+            one_link = _otherwise(signals, robot)
+            if not sum(each.left for each in given.values()) < _LINK * one_link:
+                return None
+        turned = _tried(signals, robot, -1.0) if common < 0.0 else {}
+        if _fits(turned, given):
+            return _reversed(robot, (_common(turned) or 1.0) < 0.0)
+        return _scaled(robot, given, common)
+    if all(each.sure and each.left < _NEAR**2 for each in given.values()):
+        return None
+    if _far(signals, robot):
+        return _in_degrees(signals, robot)
+    for factor in (-1.0, _DEGREES):
+        other = _tried(signals, robot, factor)
+        if _fits(other, given):
+            if factor != -1.0:
+                return _in_degrees(signals, robot)
+            return _reversed(robot, (_common(other) or 1.0) < 0.0)
+    return None
+
+
+def _blocks(
+    signals: Sequence[PlainSignals], robot: Robot, directions: Array | None = None
+) -> dict[int, Block]:
+    """Rows with the links' torque as the last column, or further changes of their parameters behind it."""
+    weights = robot.tree.inertias.reshape(-1, 1)
+    every = weights if directions is None else np.hstack([weights, directions])
+    count = every.shape[1]
+    links = InertiaColumns(
+        names=tuple(f"links {number}" for number in range(count)),
+        units=("",) * count,
+        joints=(0,) * count,
+        directions=every,
+        given=np.zeros(weights.size),
+        start=np.ones(count),
+    )
+    other = replace(robot, rotor_inertias=(None,) * robot.n)
+    columns = Columns(other, links, np.zeros(robot.n), (PLAIN,) * robot.n)
+    return columns.blocks(signals, *SETTINGS[0], np.zeros((robot.n, 1)))
+
+
+def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
+    """The least of what is left, squared and of all torques, if one link had another weight and centre."""
+    n = robot.n
+    moments = [10 * link + k for link in range(n) for k in range(4)]
+    links = np.kron(np.eye(n), np.ones((10, 1))) * robot.tree.inertias.reshape(-1, 1)
+    blocks = _blocks(signals, robot, np.hstack([links, np.eye(10 * n)[:, moments]]))
+    rests = []
+    for block in blocks.values():
+        first = block.matrix.shape[1] - 5 * n - 1
+        target = block.targets - block.matrix[:, [first]]
+        values = np.column_stack([target, block.matrix[:, first + 1 :]])
+        size = float(np.linalg.norm(block.targets)) or 1.0
+        rests.append(without(block.matrix[:, :first], values) / size)
+    rest, found = np.vstack(rests), []
+    for link in range(n):
+        mine = rest[:, 1 + np.array([link, *range(n + 4 * link, n + 4 * link + 4)])]
+        changes = np.linalg.lstsq(mine, rest[:, 0], rcond=1e-6)[0]
+        found.append(float(np.sum((rest[:, 0] - mine @ changes) ** 2)))
+    return min(found)
+
+
+def _tried(signals: Sequence[PlainSignals], robot: Robot, factor: float) -> dict[int, _Factor]:
+    """The joints' factors if all positions were multiplied."""
+    moved = [
+        replace(each, position=factor * each.position, velocity=factor * each.velocity)
+        for each in signals
+    ]
+    return {joint: _factor(block) for joint, block in _blocks(moved, robot).items()}
+
+
+def _factor(block: Block) -> _Factor:
+    target, links = block.targets[:, 0], block.matrix[:, -1]
+    power = float(target @ target) or 1.0
+    rest = without(block.matrix[:, :-1], np.column_stack([target, links]))
+    length = float(rest[:, 1] @ rest[:, 1])
+    seen = length > 1e-12 * max(float(links @ links), 1e-300)
+    value = float(rest[:, 0] @ rest[:, 1]) / length if seen else 0.0
+
+    def left(factor: float) -> float:
+        return float(np.sum((rest[:, 0] - factor * rest[:, 1]) ** 2)) / power
+
+    return _Factor(value=value, left=left(value), without=left(0.0), given=left(1.0))
+
+
+def _common(factors: Mapping[int, _Factor]) -> float | None:
+    """The factor on which the joints that can say one agree; None where they do not, or none can."""
+    sure = np.array([each.value for each in factors.values() if each.sure])
+    if not sure.size or 2 * sure.size < len(factors) or not np.all(sure * sure[0] > 0.0):
+        return None
+    middle = float(np.median(np.abs(sure)))
+    spread = float(np.abs(sure).max() / np.abs(sure).min())
+    if spread > max(middle, 1.0 / middle, _FAR):  # a link or a load that the URDF does not know
+        return None
+    return float(np.copysign(middle, sure[0]))
+
+
+def _fits(other: Mapping[int, _Factor], given: Mapping[int, _Factor]) -> bool:
+    """Whether the torques are the URDF's, by their size, with another reading of the positions, and only with it."""
+    common = _common(other)
+    if common is None or not 1.0 / _FAR < abs(common) < _FAR:
+        return False
+    both = [joint for joint in other if joint in given]
+    falls = [other[joint].left / max(given[joint].left, 1e-12) for joint in both]
+    return bool(both) and float(np.median(falls)) < BETTER
+
+
+def _far(signals: Sequence[PlainSignals], robot: Robot) -> bool:
+    """Whether most joints move over far more than the URDF's range."""
+    spans = np.array(robot.tree.spans or (np.inf,) * robot.n)
+    moved = np.max([np.ptp(each.position, axis=1) for each in signals], axis=0)
+    known = (spans > 0.0) & np.isfinite(spans) & ~np.array(robot.tree.prismatic) & (moved > _MOVES)
+    return (
+        bool(known.any())
+        and 2 * np.count_nonzero(moved[known] > _RANGE * spans[known]) > known.sum()
+    )
+
+
+def _unsigned(
+    recordings: Sequence[RobotRecording], robot: Robot, blocks: Mapping[int, Block]
+) -> Finding | None:
+    """Joints whose torque is never negative, although what moves them has to be."""
+    lowest, highest = np.full(robot.n, np.inf), np.full(robot.n, -np.inf)
+    for run in recordings:
+        values = run.torque if run.torque is not None else run.motor_torque
+        if values is None:
+            return None
+        of_joints = values[:, robot.columns_of(run)]
+        lowest = np.minimum(lowest, of_joints.min(axis=0))
+        highest = np.maximum(highest, of_joints.max(axis=0))
+    folded = [
+        joint
+        for joint, block in blocks.items()
+        if is_one_sided(lowest[joint], highest[joint]) and _folded(block)
+    ]
+    if not folded:
+        return None
+    names = [robot.names[joint] for joint in folded]
+    return TYPES["unsigned_torque"].finding(
+        f"the torque of {listed(names)} is never negative: it has lost its sign",
+        Action(
+            "inspect",
+            text="the driver's signed value (of a servo that has none, the sign of its position error)",
+        ),
+        details="the joints move both ways, and the magnitude fits a torque that changes its sign"
+        + (f"; it is so for {', '.join(names)}" if len(names) > 1 else ""),
+        parameters=()
+        if len(folded) == robot.n
+        else tuple(f"{name}.{CONSTANT.name}" for name in names),
+        evidence={name: Measured(float(lowest[j])) for name, j in zip(names, folded, strict=True)},
+    )
+
+
+def _folded(block: Block) -> bool:
+    """Whether a joint's rows are the magnitude of what the columns make, and not its value."""
+    target = block.targets[:, 0]
+    direction = block.matrix[
+        :, block.labels.index(next(e for e in block.labels if e[1] == CONSTANT.name))
+    ]
+    if min(np.mean(direction > 0.5), np.mean(direction < -0.5)) < _BOTH:
+        return False
+    return is_magnitude(block.matrix, target, (block.matrix[:, -1] + 1e-12 * direction, direction))
+
+
+def _scales(robot: Robot, factors: Mapping[int, float]) -> list[float]:
+    before = robot.torque_scales or (1.0,) * robot.n
+    return [float(f"{old / factors[joint]:.3g}") for joint, old in enumerate(before)]
+
+
+def _scaled(robot: Robot, given: Mapping[int, _Factor], common: float) -> Finding:
+    """The torques, multiplied by one factor or reversed, are those of the URDF's links."""
+    if 1.0 / _FAR < abs(common) < _FAR:
+        return TYPES["reversed_torques"].finding(
+            "all torques have the opposite sign of what the URDF's links weigh",
+            Action(
+                "call",
+                {"torque_scales": _scales(robot, dict.fromkeys(range(robot.n), -1.0))},
+                function="Robot.from_urdf",
+            ),
+            evidence={"factor": Measured(common)},
+        )
+    each = {j: given[j].value if j in given and given[j].sure else common for j in range(robot.n)}
+    size = abs(common)
+    times = f"{1.0 / size:.2g} times smaller" if size < 1.0 else f"{size:.2g} times larger"
+    sign = ", and reversed" if common < 0.0 else ""
+    left = percent(float(np.sqrt(np.median([e.left for e in given.values()]))))
+    what = (
+        "they are probably currents, or of the motor's side of a gear"
+        if size < 1.0
+        else "they are probably in another unit, or the masses of the URDF are not the robot's"
+    )
+    return TYPES["scaled_torques"].finding(
+        f"all torques are about {times} than the URDF's links weigh{sign}",
+        Action(
+            "call",
+            {"torque_scales": _scales(robot, each)},
+            text="so that they weigh what the URDF says, until the factors are known",
+            function="Robot.from_urdf",
+        ),
+        details=f"{what}; with one factor for each joint the URDF explains all but {left} of them",
+        evidence={
+            "factor": Measured(common),
+            **{robot.names[j]: Measured(each[j]) for j in given if given[j].sure},
+        },
+    )
+
+
+def _reversed(robot: Robot, torques_too: bool) -> Finding:
+    """All positions count the other way."""
+    before = robot.directions or (1.0,) * robot.n
+    found: dict[str, object] = {"directions": [-each for each in before]}
+    if not torques_too:  # a direction turns the torque with the position
+        found["torque_scales"] = [-each for each in robot.torque_scales or (1.0,) * robot.n]
+    with_torques = " and torques" if torques_too else ""
+    return TYPES["reversed_positions"].finding(
+        f"all positions{with_torques} have the opposite sign of the URDF's axes",
+        Action("call", found, function="Robot.from_urdf"),
+        details="only with the other sign do the links weigh what was measured",
+    )
+
+
+def _in_degrees(signals: Sequence[PlainSignals], robot: Robot) -> Finding:
+    moved = np.max([np.ptp(each.position, axis=1) for each in signals], axis=0)
+    joint = int(np.argmax(np.where(robot.tree.prismatic, 0.0, moved)))
+    size = float(moved[joint])
+    return TYPES["implausible_unit"].finding(
+        f"positions are probably in degrees, not radians: {robot.names[joint]} moves by {size:.3g}",
+        Action("call", {"units": {"position": "deg"}}, function="load_robot"),
+        severity="blocking",
+        evidence={"range": Measured(size, "rad")},
+    )

@@ -1,0 +1,1 @@
+"""Which given facts are wrong, and what else a misfit tells."""

@@ -1,0 +1,103 @@
+"""What is assumed of recordings and robot where nobody said it, and where that is not plausible."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.fit.attempt import Attempt
+from jointid.robot.links.robot import Robot
+from jointid.robot.result.finding_types import TYPES
+
+_FAR = 2.0  # times the URDF's range: no joint moves so far
+_MOVES = 0.01  # [rad or m]
+_DEGREES = 180.0 / np.pi
+_NEAR = 0.1  # of a logarithm: so near to degrees, a ratio is that of degrees
+
+
+def assumption_findings(
+    recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
+) -> Iterator[Finding]:
+    """Findings of what was assumed: joints in order, joints that stand, no gravity, and the positions' unit.
+
+    The robot is as given.
+    """
+    for run in recordings:
+        columns = robot.columns_of(run)
+        taken = [run.names[column] for column in columns]
+        if columns == list(range(robot.n)) and not set(taken) & set(robot.names):
+            pairs = zip(robot.names, taken, strict=True)
+            yield TYPES["joints_in_order"].finding(
+                "the recording does not name the URDF's joints; they are taken in order",
+                details=", ".join(f"{name} is {each}" for name, each in pairs),
+            )
+            break
+    yield from _locked(recordings, robot)
+    if not np.any(robot.tree.gravity):
+        yield TYPES["no_gravity"].finding("no gravity acts on this robot, as given")
+    yield from _units(recordings, robot, attempt)
+
+
+def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Finding]:
+    """Joints of the URDF that were left out and move."""
+    for name in robot.tree.locked:
+        spans = [
+            float(np.ptp(run.position[:, run.names.index(name)]))
+            for run in recordings
+            if name in run.names
+        ]
+        if spans and max(spans) > _MOVES:
+            yield TYPES["locked_joint_moves"].finding(
+                f"{name} moves by {max(spans):.3g} and is not one of the robot's joints",
+                Action("inspect", text=f"the list of the robot's joints, which lacks {name}"),
+                details="it is assumed to stay at 0",
+                evidence={"range": Measured(max(spans))},
+            )
+
+
+def _units(
+    recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
+) -> Iterator[Finding]:
+    excerpts = list(attempt.excerpts.values())
+    spans = robot.tree.spans or (np.inf,) * robot.n
+    for joint, name in enumerate(robot.names):
+        if robot.tree.prismatic[joint]:
+            continue
+        moved = max(float(np.ptp(each.position[joint])) for each in excerpts)
+        ratio = _of_velocity(recordings, robot, joint)
+        far = moved > _FAR * spans[joint]
+        apart = ratio is not None and abs(abs(np.log(ratio)) - np.log(_DEGREES)) < _NEAR
+        if not far and not apart:
+            continue
+        signal = "velocity" if apart and ratio is not None and ratio > 1.0 else "position"
+        reasons = []
+        if far:
+            reasons.append(
+                f"{name} moves by {moved:.3g} rad, and by the URDF at most by {spans[joint]:.3g}"
+            )
+        if apart:
+            assert ratio is not None
+            reasons.append(f"its recorded velocity is {ratio:.3g} times that of its position")
+        yield TYPES["implausible_unit"].finding(
+            f"the {signal} of {name} is probably in degrees, not radians",
+            Action("inspect", text=f"the unit of the {signal} of {name}"),
+            details="; ".join(reasons),
+            evidence={"range": Measured(moved, "rad")},
+        )
+
+
+def _of_velocity(recordings: Sequence[RobotRecording], robot: Robot, joint: int) -> float | None:
+    """The recorded velocity in terms of the position's; None where there is none."""
+    run = recordings[0]
+    if run.velocity is None:
+        return None
+    column = robot.columns_of(run)[joint]
+    recorded = float(np.median(np.abs(run.velocity[:, column])))
+    every = max(1, run.samples // 200)  # far apart, against the positions' noise
+    time, position = run.time[::every], run.position[::every, column]
+    derived = float(np.median(np.abs(np.diff(position) / np.diff(time))))
+    return recorded / derived if recorded > 0.0 and derived > 0.0 else None

@@ -1,0 +1,243 @@
+"""Findings that name a given fact that is wrong, and the call that has it otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent, rounded, two_digits
+from jointid.robot.balance.inertia import FREE, SCALED
+from jointid.robot.facts.error_candidates import (
+    CENTRE,
+    LINK,
+    PAYLOAD,
+    TILT,
+    TORQUE,
+    ZERO,
+    SmallError,
+)
+from jointid.robot.facts.wrong_facts import WrongFact
+from jointid.robot.fit.zeros import Zeros
+from jointid.robot.links.robot import Robot
+from jointid.robot.result.finding_types import TYPES, listed, titled
+
+
+def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
+    """The finding that the recording counts from another pose than the URDF."""
+    turned = [
+        f"{name} {np.rad2deg(angle):+.0f}°"
+        for name, angle in zip(robot.names, zeros.offsets, strict=True)
+        if angle
+    ]
+    return TYPES["turned_zero"].finding(
+        titled("joints have another zero than in the URDF", listed(turned)),
+        Action(
+            "call",
+            {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
+            text="if this is right",
+            function="Robot.from_urdf",
+        ),
+        details=f"the offsets are {', '.join(turned)} and are taken into account; the URDF's inertias leave "
+        f"{percent(zeros.before)} of the torque unexplained without them, {percent(zeros.after)} with them",
+        evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
+    )
+
+
+def named_fact(wrong: WrongFact, shown: str) -> Finding:
+    """The finding that one fact, if it were otherwise, would explain most of what is left; `shown`: of which joint."""
+    first, *others = wrong.joints
+    both = " and ".join(wrong.joints)
+    coupling = (
+        f"motor {first} probably turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
+    )
+    texts = {
+        "swapped_joints": (f"the columns of {both} are probably exchanged", ""),
+        "swapped_torques": (f"the torques of {both} are probably exchanged", ""),
+        "wrong_sign": (
+            f"{first} probably turns the other way",
+            f"its position and torque have the wrong sign, or its gear ratio{_or_other(wrong)}; ",
+        ),
+        "wrong_motion_sign": (
+            f"the position of {first} probably has the wrong sign",
+            "its torque has the right one; ",
+        ),
+        "wrong_torque_sign": (f"the torque of {first} probably has the wrong sign", ""),
+        "wrong_coupling": (coupling, f"another coupling was given{_or(wrong)}; "),
+    }
+    title, details = texts[wrong.kind]
+    advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
+    if wrong.kind == "wrong_sign":
+        advice = (_call({"directions": _plain(wrong.robot.directions)}),)
+    if wrong.kind == "wrong_motion_sign":
+        turned = {
+            "directions": _plain(wrong.robot.directions),
+            "torque_scales": _plain(wrong.robot.torque_scales),
+        }
+        advice = (_call(turned),)
+    if wrong.kind == "wrong_torque_sign":
+        advice = (_call({"torque_scales": _plain(wrong.robot.torque_scales)}),)
+    if wrong.kind == "wrong_coupling":
+        advice = (_call({"couplings": _coupled(wrong.robot)}),)
+    before, after = percent(wrong.before), percent(wrong.after)
+    return TYPES[wrong.kind].finding(
+        titled(title, f"{before} unexplained, corrected {after}"),
+        *advice,
+        details=f"{details}{before} of the torque of {shown} stays unexplained as it is, {after} when it is corrected",
+        evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
+    )
+
+
+def named_error(error: SmallError, names: Sequence[str]) -> Finding:
+    """The finding that a fact is somewhat wrong."""
+    title, details, evidence, advice = _WORDED[error.kind](
+        error, "" if error.joint is None else names[error.joint]
+    )
+    others = [f"or {_NOUNS[kind].format(names[joint or 0])}" for kind, joint in error.others]
+    held_out = (
+        f"that explains {percent(error.share)} of the squared residual in motion that was held out"
+    )
+    return TYPES[error.kind].finding(
+        title,
+        *advice,
+        details="; ".join(filter(None, (*others, details, held_out))),
+        evidence={**evidence, "share": Measured(error.share)},
+    )
+
+
+_NOUNS = {
+    TILT: "the base is not upright",
+    ZERO: "the zero of {} is off",
+    TORQUE: "the torque of {} is scaled",
+    LINK: "the link that {} moves has another weight",
+    CENTRE: "the link that {} moves has another centre of mass",
+    PAYLOAD: "the link that {} moves carries a body",
+}
+
+_Worded = tuple[str, str, dict[str, Measured], tuple[Action, ...]]
+"""Title, details, evidence, advice."""
+
+
+def _tilted(error: SmallError, _: str) -> _Worded:
+    gravity = error.robot.tree.gravity
+    before = error.given.tree.gravity
+    across = np.linalg.norm(np.cross(before, gravity))
+    degrees = float(np.rad2deg(np.arctan2(across, before @ gravity)))
+    spread = float(np.rad2deg(np.linalg.norm(error.errors)))
+    return (
+        f"the base is tilted by {_with_error(degrees, spread)} degrees",
+        "gravity is not where the facts say",
+        {"tilt": Measured(degrees, "deg"), "tilt_error": Measured(spread, "deg")},
+        (_call({"gravity": [round(float(each), 3) for each in gravity]}),),
+    )
+
+
+def _moved(error: SmallError, name: str) -> _Worded:
+    spread, joint = float(error.errors[0]), error.joint or 0
+    offsets = error.robot.zero_offsets or ()
+    value = offsets[joint] - (error.given.zero_offsets or (0.0,) * len(offsets))[joint]
+    degrees, of_degrees = np.rad2deg(value), np.rad2deg(spread)
+    return (
+        f"the zero of {name} is off by {_with_error(degrees, of_degrees)} degrees",
+        "the URDF's angle is the recorded one plus that",
+        {"offset": Measured(value, "rad"), "offset_error": Measured(spread, "rad")},
+        (_call({"zero_offsets": [round(each, 5) for each in offsets]}),),
+    )
+
+
+def _torque(error: SmallError, name: str) -> _Worded:
+    value, spread = float(error.values[0]), float(error.errors[0])
+    return (
+        f"the torque of {name} is {_with_error(100.0 * abs(value), 100.0 * spread)} % too {_side(value)}",
+        "the links' weight and the other joints show it; its torque constant or gear ratio is probably wrong",
+        {"scale": Measured(1.0 + value), "scale_error": Measured(spread)},
+        (_call({"torque_scales": _plain(error.robot.torque_scales)}),),
+    )
+
+
+def _link(error: SmallError, name: str) -> _Worded:
+    value, spread = 1.0 + float(error.values[0]), float(error.errors[0])
+    return (
+        f"the link that {name} moves has {_with_error(value, spread)} times the URDF's inertia",
+        "mass, centre of mass and inertia are scaled together",
+        {"scale": Measured(value), "stderr": Measured(spread)},
+        (Action("call", {"inertia": SCALED}, function="identify_robot"),),
+    )
+
+
+def _centre(error: SmallError, name: str) -> _Worded:
+    mass = float(error.robot.tree.inertias[error.joint or 0, 0])
+    offset = 1e3 * error.values / mass if mass else error.values
+    shown = ", ".join(f"{each:.0f}" for each in offset)
+    return (
+        f"the centre of mass of the link that {name} moves is off by ({shown}) mm",
+        "x, y and z in the link's frame, from where the URDF has it",
+        {axis: Measured(float(each) * 1e-3, "m") for axis, each in zip("xyz", offset, strict=True)},
+        _freed(),
+    )
+
+
+def _carried(error: SmallError, name: str) -> _Worded:
+    mass, spread = float(error.values[0]), float(error.errors[0])
+    place = ", ".join(f"{each:.2f}" for each in error.values[1:] / mass)
+    return (
+        f"the link that {name} moves carries {_with_error(mass, spread)} kg that is not in the URDF",
+        f"at ({place}) m in the link's frame",
+        {"mass": Measured(mass, "kg"), "mass_error": Measured(spread, "kg")},
+        _freed(),
+    )
+
+
+_WORDED = {
+    TILT: _tilted,
+    ZERO: _moved,
+    TORQUE: _torque,
+    LINK: _link,
+    CENTRE: _centre,
+    PAYLOAD: _carried,
+}
+
+
+def _with_error(value: float, error: float) -> str:
+    return f"{rounded(value, error)} ± {two_digits(error)}"
+
+
+def _coupled(robot: Robot) -> dict[str, dict[str, float]]:
+    """All couplings, by motor and joint: those that are stated replace all that were."""
+    return {
+        motor: {
+            joint: float(share)
+            for joint, share in zip(robot.names, robot.couplings[number], strict=True)
+            if share != (joint == motor)
+        }
+        for number, motor in enumerate(robot.names)
+        if robot.coupled[number]
+    }
+
+
+def _or(wrong: WrongFact) -> str:
+    nearly = " and ".join(f"{each.coupling or 0.0:g}" for each in wrong.others)
+    return f" ({nearly} is nearly as good; the sign is uncertain)" if nearly else ""
+
+
+def _or_other(wrong: WrongFact) -> str:
+    names = [name for each in wrong.others for name in each.joints]
+    return f" (or {' or '.join(names)} does: this motion does not separate them)" if names else ""
+
+
+def _call(arguments: Mapping[str, object]) -> Action:
+    return Action("call", arguments, function="Robot.from_urdf")
+
+
+def _freed() -> tuple[Action, ...]:
+    return (Action("call", {"inertia": FREE}, function="identify_robot"),)
+
+
+def _plain(values: Sequence[float] | None) -> list[float]:
+    return [round(each, 4) for each in values or ()]
+
+
+def _side(value: float) -> str:
+    return "high" if value > 0.0 else "low"

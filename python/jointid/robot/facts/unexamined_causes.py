@@ -1,0 +1,92 @@
+"""Causes that nothing examines for a robot: where a joint's residual is no noise, one of them may be at work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.robot.result.finding_types import TYPES
+from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
+
+Array = NDArray[np.float64]
+
+CAUSES = (
+    *("friction that rises smoothly with speed", "friction under load", "drift with temperature"),
+    *("ripple", "springs and counterweights", "a low-pass filter on the torque", "soft gears"),
+)
+_FEWEST = 40  # windows
+_LAGS = range(2, 9)  # windows; neighbours share their velocity's noise
+_FAR = 6.0  # times the median: a window says no more
+_SURE = 4.5  # standard errors of an autocorrelation
+_MATTERS = 0.005  # of the torque: the part of the residual that is no noise
+_EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
+_MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
+
+
+def unexamined(estimate: RobotEstimateRecord, corrected: RobotEstimateRecord) -> Iterator[Finding]:
+    """The finding that a residual is no noise, and what was not examined; it caps the verdict at "with care".
+
+    Where wrong facts that were named explain it, it is for information: another cause may look like them.
+    """
+    shares = {name: _structured(joint) for name, joint in estimate.joints.items()}
+    left = [_structured(joint) for joint in corrected.joints.values()]
+    explained = max(left) < _EXPLAINED * max(shares.values())
+    concerned = sorted(
+        (name for name in shares if shares[name] > 0.0), key=lambda name: -shares[name]
+    )
+    if not concerned:
+        return
+    worst, *others = concerned
+    more = f" and {len(others)} more" if others else ""
+    every = ", ".join(f"{name} {percent(shares[name])}" for name in concerned)
+    yield TYPES["unexamined_causes"].finding(
+        f"{percent(shares[worst])} of the torque of {worst}{more} is neither explained nor noise",
+        Action("inspect", text=f"{worst} as a single joint, for which more causes are examined"),
+        details="; ".join(
+            filter(
+                None,
+                (
+                    f"it is so for {every} of the torque" if others else "",
+                    "the named facts explain it" if explained else "",
+                    f"not examined for a robot: {', '.join(CAUSES)}",
+                ),
+            )
+        ),
+        severity="info" if explained else "warning",
+        parameters=tuple(
+            f"{name}.{key}" for name in concerned for key in estimate.joints[name].parameters
+        ),
+        evidence={name: Measured(shares[name]) for name in concerned},
+    )
+
+
+def _structured(joint: RobotJoint) -> float:
+    """The part of a joint's residual that depends on its own past, of the torque; 0 where that is chance or little."""
+    table = joint.windows
+    rest = (table.measured - table.fitted) / table.duration
+    count = rest.size
+    if count < _FEWEST or not rest.any():
+        return 0.0
+    # Two windows that are far off are alike by chance, and hide what the others have in common: both must show it.
+    most = _FAR * float(np.median(np.abs(rest)))
+    both = (rest, np.clip(rest, -most, most))
+    later = min(max(abs(_alike(each, lag)) for lag in _LAGS) for each in both)
+    found = 0.0
+    for alike, least in (
+        (later, _MATTERS),
+        (min(_alike(each, 1) for each in both), _MATTERS_OF_NEXT),
+    ):
+        share = joint.relative_residual * float(np.sqrt(max(alike, 0.0)))
+        if alike > _SURE / np.sqrt(count) and share > least:
+            found = max(found, share)
+    return found
+
+
+def _alike(rest: Array, lag: int) -> float:
+    """How much a row of residuals is like itself some windows later, between -1 and 1."""
+    return float(rest[lag:] @ rest[:-lag]) / (float(rest @ rest) or 1.0)

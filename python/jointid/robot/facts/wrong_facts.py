@@ -1,0 +1,262 @@
+"""Facts that may be wrong where a robot's balance leaves much unexplained: each is tried otherwise.
+
+A joint's columns exchanged with another's, a sign, a coupling that is missing or has another sign: with the URDF's
+inertias such an error leaves a large part of the torque unexplained, and the right fact much less. What is found is
+named, not used: the user knows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.balance.inertia import FREE, URDF
+from jointid.robot.fit.quick_fit import quick_fit_of, thinned
+from jointid.robot.links.parameters import LINEAR_FRICTION
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.motion import Motion
+
+Array = NDArray[np.float64]
+
+_BETTER = (
+    0.5  # fall of the logarithms of the motors' residuals, summed: what another fact has to reach
+)
+_BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
+_CLEARLY = 0.05  # by which it has to be better than the next
+_LEAST = 0.01  # of a motor's torque: less residual does not decide
+_SLOW = 0.02  # of a peak speed: standing still, for a quick fit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class WrongFact:
+    """A fact that fits clearly better than the given one."""
+
+    # "swapped_joints", "swapped_torques", "wrong_sign", "wrong_torque_sign", "wrong_motion_sign" or "wrong_coupling"
+    kind: str
+    joints: tuple[str, ...]
+    # what the matrix should have in the row of the first joint, at the second
+    coupling: float | None
+    # residual over measured torque of the joints that it changes most, with the URDF's inertias
+    before: float
+    after: float  # the same with the fact as it should be
+    robot: Robot  # with the fact as it should be
+    # columns of the positions in the recording, if they should be exchanged
+    order: NDArray[np.int64] | None = None
+    torque_order: NDArray[np.int64] | None = None  # the same of the torques
+    # the same coupling with another factor, or the sign of another joint, which is nearly as good
+    others: tuple[WrongFact, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Trial:
+    kind: str
+    joints: tuple[int, ...]
+    robot: Robot
+    motions: list[Motion]
+    coupling: float | None = None
+    order: NDArray[np.int64] | None = None
+    torque_order: NDArray[np.int64] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _MotorFit:
+    """Residuals and torques of each motor in each window, and how much friction would be negative."""
+
+    residual: Array
+    torque: Array
+    held: int
+
+
+def wrong_fact(
+    robot: Robot, motions: Sequence[Motion], duration: float, suspects: Sequence[int]
+) -> WrongFact | None:
+    """Return the one fact about joints with a poor balance that explains most if it is otherwise, or None."""
+    thin = [thinned(motion) for motion in motions]
+    given = {mode: _motor_fit(robot, thin, duration, mode) for mode in (URDF, FREE)}
+    falls = []
+    for trial in _trials(robot, thin, set(suspects)):
+        # What a coupling changes is as small as the errors of a light wrist's inertias.
+        mode = FREE if trial.kind == "wrong_coupling" else URDF
+        was, other = given[mode], _motor_fit(trial.robot, trial.motions, duration, mode)
+        if was is None or other is None:
+            continue
+        before, after = _relative(was, other)
+        plain = given[URDF]
+        if mode == FREE and plain is not None:
+            # Free inertias may end far off where another fact is wrong; that is no merit of the coupling.
+            before = np.minimum(before, _relative(plain, other)[0])
+        fall = float(np.log(before / after).sum())
+        if mode == FREE and other.held > was.held and fall < _BETTER:
+            continue  # friction that takes no power away, and a balance that hardly says otherwise
+        falls.append((fall, trial, before, after))
+    if not falls:
+        return None
+    falls.sort(key=lambda each: each[0], reverse=True)
+    best, trial, before, after = falls[0]
+    least = _BETTER_COUPLED if trial.kind == "wrong_coupling" else _BETTER
+    if best < least:
+        return None
+    others = [
+        (fall, each) for fall, each, _, _ in falls[1:] if fall > max(best - _CLEARLY, 0.5 * best)
+    ]
+    # Of an arm that moves in one plane the mirror image fits as well: the other joint turns the other way.
+    same = [
+        each
+        for _, each in others
+        if (each.joints == trial.joints and each.coupling)
+        or each.kind == trial.kind == "wrong_sign"
+    ]
+    if len(same) < len(others):
+        return None
+    most = int(np.argmax(before / after))
+    found = [
+        WrongFact(
+            kind=each.kind,
+            joints=tuple(robot.names[joint] for joint in each.joints),
+            coupling=each.coupling,
+            before=float(before[most]),
+            after=float(after[most]),
+            robot=each.robot,
+            order=each.order,
+            torque_order=each.torque_order,
+        )
+        for each in (trial, *same)
+    ]
+    if trial.kind == "wrong_sign":
+        rivals = [(each, [other for other in found if other is not each]) for each in found]
+        found = [replace(each, others=tuple(rest)) for each, rest in rivals]
+    return replace(found[0], others=tuple(found[1:]))
+
+
+def _motor_fit(
+    robot: Robot, motions: Sequence[Motion], duration: float, mode: str
+) -> _MotorFit | None:
+    fit = quick_fit_of(robot, motions, duration, mode)
+    if fit is None:
+        return None
+    couplings = robot.couplings if motions[0].at_motor else np.eye(robot.n)
+    residual, torque = fit.of_motors(couplings)
+    held = sum(name in LINEAR_FRICTION for _, name in fit.held)
+    return _MotorFit(residual=residual, torque=torque, held=held)
+
+
+def _relative(given: _MotorFit, other: _MotorFit) -> tuple[Array, Array]:
+    """Each motor's residual over its torque in the windows that two fits have in common."""
+    common = np.isfinite(given.residual) & np.isfinite(other.residual)
+    found = []
+    for fit in (given, other):
+        both = (fit.residual, fit.torque)
+        left, size = (np.linalg.norm(np.where(common, each, 0.0), axis=1) for each in both)
+        found.append(np.maximum(left / np.where(size > 0.0, size, 1.0), _LEAST))
+    return found[0], found[1]
+
+
+def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator[_Trial]:
+    n = robot.n
+    for i in range(n):
+        for j in range(i + 1, n):
+            if suspects & {i, j}:
+                order = np.arange(n)
+                order[[i, j]] = j, i
+                both = [_remade(each, robot, order=order, torque=order) for each in motions]
+                yield _Trial(
+                    kind="swapped_joints",
+                    joints=(i, j),
+                    robot=robot,
+                    motions=both,
+                    order=order,
+                    torque_order=order,
+                )
+                torques = [_remade(each, robot, torque=order) for each in motions]
+                yield _Trial(
+                    kind="swapped_torques",
+                    joints=(i, j),
+                    robot=robot,
+                    motions=torques,
+                    torque_order=order,
+                )
+    for i in sorted(suspects):
+        sign = np.ones(n)
+        sign[i] = -1.0
+        turned = [_remade(each, robot, sign=sign) for each in motions]
+        directions = tuple((sign * (robot.directions or 1.0)).tolist())
+        other = replace(robot, directions=directions)
+        yield _Trial(kind="wrong_sign", joints=(i,), robot=other, motions=turned)
+        scales = tuple((sign * (robot.torque_scales or 1.0)).tolist())
+        pushed = [_remade(each, robot, torque_sign=sign) for each in motions]
+        other = replace(robot, torque_scales=scales)
+        yield _Trial(kind="wrong_torque_sign", joints=(i,), robot=other, motions=pushed)
+        moved = [_remade(each, robot, torque_sign=sign) for each in turned]
+        other = replace(robot, directions=directions, torque_scales=scales)
+        yield _Trial(kind="wrong_motion_sign", joints=(i,), robot=other, motions=moved)
+    for i, j in np.argwhere(robot.couplings - np.diag(np.diag(robot.couplings))).tolist():
+        matrix = robot.couplings.copy()
+        matrix[i, j], matrix[j, i] = 0.0, matrix[i, j]
+        yield _coupled(robot, motions, matrix, (j, i))
+    for i in range(n):
+        for j in (i - 1, i + 1):
+            if not 0 <= j < n or not suspects & {i, j}:
+                continue
+            for value in {0.0, 1.0, -1.0} - {float(robot.couplings[i, j])}:
+                matrix = robot.couplings.copy()
+                matrix[i, j] = value
+                if abs(np.linalg.det(matrix)) < 1e-9:
+                    continue
+                yield _coupled(robot, motions, matrix, (i, j))
+
+
+def _coupled(robot: Robot, motions: list[Motion], matrix: Array, at: tuple[int, int]) -> _Trial:
+    other = replace(robot, couplings=matrix)
+    made = [_remade(each, other, coupled_before=robot.couplings) for each in motions]
+    return _Trial(
+        kind="wrong_coupling", joints=at, robot=other, motions=made, coupling=float(matrix[at])
+    )
+
+
+def _remade(
+    motion: Motion,
+    robot: Robot,
+    *,
+    order: NDArray[np.int64] | None = None,
+    torque: NDArray[np.int64] | None = None,
+    sign: Array | None = None,
+    torque_sign: Array | None = None,
+    coupled_before: Array | None = None,
+) -> Motion:
+    """The motion as other facts have it: columns in another order, other signs, other couplings."""
+    before = robot.couplings if coupled_before is None else coupled_before
+    shift = np.array(robot.zero_offsets or (0.0,) * robot.n)[:, None]
+    # As recorded: of the motors, or of the joints.
+    matrix = before if motion.at_motor else np.eye(robot.n)
+    position, velocity = matrix @ (motion.position - shift), matrix @ motion.velocity
+    pushed = np.linalg.solve(matrix.T, motion.torque)
+    if order is not None:
+        position, velocity = position[order], velocity[order]
+    if torque is not None:
+        pushed = pushed[torque]
+    if sign is not None:
+        position, velocity, pushed = (sign[:, None] * each for each in (position, velocity, pushed))
+    if torque_sign is not None:
+        pushed = torque_sign[:, None] * pushed
+    matrix = robot.couplings if motion.at_motor else np.eye(robot.n)
+    back = np.linalg.inv(matrix)
+    joints, speeds = back @ position, back @ velocity
+    motors, rates = robot.couplings @ joints, robot.couplings @ speeds
+    return replace(
+        motion,
+        position=joints + shift,
+        velocity=speeds,
+        torque=matrix.T @ pushed,
+        motor_position=motors,
+        motor_velocity=rates,
+        moving=_moving(speeds),
+        motor_moving=_moving(rates),
+    )
+
+
+def _moving(velocity: Array) -> NDArray[np.bool_]:
+    fast = np.abs(velocity) > _SLOW * np.abs(velocity).max(axis=1, keepdims=True)
+    return np.asarray(fast[:, 1:] & fast[:, :-1])

@@ -1,0 +1,1 @@
+"""One identification: delays taken away, zeros found, values and their conclusion."""

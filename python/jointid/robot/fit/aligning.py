@@ -1,0 +1,131 @@
+"""Torques moved to the positions' clock before a robot is identified, and what is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import rounded, two_digits
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.fit.attempt import Attempt, Request, attempted
+from jointid.robot.fit.delays import TorqueDelay, torque_delay
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.shifts import shift_option, torque_shift
+from jointid.robot.result.finding_types import TYPES
+
+Array = NDArray[np.float64]
+
+_TURNS = 3
+_SMALL = 2e-4  # [s]: what is left is not worth another identification
+_NORMAL = 1.96  # standard errors of a 95 % interval
+_HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Alignment:
+    """An identification on one clock."""
+
+    attempt: Attempt
+    left: TorqueDelay  # delay after what was taken away
+    chosen: bool  # whether what was taken away was found, not given
+
+
+def aligned(
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, shift: object
+) -> Alignment:
+    """Return the identification without the torque's delay, and what is left of it.
+
+    Without a `shift`, the delays that are certain are taken away.
+    """
+    delay = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
+    attempt = attempted(recordings, robot, request, delay)
+    left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
+    for _ in range(_TURNS if shift is None else 0):
+        step = left.taken if left.certain else _short(delay, left)
+        if np.abs(step).max() < _SMALL:
+            break
+        if np.any(delay + step < -_period(attempt)):
+            # A torque does not come before its motion: then the position is late, as a coarse one is.
+            break
+        delay = delay + step
+        attempt = attempted(recordings, robot, request, delay)
+        left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
+    return Alignment(attempt=attempt, left=left, chosen=shift is None)
+
+
+def delay_findings(found: Alignment) -> Iterator[Finding]:
+    """Findings of the delay that was taken away, and of what is certain and left."""
+    attempt, left = found.attempt, found.left
+    if found.chosen and attempt.delay.any():
+        yield _delay_finding("delay_removed", attempt.delay, found)
+    if left.certain and np.abs(left.taken).max() >= _SMALL:
+        yield _delay_finding("signal_lag", np.zeros_like(left.taken), found)
+
+
+def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
+    attempt, left = found.attempt, found.left
+    names, period = attempt.robot.names, _period(attempt)
+    which = away if away.any() else left.taken
+    alike = bool(np.all(which == which[0]))
+    titles, details = [], []
+    evidence: dict[str, Measured] = {}
+    for joint in [0] if alike else np.flatnonzero(which).tolist():
+        rest = left.value if alike else float(left.joints[joint])
+        error = left.stderr if alike else float(left.errors[joint])
+        # The value is what was taken away and what the balance still shows.
+        value = float(away[joint]) + rest
+        low, high = (1e3 * (abs(value) + sign * _NORMAL * error) for sign in (-1, 1))
+        of_joint = "" if alike else f" of {names[joint]}"
+        side = "late" if value > 0.0 else "early"
+        size = f"{rounded(1e3 * abs(value), 1e3 * error)} ± {two_digits(1e3 * error)} ms"
+        titles.append(f"the torque{of_joint} is {side} by {size}")
+        details.append(
+            f"{f'{names[joint]}: ' * (not alike)}{abs(value) / period:.1f} sample periods against the position, with "
+            f"95 % between {low:.2f} and {high:.2f} ms"
+        )
+        prefix = "" if alike else f"{names[joint]}."
+        evidence |= {
+            f"{prefix}lag": Measured(value, "s"),
+            f"{prefix}lag_error": Measured(error, "s"),
+            f"{prefix}lag_periods": Measured(value / period),
+        }
+    more = f", and {len(titles) - 1} more" if len(titles) > 1 else ""
+    whole = attempt.delay + left.taken
+    advice: tuple[Action, ...] = ()
+    early = -float(whole[0]) / period
+    if alike and abs(early - 0.5) < _HALF and not next(iter(attempt.excerpts.values())).torque_held:
+        text = "if the torque is a command that is held between samples"
+        advice = (Action("call", {"torque_hold": "zoh"}, text=text, function="load_robot"),)
+    if away.any():
+        details.append("it was shifted before the identification")
+    elif found.chosen:
+        details.append("the position is late or coarse, the torque early, or the gear is elastic")
+        text = "the position's filter and resolution, and both clocks"
+        advice = (Action("inspect", text=text),)
+    else:
+        after = " after the stated shift" if attempt.delay.any() else ""
+        details.append(f"this delay is left{after} and biases the values")
+        shift = {"shift": shift_option(whole, attempt.robot)}
+        advice = (Action("call", shift, function="identify_robot"), *advice)
+        if not alike:
+            text = "the delays; without a stated shift, each joint's delay is found and removed"
+            advice += (Action("inspect", text=text),)
+    return TYPES[code].finding(
+        titles[0] + more, *advice, details="; ".join([*titles[1:], *details]), evidence=evidence
+    )
+
+
+def _short(delay: Array, left: TorqueDelay) -> Array:
+    """What a step that was certain left short."""
+    values, counts = np.unique(delay, return_counts=True)
+    usual = values[int(np.argmax(counts))]
+    return np.where(delay == 0.0, 0.0, np.where(delay == usual, left.value, left.joints))
+
+
+def _period(attempt: Attempt) -> float:
+    return float(np.median(np.diff(next(iter(attempt.excerpts.values())).time)))

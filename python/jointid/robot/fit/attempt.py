@@ -1,0 +1,181 @@
+"""One identification of a robot by the facts and delays as they are taken to be."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.errors import InputError
+from jointid.joint.model import AUTO
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.balance.balance import Balance, balance_of
+from jointid.robot.balance.choice import certainty, with_shapes
+from jointid.robot.balance.fit import Fit
+from jointid.robot.balance.inertia import basis_of, inertia_columns
+from jointid.robot.balance.products import Products
+from jointid.robot.balance.resampling import RobotDraws
+from jointid.robot.balance.shaped_terms import ShapedTerms, solved_with_shapes
+from jointid.robot.balance.solving import PriorRows, solved
+from jointid.robot.fit.conclusion import concluded
+from jointid.robot.fit.zeros import Zeros, zeros_of
+from jointid.robot.links.models import PLAIN, SHAPED, is_asymmetric, modelled, name_of
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.motion import Motion, part_of
+from jointid.robot.motion.request import duration_of
+from jointid.robot.motion.shifts import without_delay
+from jointid.robot.result.result import RobotEstimate
+
+Array = NDArray[np.float64]
+
+_PIECE = 120_000  # samples of a long recording that are looked at at once
+_EXCERPTS = 4  # recordings by whose beginnings facts are judged
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Request:
+    """What a call asks for besides recordings and robot."""
+
+    inertia: str
+    models: tuple[str, ...]  # one a joint
+    windows: float | None
+    slowest: Array  # (n,), least speeds
+    mask_standstill: bool
+    further_modes: tuple[str, ...] = ()  # further modes of inertia that the balance is to hold
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Attempt:
+    """An estimate, and what it was made of."""
+
+    robot: Robot  # with the zero offsets that were found
+    delay: Array  # (n,), of the torques, as taken away [s]
+    estimate: RobotEstimate  # without settings
+    fit: Fit
+    balance: Balance
+    # the beginnings of some recordings, by the number of their piece in the balance
+    excerpts: Mapping[int, Motion]
+    duration: float  # of the windows [s]
+    zeros: Zeros | None  # None where they are given
+    runs: tuple[int, ...]  # the recording of each piece
+
+
+def attempted(
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, delay: Array
+) -> Attempt:
+    """Return the identification of recordings on even clocks, with a delay of each torque taken away [s]."""
+    runs = [without_delay(run, robot, delay) for run in recordings]
+    pieces = _pieces(runs)
+    numbers = [number for number, _, _ in pieces]
+    firsts = [numbers.index(number) for number in range(len(runs))][:_EXCERPTS]
+
+    def motion(place: int) -> Motion:
+        number, low, high = pieces[place]
+        part = part_of(runs[number], low, high)
+        return Motion.of(part, robot, request.slowest, request.mask_standstill)
+
+    excerpts = {place: motion(place) for place in firsts}
+    total = sum(run.duration for run in runs)
+    duration = duration_of(request.windows, list(excerpts.values()), total)
+    zeros = None
+    if robot.zero_offsets is None:
+        zeros = zeros_of(robot, list(excerpts.values()), duration)
+        if zeros.found:
+            robot = replace(robot, zero_offsets=zeros.offsets)
+            excerpts = {place: motion(place) for place in firsts}
+    every = (
+        excerpts[place] if place in excerpts else motion(place) for place in range(len(pieces))
+    )
+    basis = np.hstack([basis_of(robot, mode) for mode in (request.inertia, *request.further_modes)])
+    balance = balance_of(robot, every, duration, basis)
+    if not balance.rows.torque.size:
+        raise InputError(
+            "no joint moves by more than the noise of its velocity",
+            argument="recordings",
+            value=runs[0].name,
+            remedy="if one does, look for late time stamps or lost rows",
+        )
+    estimate, fit = _solved(robot, balance, request.inertia, duration, request.models, numbers)
+    return Attempt(
+        robot=robot,
+        delay=delay,
+        estimate=estimate,
+        fit=fit,
+        balance=balance,
+        excerpts=excerpts,
+        duration=duration,
+        zeros=zeros,
+        runs=tuple(numbers),
+    )
+
+
+def _solved(
+    robot: Robot,
+    balance: Balance,
+    mode: str,
+    duration: float,
+    models: Sequence[str],
+    runs: Sequence[int],
+) -> tuple[RobotEstimate, Fit]:
+    fit, prior = fitted(robot, balance, mode, models)
+    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
+    return replace(estimate, draws=RobotDraws.of(balance, fit, prior)), fit
+
+
+def fitted(
+    robot: Robot, balance: Balance, mode: str, models: Sequence[str]
+) -> tuple[Fit, PriorRows]:
+    """Return the values of all parameters, and what was known of them beforehand; the balance must hold the mode."""
+    chosen = [joint for joint, model in enumerate(models) if name_of(model) == AUTO]
+    models = _renamed(models, chosen, SHAPED)
+    columns = inertia_columns(robot, mode)
+    kept = balance.columns_of(models, columns.dropped)
+    target = balance.rows.torque - columns.known(balance)
+    inertial = columns.columns(balance)
+    blocks = [
+        np.column_stack(
+            [
+                balance.matrix[place][:, kept],
+                inertial[place],
+                target[place],
+            ]
+        )
+        for place in balance.places
+    ]
+    products = Products.of(blocks, list(balance.places), balance.rows)
+    least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
+    prior = columns.prior_rows(len(kept))
+    if prior.target.size:
+        _, prior = certainty(products, solved(products, least, prior), prior)
+    shaped = ShapedTerms.of(balance, models)
+    found = solved_with_shapes(shaped, products, least, prior)
+    if chosen:
+        needed = with_shapes(found, products, shaped, prior)
+        models = _renamed(models, [joint for joint in chosen if joint not in needed], PLAIN)
+        left = ShapedTerms.of(balance, models)
+        if left.joints != shaped.joints:
+            start = [float(found.logs[shaped.joints.index(joint)]) for joint in left.joints]
+            shaped = left
+            found = solved_with_shapes(shaped, products, least, prior, start)
+    return Fit.of(balance, columns, models, products, shaped, found), prior
+
+
+def _renamed(models: Sequence[str], joints: Collection[int], name: str) -> list[str]:
+    """Models with another name for some joints."""
+    return [
+        modelled(name, is_asymmetric(model)) if joint in joints else model
+        for joint, model in enumerate(models)
+    ]
+
+
+def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:
+    """Parts of the recordings that are looked at at once: number of the recording, first sample, end."""
+    found = []
+    for number, run in enumerate(runs):
+        count = max(1, -(-run.samples // _PIECE))
+        edges = np.linspace(0, run.samples, count + 1).round().astype(int).tolist()
+        found += [(number, low, high) for low, high in itertools.pairwise(edges)]
+    return found

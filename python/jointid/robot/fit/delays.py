@@ -1,0 +1,153 @@
+"""The torque's delay against the position: the shift that the balances of all joints ask for.
+
+The integral of a shifted torque over a window changes with the shift by the torque's difference between the window's
+ends: one more column, besides all parameters of the fit. Each joint says by itself how late its torque is; what they
+say alike is the delay of all, and its error is at least what their scatter shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.balance.windows import torque_integrals
+from jointid.robot.balance.balance import Balance
+from jointid.robot.balance.fit import Fit
+from jointid.robot.fit.excerpt_rows import ExcerptRows
+from jointid.robot.motion.motion import Motion
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_ROUNDS = 8
+_FAR, _FAR_ERRORS = 5e-4, 3.0  # [s] and standard errors, from where the slope was taken
+_NEAR = 2e-5  # [s], the last step
+_STEP = 5e-4  # [s], for the torque's change with the shift
+_LONGEST_STEP, _LONGEST = 4e-3, 0.05  # [s]
+_FINEST = 1e-4  # [s]: no joint's delay is surer than this against the others'
+_SMALL = 3e-4  # [s]; a shorter delay is left alone
+_WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
+_SURE = 5.0  # standard errors
+_APART, _SURE_OF_ONE = (
+    1e-3,
+    8.0,
+)  # [s] and standard errors, by which one joint differs from the others
+_APART_OF_LONG = 0.3  # of a delay: reversals are not yet where they were
+_BETTER = 3.0  # standard errors by which held-out stretches fit better
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TorqueDelay:
+    """How late the torque is against the position [s]; positive: late."""
+
+    value: float  # of the joints that are alike
+    stderr: float
+    joints: Array  # (n,), of each joint by itself
+    errors: Array  # of these
+    # (n,), what is certain: the common delay, another one of a joint that clearly has another, or 0
+    taken: Array
+    # whether any of it is, and held-out stretches of motion are better explained without it
+    certain: bool
+
+
+def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> TorqueDelay:
+    """Return the torque's delay; the fit's parameters follow the shift as far as they can.
+
+    The motions are some of the balance's pieces, by number.
+    """
+    rows = ExcerptRows(balance, fit, motions)
+    torque = _Shifted(rows, balance, motions)
+    n = fit.scatter.size
+    measured = torque(np.zeros(n))
+
+    def at(delay: Array) -> tuple[Array, Array]:
+        """The residual with these delays, and how the torque's integrals change with them."""
+        slope = (torque(delay + _STEP) - torque(delay - _STEP)) / (2.0 * _STEP)
+        return rows.residual + rows.rest(torque(delay) - measured), slope
+
+    common, delay = True, np.zeros(n)
+    for turn in range(_ROUNDS):
+        rest, slope = at(delay)
+        if common:
+            change = rows.rest(slope)
+            step = -float(change @ rest) / (float(change @ change) or np.inf)
+            common = abs(step) >= _NEAR and turn < _ROUNDS // 2
+            delay = _within(delay, np.full(n, step))
+            if common:
+                continue
+            rest = rest + step * change
+        each = rows.rest(np.where(rows.joint[:, None] == np.arange(n), slope[:, None], 0.0))
+        inverse = np.linalg.pinv(each.T @ each)
+        own = -inverse @ (each.T @ rest)
+        scores = each * (rest + each @ own)[:, None]
+        sums = np.column_stack([np.bincount(rows.cluster, column) for column in scores.T])
+        errors = np.sqrt(np.diag(inverse @ (sums.T @ sums) @ inverse))
+        errors = np.where(np.any(each, axis=0) & (errors > 0.0), errors, np.inf)
+        far = (np.abs(own) > _FAR) & (np.abs(own) > _FAR_ERRORS * errors)
+        if turn == _ROUNDS - 1 or not far.any():
+            break
+        # Far from where the slope was taken.
+        delay = _within(delay, np.where(far, own, 0.0))
+    joints = delay + own
+    first = next(iter(motions.values()))
+    period = float(np.median(np.diff(first.time)))
+    value, stderr, alike = _common(joints, errors, _WITHIN_SAMPLE * period)
+    taken = np.zeros(n)
+    # A torque that is held comes with its sample: what seems earlier by less than one is noise of the positions.
+    small = period if value < 0.0 and first.torque_held else _SMALL
+    if abs(value) > max(small, _SURE * stderr) and 2 * np.count_nonzero(alike) > n:
+        taken[:] = value
+    alone = ~alike & (np.abs(joints) > np.maximum(_APART, _SURE_OF_ONE * errors))
+    taken[alone] = joints[alone]
+    better = taken.any() and rows.share((torque(taken) - measured)[:, None]).certainty > _BETTER
+    return TorqueDelay(
+        value=value, stderr=stderr, joints=joints, errors=errors, taken=taken, certain=bool(better)
+    )
+
+
+def _within(delay: Array, step: Array) -> Array:
+    limited = np.clip(step, -_LONGEST_STEP, _LONGEST_STEP)
+    return np.asarray(np.clip(delay + limited, -_LONGEST, _LONGEST))
+
+
+def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, Flags]:
+    """Mean of the joints' delays, its error, and which are alike: near the median, by their weights."""
+    weights = 1.0 / (errors**2 + _FINEST**2)
+    order = np.argsort(joints)
+    middle = int(np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum()))
+    centre = joints[order[min(middle, joints.size - 1)]]
+    apart = max(_APART, _APART_OF_LONG * abs(float(centre)))
+    alike = np.abs(joints - centre) <= np.maximum(apart, _SURE_OF_ONE * errors)
+    if not weights.any():  # no joint says anything
+        return 0.0, np.inf, alike
+    mine, share = joints[alike], weights[alike] / weights[alike].sum()
+    value = float(share @ mine)
+    scatter = float(share @ (mine - value) ** 2) / max(mine.size - 1, 1)
+    of_errors = float(1.0 / np.sqrt(np.sum(weights[alike])))
+    return value, float(np.sqrt(max(scatter, of_errors**2) + least**2)), alike
+
+
+class _Shifted:
+    """Integrals of the torques of some pieces at any shift."""
+
+    def __init__(self, rows: ExcerptRows, balance: Balance, motions: Mapping[int, Motion]) -> None:
+        self._count, self._motions, self._summings = rows.kept.size, motions, balance.summings
+        self._places = [
+            (piece, joint, rows.places(piece, joint))
+            for piece in motions
+            for joint in range(len(balance.places))
+        ]
+        self._window = rows.window
+
+    def __call__(self, delay: Array) -> Array:
+        """Return each row's integral if its joint's torque is late by this much."""
+        found = np.empty(self._count)
+        for piece, joint, mine in self._places:
+            motion, summing = self._motions[piece], self._summings[piece]
+            signal = np.interp(motion.time + delay[joint], motion.time, motion.torque[joint])
+            pushed = torque_integrals(signal, summing.step, motion.torque_held)
+            found[mine] = summing(joint, pushed)[self._window[mine]]
+        return found

@@ -1,0 +1,66 @@
+"""Where the recording's positions count from: the URDF's zero, or a quarter or half turn away from it.
+
+A controller and a URDF often call different poses zero. Then gravity and the links' inertia of every pose are wrong,
+and the balance with the URDF's inertias leaves much of the torque unexplained, also with friction of any size. Other
+zeros are tried joint by joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.fit.quick_fit import misfits, thinned
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.motion import Motion
+
+Array = NDArray[np.float64]
+
+_POOR = 0.12  # of the torque: less is not looked into
+_TURNS = (0.5 * np.pi, -0.5 * np.pi, np.pi)
+_BETTER = 0.7  # of the best misfit so far: what one more turned joint has to reach
+_CLEARLY = 0.5  # of the misfit without any: what all of them together have to reach, and that it is poor no more
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Zeros:
+    """Zero offsets that were looked for."""
+
+    offsets: tuple[float, ...]  # [rad]; all 0 where no others fit clearly better
+    before: float  # relative residual of all joints with the URDF's inertias, without the offsets
+    after: float  # the same with them
+
+    @property
+    def found(self) -> bool:
+        """Whether there are any."""
+        return any(each != 0.0 for each in self.offsets)
+
+
+def zeros_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Zeros:
+    """Return the offsets among quarter turns with which the URDF's inertias fit."""
+    thin = [thinned(motion) for motion in motions]
+    turned = np.zeros(robot.n)
+    best = before = _misfit(robot, thin, turned, duration)
+    hinges = [joint for joint in range(robot.n) if not robot.tree.prismatic[joint]]
+    while best > _POOR:
+        found = [
+            (_misfit(robot, thin, trial, duration), tuple(trial))
+            for joint in hinges
+            if turned[joint] == 0.0
+            for trial in (turned + angle * np.eye(robot.n)[joint] for angle in _TURNS)
+        ]
+        if not found or min(found)[0] > _BETTER * best:
+            break
+        best, offsets = min(found)
+        turned = np.array(offsets)
+    if best > min(_CLEARLY * before, _POOR):
+        turned = np.zeros(robot.n)
+    return Zeros(offsets=tuple(float(each) for each in turned), before=before, after=best)
+
+
+def _misfit(robot: Robot, motions: Sequence[Motion], offsets: Array, duration: float) -> float:
+    moved = [replace(each, position=each.position + offsets[:, None]) for each in motions]
+    return misfits(robot, moved, duration)[0]

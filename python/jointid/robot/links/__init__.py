@@ -1,0 +1,1 @@
+"""What a robot is: its links, joints and motors, from a URDF and facts."""

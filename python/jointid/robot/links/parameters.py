@@ -1,0 +1,66 @@
+"""The parameters of a robot's joint: those of the core's table of terms, and those that only a robot has."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jointid import _core
+from jointid.robot.links.models import MODELS, PLAIN, linear_terms, terms_of
+
+LINEAR_TERMS = {term.key: term for model in MODELS for term in linear_terms(model)}
+"""Terms without shape parameters that some model has, by key."""
+CONSTANT, VISCOUS = (
+    next(term for term in linear_terms(PLAIN) if term.basis == basis)
+    for basis in ("constant", "linear")
+)
+DIFFERENCE = f"{VISCOUS.name}_difference"
+"""Of joints with asymmetric friction; half the difference of the constant term is in the offset."""
+MOTOR_TERMS = {f"motor_{term.name}": term for term in linear_terms(PLAIN)}
+"""Friction of a motor that turns with several joints."""
+
+
+def parameter_facts(*models: str) -> dict[str, tuple[str, str, str]]:
+    """Return what each parameter of a joint with one of these models means, and its unit of a hinge and of a slide.
+
+    In the order of tables.
+    """
+    keys = {term.key for model in models for term in terms_of(model)}
+    found: dict[str, tuple[str, str, str]] = {}
+    for term in _core.terms():
+        if term.key in keys:
+            others = ", the other joints at rest" if term.basis == VISCOUS.basis else ""
+            found.setdefault(term.name, _facts(term, f"{term.meaning}{others}"))
+            for shape in map(_core.shape, term.shapes):
+                found.setdefault(shape.name, _facts(shape, shape.meaning))
+    more = f"half of what {VISCOUS.meaning} is more in the positive than in the negative direction"
+    scale = "factor on all inertial parameters of the link that the joint moves"
+    return {
+        **found,
+        DIFFERENCE: _facts(VISCOUS, more),
+        **{
+            name: _facts(term, f"{term.meaning} of the motor, on its own speed")
+            for name, term in MOTOR_TERMS.items()
+        },
+        "torque_offset": _facts(CONSTANT, "constant torque"),
+        "rotor_inertia": ("inertia of the motor and its gear, at the joint", "kg·m²", "kg"),
+        "inertia_scale": (scale, "", ""),
+    }
+
+
+def _facts(row: _core.Term | _core.Shape, meaning: str) -> tuple[str, str, str]:
+    return meaning, row.unit, row.unit_prismatic
+
+
+PARAMETERS = tuple(parameter_facts(*MODELS))
+"""Names of a joint's parameters, in the order of tables."""
+FRICTION = frozenset(PARAMETERS) - {"torque_offset", "rotor_inertia", "inertia_scale"}
+"""Those that are friction."""
+SHAPES = frozenset(name for model in MODELS for term in terms_of(model) for name in term.shapes)
+JOINT_FRICTION = tuple(dict.fromkeys(term.name for term in LINEAR_TERMS.values()))
+LINEAR_FRICTION = (*JOINT_FRICTION, *MOTOR_TERMS)
+"""Friction without shape parameters: of joints on their own speed, and with that of motors."""
+
+
+def least_of(term: _core.Term) -> float:
+    """Return the lower bound of a term's coefficient."""
+    return 0.0 if term.non_negative else -np.inf

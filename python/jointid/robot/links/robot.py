@@ -1,0 +1,349 @@
+"""A robot: its links from a URDF, and how its motors drive them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+from numpy.typing import NDArray
+
+from jointid.base.argument_checks import is_finite, require_path
+from jointid.base.errors import InputError
+from jointid.joint.model import Model
+from jointid.recording.sides import SIDES
+from jointid.recording.wide.joint_names import joint_named
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.links.facts import read_facts
+from jointid.robot.links.link_tree import LinkTree
+from jointid.robot.links.models import friction_models
+
+Array = NDArray[np.float64]
+
+_GRAVITY = (0.0, 0.0, -9.81)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Robot:
+    """A robot's links, joints and motors; made by `from_urdf`.
+
+    Attributes
+    ----------
+    tree : LinkTree
+        Links, joints and inertias, from the URDF.
+    names : tuple of str
+        Joints, in the order of everything that has one value a joint.
+    gear_ratios : tuple of float or None
+        Motor's angle per angle of the joint that it drives, signed.
+    couplings : ndarray, shape (n, n)
+        Speeds of the motors, divided by their gear ratios, from the speeds of the joints; the identity where each
+        motor turns with its own joint alone.
+    rotor_inertias : tuple of (float or None)
+        Of each motor with its gear, at the joint [kg·m² or kg]; None: identified.
+    zero_offsets : tuple of float or None
+        Positions of the joints in the URDF's terms where the recording says 0 [rad or m]; None: looked for among
+        multiples of 90 degrees where the URDF's inertias do not fit.
+    side : str or None
+        "joint" or "motor": where recordings have positions and torques; None: as their headers say.
+    name : str
+        The URDF's.
+    torque_scales : tuple of float or None
+        Factors by which the recorded torques are multiplied; None: 1.
+    directions : tuple of float or None
+        1, or -1 where the recording counts positions and torques against the URDF's axis; None: 1.
+    models : tuple of str or None
+        Friction models that are identified where a call names none, one a joint; None: "auto".
+    """
+
+    tree: LinkTree
+    names: tuple[str, ...]
+    gear_ratios: tuple[float, ...] | None
+    couplings: Array
+    rotor_inertias: tuple[float | None, ...]
+    zero_offsets: tuple[float, ...] | None = None
+    side: str | None = None
+    name: str = ""
+    torque_scales: tuple[float, ...] | None = None
+    directions: tuple[float, ...] | None = None
+    models: tuple[str, ...] | None = None
+
+    @classmethod
+    def from_urdf(
+        cls,
+        path: str | os.PathLike[str],
+        joints: Sequence[str] | None = None,
+        *,
+        gear_ratios: Sequence[float] | None = None,
+        couplings: npt.ArrayLike | Mapping[str, Mapping[str, float]] | None = None,
+        rotor_inertias: Sequence[float | None] | None = None,
+        zero_offsets: Sequence[float] | None = None,
+        side: str | None = None,
+        gravity: Sequence[float] | None = None,
+        torque_scales: Sequence[float] | None = None,
+        directions: Sequence[float] | None = None,
+        models: Mapping[str, Model | str] | None = None,
+        facts: str | os.PathLike[str] | None = None,
+    ) -> Self:
+        """Return the robot that a URDF describes.
+
+        Parameters
+        ----------
+        path : path-like
+            The URDF. Meshes are not read.
+        joints : sequence of str, optional
+            The joints that are identified, by the URDF's names and in its order, which is that of all lists below; the
+            others stand at zero.
+            Default: all that move.
+        gear_ratios : sequence of float, optional
+            Motor's angle per angle of the joint, one a joint, negative if they turn in opposite directions.
+            Default: those of the recording, which needs none if it is at the joints.
+        couplings : array_like, shape (n, n), or mapping, optional
+            Speeds of the motors, divided by their gear ratios, from the speeds of the joints. Row i is motor i: ones
+            at 5 and 6 say that motor 6 turns with both; ``{"joint_6": {"joint_5": 1.0}}`` says the same. Default: each
+            motor turns with its own joint alone.
+        rotor_inertias : sequence of float or None, optional
+            Of each motor with its gear, at the joint: times the square of the gear ratio [kg·m² or kg]; None is
+            identified. Default: all are identified.
+        zero_offsets : sequence of float, optional
+            Positions of the joints in the URDF's terms where the recording says 0 [rad or m]; a controller often counts
+            from another pose. Default: 0, or multiples of 90 degrees where `identify_robot` finds that they make the
+            URDF's inertias fit.
+        side : {"joint", "motor"}, optional
+            Where recordings have positions and torques. Default: as their headers say.
+        gravity : sequence of float, optional
+            In the base's frame [m/s²]. Default (0, 0, -9.81): the base stands upright.
+        torque_scales : sequence of float, optional
+            Factors by which the recorded torques are multiplied, one a joint (of its motor, where motors are recorded):
+            the true torque constant over the assumed one; -1 turns a sign. Default: 1.
+        directions : sequence of float, optional
+            1 or -1, one a joint: -1 where positions and torques are recorded against the URDF's axis. Default: 1.
+        models : mapping, optional
+            Friction models by joints' names, as `identify_robot` takes them: what it uses where it is given none. In a
+            file of facts, ``model`` in a table ``[joints.NAME]``. Default: "auto".
+        facts : path-like, optional
+            A TOML file with any of these arguments but `path`, ``zero_offsets_deg`` among them; arguments that are
+            given win. A rotor inertia that is identified is ``"free"`` there.
+
+        Raises
+        ------
+        InputError
+            pinocchio is missing, no URDF, no such joint, or values that do not fit the joints.
+
+        Examples
+        --------
+        >>> robot = jid.Robot.from_urdf("arm.urdf", gear_ratios=[100, -50])
+        >>> robot.names
+        ('shoulder', 'elbow')
+        """
+        from jointid.robot.links.reading_urdf import tree_of_urdf
+
+        if facts is not None:
+            given = {
+                "joints": joints,
+                "gear_ratios": gear_ratios,
+                "couplings": couplings,
+                "rotor_inertias": rotor_inertias,
+                "zero_offsets": zero_offsets,
+                "side": side,
+                "gravity": gravity,
+                "torque_scales": torque_scales,
+                "directions": directions,
+                "models": models,
+            }
+            stated = {name: value for name, value in given.items() if value is not None}
+            place = require_path("facts", facts)
+            read = read_facts(place)
+            try:
+                return cls.from_urdf(path, **{**read, **stated})
+            except InputError as error:
+                said = error.argument.partition(".")[0]
+                raise (
+                    error.at(place.name) if said in read.keys() - stated.keys() else error
+                ) from None
+        file = require_path("path", path)
+        if side not in (None, *SIDES):
+            raise InputError(f"{' or '.join(SIDES)} is expected", argument="side", value=side)
+        down = _numbers("gravity", _GRAVITY if gravity is None else gravity, 3)
+        tree = tree_of_urdf(file, joints, down)
+        n = len(tree.names)
+        ratios = None if gear_ratios is None else tuple(_numbers("gear_ratios", gear_ratios, n))
+        if ratios is not None and 0.0 in ratios:
+            raise InputError("a gear ratio is not 0", argument="gear_ratios", value=gear_ratios)
+        return cls(
+            tree=tree,
+            names=tree.names,
+            gear_ratios=ratios,
+            couplings=_couplings(couplings, tree.names),
+            rotor_inertias=_rotors(rotor_inertias, n),
+            zero_offsets=None
+            if zero_offsets is None
+            else tuple(_numbers("zero_offsets", zero_offsets, n)),
+            side=side,
+            name=file.stem,
+            torque_scales=_factors("torque_scales", torque_scales, n),
+            directions=_factors("directions", directions, n),
+            models=None if models is None else _models(models, tree.names),
+        )
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.names)
+
+    @property
+    def coupled(self) -> NDArray[np.bool_]:
+        """Motors that turn with several joints, or with another one than their own."""
+        return np.array(
+            [np.any(np.delete(row, k) != 0.0) for k, row in enumerate(self.couplings)], dtype=bool
+        )
+
+    def columns_of(self, recording: RobotRecording) -> list[int]:
+        """Return the recording's column of each joint.
+
+        Joints are found by name; else by number, where the recording numbers them; else in order, where there are as
+        many and none has a name of the robot's joints.
+
+        Raises
+        ------
+        InputError
+            The recording has no such joint.
+        """
+        if all(name in recording.names for name in self.names):
+            return [recording.names.index(name) for name in self.names]
+        try:
+            found = [
+                joint_named(_number(name), recording.names, recording.name) for name in self.names
+            ]
+            if len(set(found)) == self.n:
+                return [recording.names.index(each) for each in found]
+        except InputError:
+            pass
+        known = [name for name in self.names if name in recording.names]
+        if len(recording.names) == self.n and not known:
+            return list(range(self.n))
+        if known and len(recording.names) == self.n:
+            lacking = [name for name in self.names if name not in recording.names]
+            other = [name for name in recording.names if name not in self.names]
+            raise InputError(
+                f"the recording has {', '.join(known)}, but not {', '.join(lacking)}; it also has {', '.join(other)}",
+                argument="joints",
+                value=list(self.names),
+                place=recording.name,
+                remedy="give the recording's joints the URDF's names, or name the joints that were recorded",
+            )
+        raise InputError(
+            f"the robot has the joints {', '.join(self.names)}, the recording {', '.join(recording.names)}",
+            argument="joints",
+            value=list(self.names),
+            remedy="name the joints that were recorded",
+        )
+
+
+def _models(models: Mapping[str, Model | str], names: Sequence[str]) -> tuple[str, ...]:
+    if not isinstance(models, Mapping):
+        raise InputError("models by joints' names are expected", argument="models", value=models)
+    try:
+        return tuple(friction_models(dict(models), names))
+    except InputError as error:
+        raise InputError(
+            error.reason, argument="models", value=error.value, remedy=error.remedy
+        ) from None
+
+
+def _number(name: str) -> int:
+    """The number at the end of a joint's name."""
+    digits = name[len(name.rstrip("0123456789")) :]
+    if not digits:
+        raise InputError("a number at the end of the name is expected", argument="joints")
+    return int(digits)
+
+
+def _numbers(argument: str, values: Sequence[float], count: int) -> list[float]:
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (OverflowError, TypeError, ValueError):
+        array = np.full(0, np.nan)
+    if array.shape != (count,) or not np.all(np.isfinite(array)):
+        raise InputError(f"{count} numbers are expected", argument=argument, value=values)
+    return [float(each) for each in array]
+
+
+def _factors(argument: str, values: Sequence[float] | None, count: int) -> tuple[float, ...] | None:
+    """Factors that are not 0; directions are 1 and -1."""
+    if values is None:
+        return None
+    found = _numbers(argument, values, count)
+    if 0.0 in found or (argument == "directions" and any(abs(each) != 1.0 for each in found)):
+        expected = "1 or -1 is expected" if argument == "directions" else "a factor is not 0"
+        raise InputError(expected, argument=argument, value=values)
+    return tuple(found)
+
+
+def _couplings(
+    couplings: npt.ArrayLike | Mapping[str, Mapping[str, float]] | None, names: Sequence[str]
+) -> Array:
+    n = len(names)
+    matrix = np.eye(n)
+    if isinstance(couplings, Mapping):
+        matrix = _named_couplings(couplings, list(names))
+    elif couplings is not None:
+        try:
+            matrix = np.array(couplings, dtype=np.float64)
+        except (OverflowError, TypeError, ValueError):
+            matrix = np.full((0, 0), np.nan)
+        if matrix.shape != (n, n) or not np.all(np.isfinite(matrix)):
+            raise InputError(
+                f"a matrix of {n} x {n} numbers is expected, one row per motor and one column per joint",
+                argument="couplings",
+                value=couplings,
+            )
+    if np.linalg.cond(matrix) > 1e9:
+        raise InputError(
+            "the motors' speeds do not give the joints': the matrix is singular",
+            argument="couplings",
+            value=couplings,
+        )
+    matrix.flags.writeable = False
+    return matrix
+
+
+def _named_couplings(couplings: Mapping[str, Mapping[str, float]], names: list[str]) -> Array:
+    """The matrix; what is not named is as without couplings."""
+    matrix = np.eye(len(names))
+    for motor, row in couplings.items():
+        if not isinstance(row, Mapping):
+            raise InputError(
+                "for each motor its joints and shares are expected",
+                argument=f"couplings.{motor}",
+                value=row,
+            )
+        for joint, share in row.items():
+            for name in (motor, joint):
+                if name not in names:
+                    raise InputError(
+                        f"the robot has the joints {', '.join(names)}",
+                        argument="couplings",
+                        value=name,
+                    )
+            if not is_finite(share):
+                raise InputError(
+                    "a number is expected", argument=f"couplings.{motor}.{joint}", value=share
+                )
+            matrix[names.index(motor), names.index(joint)] = share
+    return matrix
+
+
+def _rotors(values: Sequence[float | None] | None, n: int) -> tuple[float | None, ...]:
+    if values is None:
+        return (None,) * n
+    if not isinstance(values, Sequence | np.ndarray) or len(values) != n:
+        raise InputError(f"{n} values are expected", argument="rotor_inertias", value=values)
+    found: list[float | None] = []
+    for each in values:
+        if each is not None and not (is_finite(each) and each >= 0.0):
+            raise InputError("0 or more is expected", argument="rotor_inertias", value=each)
+        found.append(None if each is None else float(each))
+    return tuple(found)

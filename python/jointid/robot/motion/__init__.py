@@ -1,0 +1,1 @@
+"""How a robot moves: its recordings on one clock, velocities from positions."""

@@ -1,0 +1,202 @@
+"""What a recording says of a robot: positions, velocities and torques of its joints, and where they may be used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.recording.recording import Recording
+from jointid.recording.sides import MOTOR
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.loud_samples import quiet_velocity
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_UNKNOWNS = 6  # of a joint's balance, for the length of its windows
+_STILL = 8.0  # standard deviations that the velocity of a short standstill reaches, smoothed with the motion beside it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Motion:
+    """Motion and torque of a robot's joints, all at the joints; rows are joints, in the robot's order: (n, samples)."""
+
+    time: Array  # (samples,) [s]
+    position: Array
+    velocity: Array
+    torque: Array
+    velocity_noise: Array  # (n,), usual standard deviation of each velocity
+    # of the motors, divided by their gear ratios, counted from their own zero
+    motor_position: Array
+    motor_velocity: Array  # the same
+    # (n, samples - 1): the joint moves between two samples, without a gap. Where noise may hide a short standstill,
+    # it does not count as moving: friction has any value there.
+    moving: Flags
+    motor_moving: Flags  # the same of the motors
+    noise_window: Array  # (n,), duration of a window that the noise of each velocity asks for [s]
+    at_motor: bool  # whether positions were recorded at the motors
+    # whether a torque holds from its sample to the next one, as a command does; otherwise it is straight between them
+    torque_held: bool = False
+
+    @classmethod
+    def of(
+        cls, recording: RobotRecording, robot: Robot, min_speed: Array, mask_standstill: bool = True
+    ) -> Motion:
+        """Return the motion of a recording; below its `min_speed` [rad/s or m/s] a joint's friction is not used."""
+        coupling = robot.couplings
+        position, torque, at_motor = signals_of(recording, robot)
+        found = [_derived(recording, row, robot.names[k]) for k, row in enumerate(position)]
+        noise = np.array([each.derived.noise for each in found])
+        velocity = np.array(
+            [quiet_velocity(each.velocity, own) for each, own in zip(found, noise, strict=True)]
+        )
+        if at_motor:
+            back = np.linalg.inv(coupling)
+            own, own_noise = (position, velocity), noise
+            position, velocity = back @ position, back @ velocity
+            noise = np.sqrt((back * back) @ (noise * noise))
+        else:
+            own = (coupling @ position, coupling @ velocity)
+            own_noise = np.sqrt((coupling * coupling) @ (noise * noise))
+        if robot.zero_offsets is not None:
+            position = position + np.array(robot.zero_offsets)[:, None]
+        masked = _Mask(
+            time=recording.time,
+            gaps=[gap.index for gap in found[0].gaps],
+            standstill=mask_standstill,
+        )
+        signals = zip(position, velocity, torque, min_speed, strict=True)
+        joints = [masked.core(*row) for row in signals]
+        of_joints = np.array([masked.moving(each) for each in joints])
+        of_motors = of_joints.copy()
+        for k in np.flatnonzero(robot.coupled):
+            of_motors[k] = masked.moving(masked.core(own[0][k], own[1][k], torque[k], min_speed[k]))
+        if mask_standstill:
+            of_joints &= _fast(velocity, noise)
+            of_motors &= _fast(own[1], own_noise)
+        return cls(
+            time=recording.time,
+            position=position,
+            velocity=velocity,
+            torque=torque,
+            velocity_noise=np.median(noise, axis=1),
+            motor_position=own[0],
+            motor_velocity=own[1],
+            moving=of_joints,
+            motor_moving=of_motors,
+            at_motor=at_motor,
+            torque_held=recording.torque_hold == "zoh",
+            noise_window=np.array([masked.noise_window(each) for each in joints]),
+        )
+
+
+def _fast(velocity: Array, noise: Array) -> Flags:
+    """Intervals that are certainly no short standstill, which noise hides; friction has any value there."""
+    fast = np.abs(velocity) >= _STILL * noise
+    return np.asarray(fast[:, 1:] & fast[:, :-1])
+
+
+def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:
+    """Return some samples of a recording."""
+    if first == 0 and end == recording.samples:
+        return recording
+    fields = recording.fields()
+    for signal in recording.signals:
+        fields[signal] = fields[signal][first:end]
+    fields["extra"] = {}
+    return RobotRecording(**fields)
+
+
+def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, bool]:
+    """Positions and torques, one row a joint, and whether the positions are of the motors.
+
+    Torques are at the joints, positions of motors divided by the gear ratios.
+    """
+    columns = robot.columns_of(recording)
+    way = np.array(robot.directions or (1.0,) * robot.n)
+    factor = way * np.array(robot.torque_scales or (1.0,) * robot.n)
+    position = np.ascontiguousarray(way[:, None] * recording.position[:, columns].T)
+    torque, motor_torque = recording.torque, recording.motor_torque
+    at_motor = (robot.side or recording.side) == MOTOR
+    if at_motor and torque is not None:
+        torque, motor_torque = None, torque
+    if torque is None and motor_torque is None:
+        raise InputError("the recording has no torque", argument="recordings", value=recording.name)
+    ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
+    recorded = torque if torque is not None else motor_torque
+    assert recorded is not None
+    # Before couplings: they spread what one joint lacks over all.
+    present = np.all(np.isfinite(recorded[:, columns]), axis=0)
+    if not present.all():
+        raise InputError(
+            "this joint has no torque",
+            argument="recordings",
+            value=robot.names[int(np.argmin(present))],
+            remedy="name the joints that have one",
+        )
+    if torque is not None:
+        joint_torque = factor[:, None] * torque[:, columns].T
+    else:
+        joint_torque = robot.couplings.T @ (recorded[:, columns].T * (factor * ratios)[:, None])
+    return (position / ratios[:, None] if at_motor else position), joint_torque, at_motor
+
+
+def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Array:
+    if robot.gear_ratios is not None:
+        return np.array(robot.gear_ratios)
+    if recording.gear_ratio is not None:
+        return np.array([recording.gear_ratio[column] for column in columns])
+    raise InputError(
+        "the recording is of the motors; only the gear ratios bring it to the joints",
+        argument="gear_ratios",
+        remedy=Action("call", {"gear_ratios": ...}, function="Robot.from_urdf"),
+    )
+
+
+def _derived(recording: RobotRecording, position: Array, name: str) -> Recording:
+    """One row of positions as a recording, whose velocity is derived from them."""
+    try:
+        return Recording(time=recording.time, position=position, torque=np.zeros(position.size))
+    except InputError as error:
+        raise error.at(f"joint {name}") from None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Mask:
+    """The mask of one joint's identification, for each joint and motor."""
+
+    time: Array
+    gaps: list[int]
+    standstill: bool
+
+    def core(
+        self, position: Array, velocity: Array, torque: Array, min_speed: float
+    ) -> _core.Recording:
+        return _core.Recording(
+            time=self.time,
+            position=np.ascontiguousarray(position),
+            velocity=np.ascontiguousarray(velocity),
+            torque=np.ascontiguousarray(torque),
+            sensor=None,
+            torque_hold=_core.Hold.linear,
+            gap_after=self.gaps,
+            min_speed=float(min_speed),
+        )
+
+    def moving(self, recording: _core.Recording) -> Flags:
+        try:
+            return np.asarray(_core.usable_intervals(recording, self.standstill), dtype=bool)
+        except InputError:  # it never moves: the others may
+            return np.zeros(self.time.size - 1, dtype=bool)
+
+    def noise_window(self, recording: _core.Recording) -> float:
+        try:
+            return _core.window_duration(recording, _UNKNOWNS, self.standstill)
+        except InputError:
+            return 0.0

@@ -1,0 +1,1 @@
+"""What is identified of a robot: values, findings, verdict, tables, files."""

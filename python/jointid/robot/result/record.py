@@ -1,0 +1,89 @@
+"""The fields of a robot's estimate, for whatever shows, judges, saves or uses them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.estimate.findings import Finding
+from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
+from jointid.problem.window_table import WindowTable
+from jointid.robot.links.robot import Robot
+from jointid.robot.result.cross_check import CrossCheck
+
+if TYPE_CHECKING:
+    from jointid.robot.balance.resampling import RobotDraws
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RobotJoint:
+    """One joint of a robot's estimate.
+
+    Attributes
+    ----------
+    name : str
+    model : str
+        As "coulomb_viscous" or "stribeck:asymmetric".
+    parameters : mapping of str to ParameterEstimate
+        At the joint: those of its model, as "coulomb" and "viscous", and "torque_offset"; of
+        a motor that turns with several joints "motor_coulomb" and "motor_viscous"; "rotor_inertia" where it is
+        identified, "inertia_scale" with ``inertia="scaled"``.
+    residuals : ResidualStatistics
+    windows : WindowTable
+        Its `friction` is the torque less all but this joint's friction.
+    """
+
+    name: str
+    model: str
+    parameters: Mapping[str, ParameterEstimate]
+    residuals: ResidualStatistics
+    windows: WindowTable
+
+    @property
+    def relative_residual(self) -> float:
+        """Norm of the residuals over the norm of the measured integrals."""
+        return self.residuals.relative
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RobotEstimateRecord:
+    """The fields of a `RobotEstimate`, which describes them."""
+
+    joints: Mapping[str, RobotJoint]
+    inertia: str
+    base_parameters: Mapping[str, ParameterEstimate]
+    inertial: Array
+    consistent: bool | None
+    relative_residual: float
+    free: tuple[str, ...]
+    covariance: Array
+    condition: float
+    findings: tuple[Finding, ...]
+    robot: Robot = field(repr=False)
+    settings: Mapping[str, Any] = field(repr=False)
+    seconds: float = field(default=0.0, repr=False)
+    draws: RobotDraws | None = field(default=None, repr=False)
+    impossible_by: float = 0.0
+    cross_check: CrossCheck | None = None
+    within: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def parameters(self) -> dict[str, ParameterEstimate]:
+        """All parameters by the names that `free` has: "joint.name", and base parameters by their combination."""
+        of_joints = {
+            f"{joint.name}.{name}": p
+            for joint in self.joints.values()
+            for name, p in joint.parameters.items()
+        }
+        return {**of_joints, **self.base_parameters}
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """Findings that may bias values or make them unusable."""
+        return tuple(found for found in self.findings if found.severity != "info")

@@ -1,0 +1,259 @@
+"""The result of `identify_robot`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from jointid.base.argument_checks import require_kind, require_path
+from jointid.base.errors import InputError
+from jointid.base.notebook import Shown
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.result.record import RobotEstimateRecord
+
+if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.verdict import Verdict
+    from jointid.robot.result.prediction import RobotPrediction
+
+Array = NDArray[np.float64]
+
+
+class RobotEstimate(RobotEstimateRecord, Shown):
+    """Friction and inertia of a whole robot.
+
+    Attributes
+    ----------
+    joints : mapping of str to RobotJoint
+        By the URDF's names.
+    inertia : str
+        "urdf", "scaled" or "free".
+    base_parameters : mapping of str to ParameterEstimate
+        With ``inertia="free"``: the combinations of inertial parameters that motion shows.
+    inertial : ndarray, shape (n, 10)
+        Inertial parameters of all links, as far as they are known: m, m·c, I about the joint's frame. With
+        ``inertia="free"`` one set of many with these base parameters: one that bodies can have and that is like the
+        URDF's, where there is one within the errors; its single values mean nothing.
+    consistent : bool or None
+        Whether bodies can have these inertial parameters; None: the URDF's are used as they are.
+    impossible_by : float
+        With ``inertia="free"``, the distance of the identified base parameters from the nearest that bodies can
+        have, in standard errors (Mahalanobis distance of all together). Default 0: bodies can have them.
+    relative_residual : float
+        Norm of all joints' residuals over the norm of their measured integrals.
+    free : tuple of str
+        The free parameters, "joint.name", in the order of `covariance`.
+    covariance : ndarray
+    condition : float
+    findings : tuple of Finding
+    robot : Robot
+    settings : mapping
+    seconds : float
+        Wall time.
+    within : mapping of str to float
+        As `Estimate.within`, of all joints together.
+    draws : RobotDraws or None
+        What `bootstrap` needs; None where the estimate was read from a file.
+    cross_check : CrossCheck or None
+        The second look: a plain filtered least squares of the signals as they were recorded, and whether it agrees.
+        None of an estimate that was saved without it.
+    """
+
+    __slots__ = ()
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the values may be used, and for what."""
+        from jointid.robot.result.verdict import judged_robot
+
+        return judged_robot(self)
+
+    def friction(self, velocity: ArrayLike) -> Array:
+        """Friction torque of all joints at given speeds, with what coupled motors add.
+
+        Parameters
+        ----------
+        velocity : array_like, shape (n,) or (samples, n)
+            Of the joints [rad/s or m/s].
+
+        Returns
+        -------
+        ndarray
+            Of the same shape [N·m or N].
+
+        Raises
+        ------
+        InputError
+            Not one number a joint.
+        """
+        from jointid.robot.result.friction import friction_of
+
+        try:
+            speeds = np.asarray(velocity, dtype=np.float64)
+        except (OverflowError, TypeError, ValueError):
+            speeds = np.zeros(0)
+        if not np.all(np.isfinite(speeds)):
+            raise InputError("finite speeds are expected", argument="velocity", value=velocity)
+        if speeds.ndim not in (1, 2) or speeds.shape[-1] != self.robot.n:
+            raise InputError(
+                f"{self.robot.n} numbers are expected, one per joint",
+                argument="velocity",
+                value=velocity,
+            )
+        return friction_of(self, speeds)
+
+    def predict(self, recording: RobotRecording) -> RobotPrediction:
+        """Predict the torques of a recording, and compare them with the measured ones, over windows as identified.
+
+        Parameters
+        ----------
+        recording : RobotRecording
+            Of the same robot; it need not be one that the estimate was made from.
+
+        Returns
+        -------
+        RobotPrediction
+            Relative residuals: of each joint, and of all.
+
+        Raises
+        ------
+        InputError
+            The recording lacks a joint, its torque, or the gear ratios.
+        """
+        from jointid.robot.result.prediction import predict_robot
+
+        require_kind("recording", recording, RobotRecording)
+        return predict_robot(self, recording)
+
+    def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit all joints to each draw (block bootstrap).
+
+        A check of the standard errors that does not rest on their formula. A block holds all joints; it is as long as
+        a segment of motion: an eighth of the recordings, between 0.25 and 1 s, and longer on recordings over 10 min. A
+        draw is refitted inside the parameters' bounds, with the balance linearised at the estimate, and with what is
+        known beforehand of base parameters. Errors are widened by the square root of B / (B - p), for B blocks and
+        p parameters of a joint, at most 1.41 times: so much of the blocks' errors the fit takes away.
+
+        Parameters
+        ----------
+        n : int
+            Draws, 20 to 1,000,000. Default 1000.
+        seed : int
+            The same seed gives the same bits, on any number of threads. Default 0.
+
+        Returns
+        -------
+        Bootstrap
+            Its parameters are named as in `parameters`.
+
+        Raises
+        ------
+        InputError
+            The estimate was read from a file, which does not hold the recordings; or another number.
+
+        Examples
+        --------
+        >>> found.bootstrap().parameters["joint_1.coulomb"].ratio  # doctest: +SKIP
+        1.02
+        """
+        from jointid.robot.balance.resampling import bootstrapped
+
+        return bootstrapped(self.draws, self.parameters, self.robot.names, n, seed)
+
+    def report(self, verbose: bool = False) -> str:
+        """Return the verdict, a line for each joint, and the first finding, as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to return everything: tables and all findings. Default False.
+        """
+        from jointid.robot.result.answers import answer
+        from jointid.robot.result.tables import text_report
+
+        return text_report(self) if verbose else answer(self)
+
+    def summary(self) -> str:
+        """Return the table of the joints as text."""
+        from jointid.robot.result.tables import text_summary
+
+        return text_summary(self)
+
+    def document(self) -> dict[str, Any]:
+        """Return the result in JSON types."""
+        from jointid.robot.result.document import document_of
+
+        return document_of(self)
+
+    def to_json(self) -> str:
+        """Return the result as JSON."""
+        from jointid.robot.result.document import json_of
+
+        return json_of(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the result as JSON, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            The path does not end in ``.json``, or its folder does not exist.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.robot.result.document import save_json
+
+        return save_json(self, path)
+
+    @classmethod
+    def from_json(cls, text: str) -> RobotEstimate:
+        """Return the estimate that a JSON text holds.
+
+        Raises
+        ------
+        InputError
+            Not JSON, not a robot's estimate, another schema, or a field that cannot be used; names the place in it.
+        """
+        from jointid.robot.result.reading_back import read_robot_estimate
+
+        return read_robot_estimate(text, cls)
+
+    @classmethod
+    def load(cls, path: str | Path) -> RobotEstimate:
+        """Return the estimate that a .json file holds; everything but `bootstrap` works with it.
+
+        Parameters
+        ----------
+        path : path-like
+
+        Raises
+        ------
+        InputError
+            No such file, or as `from_json`; names the file and the place in it.
+
+        Examples
+        --------
+        >>> jid.RobotEstimate.load("arm.json").friction([0.5, -0.5])  # doctest: +SKIP
+        array([ 5.5, -2.75])
+        """
+        from jointid.base.schema import read_text
+
+        place = require_path("path", path)
+        text = read_text(place)
+        try:
+            return cls.from_json(text)
+        except InputError as error:
+            raise error.at(str(place)) from error
+
+    def __str__(self) -> str:
+        return self.report()
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.joints)
+        return (
+            f"<RobotEstimate {self.robot.name!r}: {names}; inertia {self.inertia}, residual "
+            f"{100.0 * self.relative_residual:.2f} %, {len(self.warnings)} warnings>"
+        )
