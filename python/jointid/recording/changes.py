@@ -1,19 +1,18 @@
-"""A recording with some signals replaced; its attributes are set by its constructor alone."""
+"""A recording with some signals replaced."""
 
 from collections.abc import Mapping
-from typing import Any, NoReturn, Self
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.recording.extra import checked_extra, rows_of_extra
-from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name
+from jointid.recording.samples import Samples
+from jointid.recording.signals import SIGNALS, check_signal_name
 
 
-class Changes:
+class Changes(Samples):
     """What a recording does instead of being changed: it returns another one, or refuses."""
-
-    extra: Mapping[str, FloatArray]
 
     def with_velocity(self, velocity: npt.ArrayLike | None = None) -> Self:
         """Return the recording with another velocity [rad/s], which counts as derived; default: derive it."""
@@ -62,13 +61,3 @@ class Changes:
             fields.update({name: np.asarray(fields[name])[rows] for name in present})
             fields["extra"] = rows_of_extra(checked_extra(fields["extra"]), rows)
         return type(self)(**fields)
-
-    def _fields(self) -> dict[str, Any]:
-        """Return the arguments that build this recording again."""
-        raise NotImplementedError
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a recording is read-only, '{name}' cannot be set")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a recording is read-only, '{name}' cannot be deleted")

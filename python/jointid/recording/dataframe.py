@@ -12,6 +12,7 @@ import numpy.typing as npt
 from jointid.base.errors import InputError
 from jointid.base.frames import data_frame
 from jointid.recording.extra import PREFIX
+from jointid.recording.samples import Samples
 from jointid.recording.saved import saved_attributes
 from jointid.recording.saving import attributes_text
 from jointid.recording.signals import FloatArray, signal_array
@@ -19,13 +20,12 @@ from jointid.recording.signals import FloatArray, signal_array
 if TYPE_CHECKING:
     import pandas as pd
 
-    from jointid.recording.recording import Recording
 
 ATTRIBUTE = "jointid_recording"
 """Of a frame's `attrs`: what of a recording is no column, as text."""
 
 
-def frame_of(recording: Recording) -> pd.DataFrame:
+def frame_of(recording: Samples) -> pd.DataFrame:
     """Return a recording as a data frame: see `Recording.to_pandas`."""
     table = {name: getattr(recording, name) for name in recording.signals}
     table |= {PREFIX + name: values for name, values in recording.extra.items()}

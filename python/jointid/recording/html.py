@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from jointid.base.html import Html, element, table
-
-if TYPE_CHECKING:
-    from jointid.recording.recording import Recording
-    from jointid.recording.signals import FloatArray
+from jointid.recording.samples import Samples
+from jointid.recording.signals import FloatArray
 
 
-def html_facts(recording: Recording) -> Html:
+def html_facts(recording: Samples) -> Html:
     """Return the recording's facts and signals as two tables."""
     gaps = len(recording.gaps)
     facts: list[list[Html | str]] = [
@@ -39,7 +35,7 @@ def html_facts(recording: Recording) -> Html:
     )
 
 
-def _shown(recording: Recording, name: str) -> str:
+def _shown(recording: Samples, name: str) -> str:
     derived = name == "velocity" and recording.velocity_derived
     return f"{name.replace('_', ' ')}{' (derived)' if derived else ''}"
 

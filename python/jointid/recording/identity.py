@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from jointid.recording.extra import PREFIX
-
-if TYPE_CHECKING:
-    from jointid.recording.recording import Recording
+from jointid.recording.samples import Samples
 
 
 def same_fields(mine: dict[str, Any], theirs: dict[str, Any]) -> bool:
@@ -30,7 +28,7 @@ def _same(value: Any, other: Any) -> bool:
     return bool(value == other)
 
 
-def fingerprint_of(recording: Recording) -> str:
+def fingerprint_of(recording: Samples) -> str:
     """Return the first 16 digits of the hash of names and bytes; see `Recording.fingerprint`."""
     digest = hashlib.sha256()
     signals = {name: getattr(recording, name) for name in recording.signals}
@@ -41,7 +39,7 @@ def fingerprint_of(recording: Recording) -> str:
     return digest.hexdigest()[:16]
 
 
-def line_of(recording: Recording) -> str:
+def line_of(recording: Samples) -> str:
     """Return one line about a recording; see `repr`."""
     named = f" {recording.name!r}" if recording.name else ""
     derived = "velocity (derived)" if recording.velocity_derived else "velocity"

@@ -8,21 +8,13 @@ import numpy as np
 from jointid.base.errors import InputError
 from jointid.recording.changes import Changes
 from jointid.recording.extra import rows_of_extra
-from jointid.recording.signals import SIGNALS, FloatArray, closest
+from jointid.recording.signals import FloatArray, closest
 
 
 class Parts(Changes):
     """What a recording returns of itself."""
 
-    time: FloatArray
-    name: str
-
     __iter__ = None  # neither samples nor names are meant by `for`
-
-    @property
-    def signals(self) -> tuple[str, ...]:
-        """Names of the signals present, time first, always in the same order."""
-        return tuple(name for name in SIGNALS if getattr(self, name) is not None)
 
     @overload
     def __getitem__(self, wanted: str) -> FloatArray: ...

@@ -5,28 +5,18 @@ from __future__ import annotations  # so that `help` shows array_like by its nam
 import functools
 import os
 from collections.abc import Collection, Mapping
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_attributes, json_mapping
-from jointid.recording.derived import DerivedVelocity, derived_velocity
-from jointid.recording.extra import checked_extra, unit_of_extra
-from jointid.recording.gaps import Gap, find_gaps
+from jointid.recording.extra import checked_extra
 from jointid.recording.identity import fingerprint_of, line_of, same_fields
-from jointid.recording.order_statistics import median
 from jointid.recording.parts import Parts
 from jointid.recording.signals import (
     SIGNALS,
-    FloatArray,
-    Kind,
-    TorqueHold,
-    check_signal_name,
     check_signals,
-    shown_unit,
     signal_array,
 )
 
@@ -98,25 +88,6 @@ class Recording(Parts):
     >>> len(run[0.5:1.0]), run.velocity_derived
     (251, True)
     """
-
-    time: FloatArray
-    position: FloatArray
-    velocity: FloatArray
-    torque: FloatArray | None
-    sensor: FloatArray | None
-    reference: FloatArray | None
-    link_position: FloatArray | None
-    temperature: FloatArray | None
-    motor_torque: FloatArray | None
-    current: FloatArray | None
-    late: FloatArray | None
-    extra: Mapping[str, FloatArray]
-    kind: Kind
-    torque_hold: TorqueHold | None
-    velocity_derived: bool
-    name: str
-    metadata: Mapping[str, Any]
-    truth: Mapping[str, Any] | None
 
     def __init__(
         self,
@@ -219,55 +190,9 @@ class Recording(Parts):
         return cls(**fields)
 
     @functools.cached_property
-    def sample_period(self) -> float:
-        """Median time between samples [s]."""
-        return median(np.diff(self.time))
-
-    @functools.cached_property
-    def ranges(self) -> Mapping[str, tuple[float, float]]:
-        """Smallest and largest value of each of `signals` by name, in its unit; extra ones are not among them.
-
-        Examples
-        --------
-        >>> slowest, fastest = recording.ranges["velocity"]
-        """
-        signals = {name: getattr(self, name) for name in self.signals}
-        return MappingProxyType(
-            {name: (float(each.min()), float(each.max())) for name, each in signals.items()}
-        )
-
-    @property
-    def duration(self) -> float:
-        """Time from the first sample to the last [s]."""
-        return float(self.time[-1]) - float(self.time[0])
-
-    @functools.cached_property
-    def gaps(self) -> tuple[Gap, ...]:
-        """Intervals longer than 3.5 median sample periods, in order of time."""
-        return find_gaps(self.time)
-
-    @functools.cached_property
-    def doubtful(self) -> tuple[int, ...]:
-        """First sample of each interval that is left out because of what `late` says."""
-        late = () if self.late is None else self.late[1:]
-        return tuple(np.flatnonzero(late).tolist())
-
-    @functools.cached_property
-    def derived(self) -> DerivedVelocity:
-        """The velocity that the position gives, and its noise, whether or not one is recorded."""
-        return derived_velocity(self.time, self.position, self.gaps, self.sample_period)
-
-    @functools.cached_property
     def fingerprint(self) -> str:
         """First 16 hexadecimal digits of the SHA-256 hash of the signals' names and bytes, extra ones too."""
         return fingerprint_of(self)
-
-    def unit(self, signal: str) -> str:
-        """Return the unit of a signal, e.g. ``"rad/s"``; ``"1"`` for the sensor, ``""`` for an extra one of none."""
-        if signal in self.extra:
-            return unit_of_extra(self.metadata, signal)
-        check_signal_name(signal, "signal")
-        return shown_unit(signal, self.kind)
 
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
         """Return the recording on a uniform clock.
@@ -351,9 +276,6 @@ class Recording(Parts):
 
         save_recording(self, path)
 
-    def __len__(self) -> int:
-        return len(self.time)
-
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Recording):
             return NotImplemented
@@ -373,13 +295,3 @@ class Recording(Parts):
     def __reduce__(self) -> tuple[Any, ...]:
         # By the constructor: unpickled arrays are writable again.
         return functools.partial(type(self), **self._fields()), ()
-
-    def _fields(self) -> dict[str, Any]:
-        """Return the arguments that build this recording again."""
-        fields = {name: getattr(self, name) for name in (*SIGNALS, "kind", "torque_hold", "name")}
-        return fields | {
-            "extra": dict(self.extra),
-            "velocity_derived": self.velocity_derived,
-            "metadata": dict(self.metadata),
-            "truth": None if self.truth is None else dict(self.truth),
-        }

@@ -2,23 +2,21 @@
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.recording.gaps import find_gaps
+from jointid.recording.samples import Samples
 from jointid.recording.signals import SHORTEST, FloatArray
-
-if TYPE_CHECKING:
-    from jointid.recording.recording import Recording
 
 _HELD = ("torque", "motor_torque", "current")  # signals that `torque_hold` describes
 _MOST = 50_000_000  # samples: more come from a wrong unit
 _ROUNDING = 1e-6  # periods by which the last sample may miss the clock and still be included
 
 
-def resampled(recording: "Recording", period: float | None, rate: float | None) -> dict[str, Any]:
+def resampled(recording: Samples, period: float | None, rate: float | None) -> dict[str, Any]:
     """Return all signals on a uniform clock within each gap-free stretch; see `Recording.resample`.
 
     Raises
@@ -79,7 +77,7 @@ def _step(period: float | None, rate: float | None) -> float:
     return step
 
 
-def _stretches(recording: "Recording") -> list[slice]:
+def _stretches(recording: Samples) -> list[slice]:
     edges = [0, *(gap.index + 1 for gap in recording.gaps), len(recording)]
     return list(itertools.starmap(slice, itertools.pairwise(edges)))
 
@@ -98,7 +96,7 @@ def _held(clock: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray
     return held
 
 
-def _check_gaps(recording: "Recording", time: FloatArray, step: float, argument: str) -> None:
+def _check_gaps(recording: Samples, time: FloatArray, step: float, argument: str) -> None:
     if not (time[1:] > time[:-1]).all():
         raise InputError(
             f"a period of {step!r} s is below the resolution of time stamps near "

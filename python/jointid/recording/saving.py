@@ -3,7 +3,6 @@
 import io
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,14 +11,12 @@ from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
 from jointid.recording.extra import PREFIX
+from jointid.recording.samples import Samples
 from jointid.recording.saved import ATTRIBUTES, CSV_MARK, NPZ_MEMBER, SCHEMA
 from jointid.recording.signals import header_unit
 
-if TYPE_CHECKING:
-    from jointid.recording.recording import Recording
 
-
-def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
+def save_recording(recording: Samples, path: str | os.PathLike[str]) -> None:
     """Write a recording to a file: see `Recording.save`."""
     target = require_path("path", path)
     writer = _WRITERS[ending_of(target, ENDINGS)]
@@ -28,7 +25,7 @@ def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None
     write_whole(target, writer(recording))
 
 
-def attributes_text(recording: "Recording") -> str:
+def attributes_text(recording: Samples) -> str:
     """Return what of a recording is no column, as JSON; `saved_attributes` reads it."""
     attributes = {name: getattr(recording, name) for name in ATTRIBUTES}
     for name in ("metadata", "truth"):  # JSON knows dict, not read-only views
@@ -38,7 +35,7 @@ def attributes_text(recording: "Recording") -> str:
     return json.dumps({"schema": SCHEMA, **attributes})
 
 
-def _csv(recording: "Recording") -> bytes:
+def _csv(recording: Samples) -> bytes:
     names = recording.signals
     headers = [f"{name}_{header_unit(name, recording.kind)}" for name in names]
     headers += [PREFIX + name for name in recording.extra]
@@ -49,7 +46,7 @@ def _csv(recording: "Recording") -> bytes:
     return "\n".join(lines).encode("ascii")
 
 
-def _npz(recording: "Recording") -> bytes:
+def _npz(recording: Samples) -> bytes:
     arrays = {name: getattr(recording, name) for name in recording.signals}
     arrays |= {PREFIX + name: values for name, values in recording.extra.items()}
     arrays[NPZ_MEMBER] = np.array(attributes_text(recording))
@@ -58,14 +55,14 @@ def _npz(recording: "Recording") -> bytes:
     return stream.getvalue()
 
 
-def _compressed_csv(recording: "Recording") -> bytes:
+def _compressed_csv(recording: Samples) -> bytes:
     # No time stamp inside: the same recording gives the same file.
     import gzip
 
     return gzip.compress(_csv(recording), compresslevel=6, mtime=0)
 
 
-_WRITERS: dict[str, Callable[["Recording"], bytes]] = {
+_WRITERS: dict[str, Callable[[Samples], bytes]] = {
     ".csv": _csv,
     ".csv.gz": _compressed_csv,
     ".npz": _npz,

@@ -4,7 +4,7 @@ import functools
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, NoReturn, Self
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ from jointid.recording.sides import JOINT, MOTOR, SIDES, at_joint
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.slicing import slice_between
 from jointid.recording.wide.joint_names import joint_named
+from jointid.recording.wide.robot_samples import RobotSamples
 from jointid.recording.wide.robot_signals import (
     ROBOT_SIGNALS,
     checked_names,
@@ -25,7 +26,7 @@ from jointid.recording.wide.robot_signals import (
 )
 
 
-class RobotRecording(Mapping[str, Recording]):
+class RobotRecording(RobotSamples, Mapping[str, Recording]):
     """The signals of several joints on one clock, read-only; a mapping from a joint's name to its recording.
 
     Arrays have one row a sample and one column a joint. A column of NaN says that this joint has no such signal.
@@ -79,26 +80,6 @@ class RobotRecording(Mapping[str, Recording]):
     'joint 2'
     """
 
-    time: FloatArray
-    position: FloatArray
-    velocity: FloatArray | None
-    torque: FloatArray | None
-    motor_torque: FloatArray | None
-    current: FloatArray | None
-    sensor: FloatArray | None
-    reference: FloatArray | None
-    link_position: FloatArray | None
-    temperature: FloatArray | None
-    side: str
-    gear_ratio: tuple[float, ...] | None
-    names: tuple[str, ...]
-    extra: Mapping[str, FloatArray]
-    kind: str
-    torque_hold: str | None
-    velocity_derived: bool
-    name: str
-    metadata: Mapping[str, Any]
-
     def __init__(
         self,
         *,
@@ -150,21 +131,6 @@ class RobotRecording(Mapping[str, Recording]):
         )
         for joint in self.names:  # what no recording can hold is refused here
             self.joint(joint)
-
-    @property
-    def signals(self) -> tuple[str, ...]:
-        """Names of the signals present, time first, always in the same order."""
-        return ("time", *(name for name in ROBOT_SIGNALS if getattr(self, name) is not None))
-
-    @property
-    def samples(self) -> int:
-        """Number of samples."""
-        return len(self.time)
-
-    @property
-    def duration(self) -> float:
-        """Time from the first sample to the last [s]."""
-        return float(self.time[-1]) - float(self.time[0])
 
     @functools.cached_property
     def _recordings(self) -> dict[str, Recording]:
@@ -274,12 +240,6 @@ class RobotRecording(Mapping[str, Recording]):
 
         save_robot(self, path)
 
-    def fields(self) -> dict[str, Any]:
-        """Return the arguments that build this recording again."""
-        names = ("time", *ROBOT_SIGNALS, "side", "gear_ratio", "names", "kind", "torque_hold")
-        fields = {name: getattr(self, name) for name in (*names, "velocity_derived", "name")}
-        return fields | {"extra": dict(self.extra), "metadata": dict(self.metadata)}
-
     def __getitem__(self, joint: str | int) -> Recording:
         try:
             return self.joint(joint)
@@ -308,12 +268,6 @@ class RobotRecording(Mapping[str, Recording]):
             f"<RobotRecording{named}: {len(self)} joints ({', '.join(self.names)}), {self.samples} samples over "
             f"{self.duration:.6g} s, {self.side} side; {', '.join(shown)}>"
         )
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a recording is read-only, '{name}' cannot be set")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a recording is read-only, '{name}' cannot be deleted")
 
     def __reduce__(self) -> tuple[Any, ...]:
         # By the constructor: unpickled arrays are writable again.

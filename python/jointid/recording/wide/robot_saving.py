@@ -3,7 +3,7 @@
 import io
 import json
 import os
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,12 +15,10 @@ from jointid.recording.extra import PREFIX as EXTRA
 from jointid.recording.saved import CSV_MARK, NPZ_MEMBER, SCHEMA
 from jointid.recording.saving import ENDINGS
 from jointid.recording.signals import FloatArray, header_unit
-
-if TYPE_CHECKING:
-    from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.recording.wide.robot_samples import RobotSamples
 
 
-def save_robot(robot: "RobotRecording", path: str | os.PathLike[str]) -> None:
+def save_robot(robot: RobotSamples, path: str | os.PathLike[str]) -> None:
     """Write a robot's recording to a file: see `RobotRecording.save`."""
     target = require_path("path", path)
     ending = ending_of(target, ENDINGS)
@@ -35,12 +33,12 @@ def save_robot(robot: "RobotRecording", path: str | os.PathLike[str]) -> None:
     write_whole(target, content)
 
 
-def column_header(robot: "RobotRecording", signal: str, joint: str) -> str:
+def column_header(robot: RobotSamples, signal: str, joint: str) -> str:
     """Return the header of a joint's column in a saved file: ``elbow.position [rad]``."""
     return f"{joint}.{signal} [{header_unit(signal, robot.kind)}]"
 
 
-def _columns(robot: "RobotRecording") -> dict[str, FloatArray]:
+def _columns(robot: RobotSamples) -> dict[str, FloatArray]:
     columns = {f"time [{header_unit('time', robot.kind)}]": robot.time}
     for signal in robot.signals[1:]:
         values = getattr(robot, signal)
@@ -56,7 +54,7 @@ def _columns(robot: "RobotRecording") -> dict[str, FloatArray]:
     return columns
 
 
-def _attributes(robot: "RobotRecording") -> str:
+def _attributes(robot: RobotSamples) -> str:
     attributes: dict[str, Any] = {
         name: getattr(robot, name) for name in ("name", "kind", "torque_hold", "velocity_derived")
     }
@@ -71,7 +69,7 @@ def _attributes(robot: "RobotRecording") -> str:
     return json.dumps({"schema": SCHEMA, **attributes})
 
 
-def _csv(robot: "RobotRecording") -> bytes:
+def _csv(robot: RobotSamples) -> bytes:
     columns = _columns(robot)
     rows = (
         ",".join(map(repr, row))
@@ -81,7 +79,7 @@ def _csv(robot: "RobotRecording") -> bytes:
     return "\n".join(lines).encode()
 
 
-def _npz(robot: "RobotRecording") -> bytes:
+def _npz(robot: RobotSamples) -> bytes:
     arrays = {name: np.ascontiguousarray(values) for name, values in _columns(robot).items()}
     arrays[NPZ_MEMBER] = np.array(_attributes(robot))
     stream = io.BytesIO()
