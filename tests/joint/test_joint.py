@@ -246,7 +246,7 @@ def test_every_field_comes_back_from_a_file(
 
 @given(joints())
 def test_every_field_comes_back_from_a_document(joint: Joint) -> None:
-    assert joint_from_document(joint_document(joint), "estimate") == joint
+    assert joint_from_document(joint_document(joint), "estimate", Joint) == joint
 
 
 @FEW

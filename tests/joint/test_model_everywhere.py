@@ -207,7 +207,7 @@ def test_json_agrees() -> None:
     document = joint_document(jid.Joint(link=jid.Link(mass=1.0, centre_of_mass=0.1)))
     for description, wanted in expected():
         read = json.loads(json.dumps(document | {"model": description}))
-        assert verdict(lambda r=read: joint_from_document(r, "x")) == wanted, description  # type: ignore[misc]
+        assert verdict(lambda r=read: joint_from_document(r, "x", jid.Joint)) == wanted, description  # type: ignore[misc]
 
 
 def test_a_saved_estimate_agrees(recording: jid.Recording) -> None:

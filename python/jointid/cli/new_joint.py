@@ -77,7 +77,7 @@ def add_new(new: CommandParser) -> None:
 def new(arguments: argparse.Namespace) -> None:
     """Write a joint file that did not exist."""
     from jointid.base.files import write_new
-    from jointid.joint.joint_file import load_joint
+    from jointid.joint.joint import Joint
     from jointid.joint.new_file import new_joint_text
 
     _check_file(arguments.file)
@@ -92,7 +92,7 @@ def new(arguments: argparse.Namespace) -> None:
         write_new(arguments.file, text.encode())
     except FileExistsError:
         raise _exists(arguments.file) from None
-    load_joint(arguments.file)
+    Joint.load(arguments.file)
     for line in found:
         print(line)
     print(f"joint file: {arguments.file}\nnext: {following}")

@@ -18,6 +18,7 @@ from jointid.base.toml_text import toml_of
 from jointid.design.design import CRITERIA, Design
 from jointid.design.expected_error import ExpectedError
 from jointid.design.motion_limits import MotionLimits
+from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.simulation.motion_file import (
     COMMENTS,
@@ -196,7 +197,7 @@ def _design(document: Mapping[str, Any], place: Path) -> Design:
         trajectory=motion.trajectory,
         duration=motion.trajectory.duration,
         joint=joint_from_document(
-            TableOf(Plain()).read(tables["joint"], "joint"), f"{place}: [joint]"
+            TableOf(Plain()).read(tables["joint"], "joint"), f"{place}: [joint]", Joint
         ),
         controller=read_controller(tables["controller"], "controller"),
         sensors=read_sensors(tables["sensors"], "sensors"),

@@ -105,7 +105,7 @@ def _estimate(d: Mapping[str, Any], cls: type[Saved]) -> Saved:
         findings=tuple(finding_of(each) for each in d["findings"])
         if "findings" in d
         else tuple(_old_warning(each) for each in d["warnings"]),
-        joint=joint_from_document(d["joint"], "joint"),
+        joint=joint_from_document(d["joint"], "joint", Joint),
         settings=d["settings"],
         seconds=d["seconds"],
         delays={name: Delay(**entry) for name, entry in d.get("delays", {}).items()},

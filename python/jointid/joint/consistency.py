@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
-
-if TYPE_CHECKING:
-    from jointid.joint.joint import Joint
+from jointid.joint.joint_fields import JointFields
 
 # Two values of the same inertia may differ by this share: printed values are rounded.
 _INERTIA_TOLERANCE = 1e-3
 
 
-def check_consistency(joint: Joint, owner: str) -> None:
+def check_consistency(joint: JointFields, owner: str) -> None:
     """Refuse fields that contradict each other.
 
     Parameters
     ----------
-    joint : Joint
+    joint : JointFields
     owner : str
         The joint as messages name it.
 
@@ -32,7 +29,7 @@ def check_consistency(joint: Joint, owner: str) -> None:
     _check_tolerances(joint, owner)
 
 
-def _check_inertia(joint: Joint, owner: str) -> None:
+def _check_inertia(joint: JointFields, owner: str) -> None:
     if joint.rotor_inertia is None:
         return
     reflected = joint.gear_ratio * joint.gear_ratio * joint.rotor_inertia
@@ -55,7 +52,7 @@ def _check_inertia(joint: Joint, owner: str) -> None:
         )
 
 
-def _check_gravity(joint: Joint, owner: str) -> None:
+def _check_gravity(joint: JointFields, owner: str) -> None:
     gravity = joint.model.resolved.gravity
     if gravity != "none" and joint.kind == "prismatic":
         raise InputError(
@@ -75,7 +72,7 @@ def _check_gravity(joint: Joint, owner: str) -> None:
         )
 
 
-def _check_tolerances(joint: Joint, owner: str) -> None:
+def _check_tolerances(joint: JointFields, owner: str) -> None:
     facts = joint.facts
     for name, stated in joint.tolerances.given.items():
         if name in ("mass", "centre_of_mass", "link_inertia") and joint.link is None:

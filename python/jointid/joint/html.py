@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from jointid.base.html import Html, element, table
-
-if TYPE_CHECKING:
-    from jointid.joint.joint import Joint
-    from jointid.joint.parameters import Parameter
+from jointid.joint.joint_fields import JointFields
+from jointid.joint.parameters import Parameter
 
 
-def html_facts(joint: Joint) -> Html:
+def html_facts(joint: JointFields) -> Html:
     """Return the facts that are given, then the parameters that are."""
     stated: list[tuple[str, object]] = [
         ("kind", joint.kind),

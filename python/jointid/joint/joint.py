@@ -1,10 +1,9 @@
 """A joint: its known values before an identification, and the identified ones after it."""
 
 import functools
-import math
 import os
 from collections.abc import Mapping
-from dataclasses import field, fields, replace
+from dataclasses import fields, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, get_args
 
@@ -24,9 +23,10 @@ from jointid.joint.checks import (
     suggestion,
 )
 from jointid.joint.consistency import check_consistency
-from jointid.joint.link import GravityCoefficients, Limits, Link
+from jointid.joint.joint_fields import JointFields
+from jointid.joint.link import Limits, Link
 from jointid.joint.model import Model
-from jointid.joint.parameters import Parameter, merge, parameter_table
+from jointid.joint.parameters import merge, parameter_table
 from jointid.joint.tolerances import Tolerances
 from jointid.joint.voltage_drive import VoltageDrive
 from jointid.recording.signals import Kind, TorqueHold
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Joint:
+class Joint(JointFields):
     """One joint of a robot: drive, friction model, sensor, link, parameters and limits.
 
     Values are on the output side of the gear, except those marked as motor side. For a prismatic joint,
@@ -91,22 +91,6 @@ class Joint:
     2.5217
     """
 
-    name: str = ""
-    kind: Kind = "revolute"
-    inertia: float | None = None
-    rotor_inertia: float | None = None
-    gear_ratio: float = 1.0
-    torque_constant: float | None = None
-    torque_hold: TorqueHold | None = None
-    sensor: bool = False
-    model: Model = field(default_factory=Model)
-    torque_offset: bool | None = None
-    link: Link | None = None
-    parameters: Mapping[str, Parameter] = field(default_factory=dict, hash=False)
-    limits: Limits = field(default_factory=Limits)
-    tolerances: Tolerances = field(default_factory=Tolerances)
-    voltage: VoltageDrive | None = None
-
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
             raise InputError("text is expected", argument="name", value=self.name, place="joint")
@@ -155,25 +139,6 @@ class Joint:
         object.__setattr__(self, "parameters", table)
         check_consistency(self, owner)
 
-    @property
-    def owner(self) -> str:
-        """The joint as messages name it."""
-        return f"joint '{self.name}'" if self.name else "joint"
-
-    @property
-    def facts(self) -> dict[str, float | None]:
-        """The given facts that may have a tolerance, by its name."""
-        link = self.link
-        return {
-            "torque_constant": self.torque_constant,
-            "gear_ratio": self.gear_ratio,
-            "inertia": self.inertia,
-            "rotor_inertia": self.rotor_inertia,
-            "mass": None if link is None else link.mass,
-            "centre_of_mass": None if link is None else link.centre_of_mass,
-            "link_inertia": None if link is None else link.inertia,
-        }
-
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Joint":
         """Return the joint that a joint file (TOML) describes.
@@ -183,9 +148,9 @@ class Joint:
         InputError
             No such file, not TOML, or a value that cannot be used: the error names file, table and key.
         """
-        from jointid.joint.joint_file import load_joint
+        from jointid.joint.joint_file import joint_from_document, read_document
 
-        return load_joint(path)
+        return joint_from_document(read_document(path), str(path), Joint)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the joint to a joint file; a failed write changes no file.
@@ -240,57 +205,6 @@ class Joint:
         for name in values:
             finite_number(f"parameter '{name}'", "value", table[name].value)
         return replace(self, parameters=table)
-
-    @property
-    def reflected_inertia(self) -> float | None:
-        """Inertia of the drive at the output [kg·m²], or [kg]; None if it is not known."""
-        if self.inertia is not None or self.rotor_inertia is None:
-            return self.inertia
-        return self.gear_ratio * self.gear_ratio * self.rotor_inertia
-
-    @property
-    def link_inertia(self) -> float:
-        """Inertia of the link about the joint's axis [kg·m²], or its mass [kg]; 0 without a link.
-
-        A link without a stated inertia is a point mass.
-        """
-        if self.link is None:
-            return 0.0
-        if self.kind == "prismatic":
-            return self.link.mass
-        if self.link.inertia is not None:
-            return self.link.inertia
-        return self.link.mass * self.link.centre_of_mass * self.link.centre_of_mass
-
-    @property
-    def known_inertia(self) -> float | None:
-        """Inertia that the drive's torque accelerates [kg·m²], or [kg]; None if it is not known.
-
-        A torque sensor sees the link; without one the link's inertia and the drive's are one.
-        """
-        drive = self.reflected_inertia
-        return drive if drive is None or self.sensor else drive + self.link_inertia
-
-    @property
-    def gravity_coefficients(self) -> GravityCoefficients:
-        """Coefficients of the torque of gravity on the link, mass · gravity · centre_of_mass · cos(q + angle).
-
-        Raises
-        ------
-        InputError
-            The joint has no link.
-        """
-        if self.link is None:
-            raise InputError(
-                "the torque of gravity needs a link",
-                argument="link",
-                place=self.owner,
-                remedy="give the link's mass and centre_of_mass",
-            )
-        weight = self.link.mass * self.link.gravity * self.link.centre_of_mass
-        return GravityCoefficients(
-            cos=weight * math.cos(self.link.angle), sin=0.0 - weight * math.sin(self.link.angle)
-        )
 
     def output_torque(self, recording: "Recording") -> NDArray[np.float64]:
         """Return the drive's torque at the output, from the first signal that the recording has.

@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 
 from jointid import _core
 from jointid.base.argument_checks import require_path
@@ -16,13 +16,15 @@ from jointid.base.schema import read_bytes
 from jointid.base.toml_file import check_length
 from jointid.joint.checks import check_flag, check_parameter_name, suggestion
 from jointid.joint.file_angles import keep_angles, with_angles
-from jointid.joint.joint import Joint
+from jointid.joint.joint_fields import JointFields
 from jointid.joint.link import Limits, Link
 from jointid.joint.model import FIELDS, Model
 from jointid.joint.parameters import Parameter, parameter_table
 from jointid.joint.tolerances import Tolerances
 from jointid.joint.toml_edit import update_table
 from jointid.joint.voltage_drive import KEYS, drive_keys, voltage_of
+
+J = TypeVar("J", bound=JointFields)
 
 SCHEMA = 2
 """Increased when a reader of the earlier format would misread the new one."""
@@ -46,11 +48,6 @@ _KEYS: dict[str, tuple[str, ...]] = {
 _KEPT = ("estimate", "session", "user")
 
 
-def load_joint(path: str | os.PathLike[str]) -> Joint:
-    """Read a joint file: see `Joint.load`."""
-    return joint_from_document(read_document(path), str(path))
-
-
 def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the tables and keys of a joint file, unchecked.
 
@@ -63,7 +60,7 @@ def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
     return _parsed(_text(place), place)
 
 
-def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
+def save_joint(joint: JointFields, path: str | os.PathLike[str]) -> None:
     """Write a joint file: see `Joint.save`."""
     place = require_path("path", path)
     if place.suffix != ".toml" and not place.is_dir():
@@ -71,16 +68,16 @@ def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
     before = _text(place) if place.exists() else ""
     if before.strip():
         # An existing file is overwritten only if it is a joint file.
-        joint_from_document(_parsed(before, place), str(place))
+        joint_from_document(_parsed(before, place), str(place), type(joint))
     write_whole(place, _edited(before, joint, place).encode())
 
 
-def joint_text(joint: Joint) -> str:
+def joint_text(joint: JointFields) -> str:
     """Return the text of a new joint file."""
     return _edited("", joint, Path("joint.toml"))
 
 
-def joint_document(joint: Joint) -> dict[str, Any]:
+def joint_document(joint: JointFields) -> dict[str, Any]:
     """Return a joint as the tables and keys of its file, in JSON types and without None."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
@@ -105,7 +102,7 @@ def joint_document(joint: Joint) -> dict[str, Any]:
     return document
 
 
-def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
+def joint_from_document(document: Mapping[str, Any], source: str, kind: type[J]) -> J:
     """Return the joint that tables and keys describe; the inverse of `joint_document`.
 
     Parameters
@@ -114,6 +111,8 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
         Tables `estimate`, `session` and `user` are ignored.
     source : str
         Its origin, for errors: the name of a file.
+    kind : type
+        `Joint`.
 
     Raises
     ------
@@ -147,7 +146,7 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
     except InputError as error:
         _refuse(source, "tolerances", error)
     try:
-        return Joint(**arguments)
+        return kind(**arguments)
     except InputError as error:
         tables_of = {key: table for table in ("drive", "model") for key in _KEYS[table]}
         own = error.argument in _TOP  # a model has a name, too
@@ -156,7 +155,7 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
         _refuse(source, "" if own else tables_of.get(error.argument, ""), error)
 
 
-def _model_table(joint: Joint) -> dict[str, Any]:
+def _model_table(joint: JointFields) -> dict[str, Any]:
     """Return the table [model] of the stated fields."""
     stated = joint.model.stated()
     table = {_NAME: stated.pop("name")} if "name" in stated else {}
@@ -334,7 +333,7 @@ def _parsed(text: str, path: Path) -> dict[str, Any]:
         ) from None
 
 
-def _edited(before: str, joint: Joint, path: Path) -> str:
+def _edited(before: str, joint: JointFields, path: Path) -> str:
     """Return the text of a joint file, edited to describe another joint."""
     import tomlkit
 
@@ -349,13 +348,13 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
         for table in {"parameters", "limits", "tolerances"} & set(editable):
             wanted.setdefault(table, {})
         keep_angles(tomllib.loads(before), wanted)
-        usual = {} if inline else _defaults(new=not before.strip())
+        usual = {} if inline else _defaults(type(joint)(), new=not before.strip())
         update_table([editable], wanted, usual, kept=_KEPT, inline=inline)
         text = tomlkit.dumps(editable)
         # The result is verified: TOML has very many layouts, and in some of them a new table cannot have
         # lines of its own, or be empty.
         try:
-            if joint_from_document(tomllib.loads(text), str(path)) == joint:
+            if joint_from_document(tomllib.loads(text), str(path), type(joint)) == joint:
                 return text.replace("\n", "\r\n") if windows else text
         except ValueError:  # from the parser, or an InputError
             continue
@@ -364,11 +363,11 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
     )
 
 
-def _defaults(*, new: bool) -> dict[str, Any]:
+def _defaults(empty: JointFields, *, new: bool) -> dict[str, Any]:
     """Return the tables and keys that are not written, because they have their defaults."""
     # NOTE: with the value, so that a table with a value is always written.
     usual = {name: {"value": None, "vary": True} for name in _core.parameter_names()}
     if new:  # a new file shows all other fields, so that a reader can change them
         return {"parameters": usual}
     link = {field.name: field.default for field in fields(Link)}
-    return {**joint_document(Joint()), "link": link, "parameters": usual}
+    return {**joint_document(empty), "link": link, "parameters": usual}

@@ -21,6 +21,7 @@ from jointid.base.schema import (
 )
 from jointid.estimate.json import empty_calls, finding_of, parameter_of
 from jointid.estimate.json_schema import FINDING, PARAMETER
+from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document
 from jointid.servo.layout import DEFAULT_MODEL, LAYOUTS, LOAD_FRICTION, MOTOR
 from jointid.servo.record import ServoEstimateRecord
@@ -90,7 +91,7 @@ def read_servo_estimate(text: str, cls: type[Saved]) -> Saved:
     d["settings"].setdefault("model", DEFAULT_MODEL)  # older files do not have it
     for place, reason in _contradictions(d):
         raise InputError(reason, place=place)
-    joint = joint_from_document(d["joint"], "joint")
+    joint = joint_from_document(d["joint"], "joint", Joint)
     if joint.voltage is None:
         raise InputError("a servo's input is a voltage", place="joint.drive.input")
     settings, parameters = d["settings"], d["parameters"]

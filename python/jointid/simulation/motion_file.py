@@ -13,6 +13,7 @@ from jointid.base.schema import Kind, ListOf, Number, Plain, Record, TableOf, Te
 from jointid.base.toml_file import read_toml
 from jointid.base.values import dataclass
 from jointid.joint.angles import in_radians
+from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document
 from jointid.simulation.designed_for import DesignedFor
 from jointid.simulation.peaks import Peaks
@@ -137,7 +138,7 @@ def _designed_for(tables: Mapping[str, Any], trajectory: Trajectory, source: str
     return DesignedFor(
         source=source,
         trajectory=trajectory,
-        joint=joint_from_document(TableOf(Plain()).read(read["joint"], "joint"), "[joint]"),
+        joint=joint_from_document(TableOf(Plain()).read(read["joint"], "joint"), "[joint]", Joint),
         controller=read_controller(read["controller"], "controller"),
         control_period=read["design"]["control_period"],
         believed=believed_of(read),

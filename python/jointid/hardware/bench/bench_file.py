@@ -62,7 +62,7 @@ def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
     """
     source = str(path)
     document = read_document(path)
-    joint = joint_from_document(document, source)
+    joint = joint_from_document(document, source, Joint)
     if "session" not in document:
         raise InputError(
             "there is no table [session], which describes drive and motion; docs/hardware.md shows one",
