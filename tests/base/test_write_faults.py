@@ -74,7 +74,7 @@ _SHOWN = {
     "cli.session": "command run",
     "cli.study": "command sweep drawn",
     "commissioning.ring": "command run",
-    "design.design_file": "design",
+    "design.design_document": "design",
     "estimate.estimate": "estimate",
     "exports.exporting": "model",
     "hardware.proof.certificate": "certificate",

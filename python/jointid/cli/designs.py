@@ -269,7 +269,7 @@ def _estimate(arguments: argparse.Namespace) -> Estimate | None:
 def _say(found: Design, arguments: argparse.Namespace) -> int:
     """Write what was asked for, and print the design; a motion that keeps no limits is not written."""
     from jointid.cli.exit_codes import BAD_INPUT
-    from jointid.design.design import COMPLETE
+    from jointid.design.design_fields import COMPLETE
 
     usable = found.status == COMPLETE
     if usable and arguments.output is not None:

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from jointid import _core
-from jointid.design.design import Design
+from jointid.design.design_fields import DesignFields
 from jointid.simulation.arguments import law_name
 
 _GAINS = ("stiffness", "integral", "damping")
 _VELOCITIES = {"counts": "velocity from its counts", "difference": "velocity from differences"}
 
 
-def assumed(design: Design) -> str:
+def assumed(design: DesignFields) -> str:
     """Return which sensors, controller and period a design was made with."""
     sensors = list(_sensors(design.sensors, design.joint.kind == "prismatic"))
     return (

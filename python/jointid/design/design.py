@@ -3,27 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from jointid import _core
-from jointid.design.expected_error import ExpectedError
-from jointid.design.motion_limits import MotionLimits
-from jointid.joint.joint import Joint
-from jointid.simulation.arguments import Controller
-from jointid.simulation.peaks import Peaks
-from jointid.simulation.trajectory import Trajectory
+from jointid.design.design_fields import DesignFields
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COMPLETE = "complete"
-CRITERIA = ("worst", "determinant")
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Design:
+class Design(DesignFields):
     """What `design_excitation` found; `load_design` reads it from a file.
 
     Attributes
@@ -74,46 +64,6 @@ class Design:
     4.0
     """
 
-    status: str
-    trajectory: Trajectory
-    joint: Joint
-    controller: Controller
-    sensors: _core.Sensors
-    limits: MotionLimits
-    peaks: Peaks
-    parameters: Mapping[str, ExpectedError]
-    criterion: str
-    joints: int
-    evaluations: int
-    seed: int
-    duration: float
-    weakest: str
-    limited_by: str
-    reference: Mapping[str, float] = field(default_factory=dict)
-    believed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    control_period: float = 1e-3
-    reason: str = ""
-
-    @property
-    def shares(self) -> dict[str, float]:
-        """How much of each limit is used, by the limit's name; 1 is all of it."""
-        limits, peaks = self.limits, self.peaks
-        low, high = limits.position
-        middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        used = {
-            "position": max(abs(peaks.position[0] - middle), abs(peaks.position[1] - middle)) / half
-        }
-        for name, reached in (
-            ("velocity", peaks.velocity),
-            ("acceleration", peaks.acceleration),
-            ("torque", peaks.torque),
-            ("sensor_range", peaks.sensor_torque),
-        ):
-            allowed = getattr(limits, name)
-            if allowed is not None and reached is not None:
-                used[name] = reached / allowed
-        return used
-
     def summary(self) -> str:
         """Return the design as text: expected errors, limits, what limits the weakest."""
         from jointid.design.tables import summary
@@ -134,7 +84,7 @@ class Design:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what `save` writes, in JSON's types; a number that is not finite is a text."""
-        from jointid.design.design_file import document_of
+        from jointid.design.design_document import document_of
 
         return document_of(self)
 
@@ -148,7 +98,7 @@ class Design:
         OSError
             The file cannot be written; an existing one is untouched.
         """
-        from jointid.design.design_file import save_design
+        from jointid.design.design_document import save_design
 
         save_design(self, path)
 

@@ -1,39 +1,30 @@
-"""A design's file: its motion, what it was designed for, and what to expect of it."""
+"""Reading a design's file: its motion, what it was designed for, and what to expect of it."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from jointid import _core
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.base.files import write_whole
 from jointid.base.schema import ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
-from jointid.base.toml_text import toml_of
-from jointid.design.design import CRITERIA, Design
+from jointid.design.design import Design
+from jointid.design.design_fields import CRITERIA
 from jointid.design.expected_error import ExpectedError
 from jointid.design.motion_limits import MotionLimits
 from jointid.joint.joint import Joint
-from jointid.joint.joint_file import joint_document, joint_from_document
+from jointid.joint.joint_file import joint_from_document
 from jointid.simulation.motion_file import (
-    COMMENTS,
-    SCHEMA,
     believed_of,
     check_schema,
     motion_of,
-    motion_table,
 )
 from jointid.simulation.setting_tables import (
-    controller_table,
-    plain,
     read_controller,
     read_sensors,
-    sensors_table,
 )
 
 _SIZE, _ERROR = Number(low=0.0), Number(low=0.0, infinite=True)
@@ -78,73 +69,6 @@ _FILE = Record(
         "believed": TableOf(ListOf(Number(), 2, 2), 1000),
     },
 )
-_SAYS = COMMENTS | {
-    "trajectory": "a sum of sines: amplitude · sin(frequency · t + phase)",
-    "believed": "joints were drawn from these ranges; they keep the limits",
-    "limits": "limits of the motion",
-    "peaks": "largest values over joints drawn from the prior",
-    "reference": "largest relative errors in the thesis's motion, for comparison",
-    "design.control_period": "s",
-    "controller": "that drives the joint",
-    "joint": "the nominal one",
-}
-
-
-def document_of(design: Design) -> dict[str, Any]:
-    """Return a design as the tables of its file, in JSON's types."""
-    own = {item.name for item in fields(ExpectedError)} - {"name"}
-    return {
-        "schema": SCHEMA,
-        "trajectory": motion_table(design.trajectory),
-        "expected": {
-            name: {
-                key: plain(value)
-                for key, value in asdict(each).items()
-                if key in own and value is not None
-            }
-            for name, each in design.parameters.items()
-        },
-        **(
-            {"reference": {name: plain(share) for name, share in design.reference.items()}}
-            if design.reference
-            else {}
-        ),
-        **(
-            {"believed": {name: list(ends) for name, ends in design.believed.items()}}
-            if design.believed
-            else {}
-        ),
-        "limits": {
-            name: list(value) if isinstance(value, tuple) else value
-            for name, value in design.limits.asdict().items()
-        },
-        "peaks": {
-            name: value for name, value in design.peaks.to_dict().items() if value is not None
-        },
-        "controller": controller_table(design.controller),
-        "sensors": sensors_table(design.sensors),
-        "joint": joint_document(design.joint),
-        "design": {
-            "status": design.status,
-            **({"reason": design.reason} if design.reason else {}),
-            "criterion": design.criterion,
-            "joints": design.joints,
-            "evaluations": design.evaluations,
-            "seed": design.seed,
-            "control_period": design.control_period,
-            "weakest": design.weakest,
-            "limited_by": design.limited_by,
-            "jointid": _core.__version__,  # the last line: a file that was cut lacks it
-        },
-    }
-
-
-def save_design(design: Design, path: str | os.PathLike[str]) -> None:
-    """Write a design: see `Design.save`."""
-    place = require_path("path", path)
-    if place.suffix.lower() != ".toml" and not place.is_dir():
-        raise InputError("a design is saved as .toml", argument="path", value=place.name)
-    write_whole(place, toml_of(document_of(design), _SAYS).encode())
 
 
 def load_design(path: str | os.PathLike[str]) -> Design:

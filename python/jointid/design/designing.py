@@ -17,7 +17,8 @@ from jointid.base.values import dataclass
 from jointid.design.balance_noise import assumed_sensors
 from jointid.design.checks import check_arguments, check_gain, check_length, check_signs
 from jointid.design.default_law import default_controller
-from jointid.design.design import COMPLETE, CRITERIA, Design
+from jointid.design.design import Design
+from jointid.design.design_fields import COMPLETE, CRITERIA
 from jointid.design.design_search import DesignProgress, DesignSearch
 from jointid.design.expectation import expected_errors, what_limits
 from jointid.design.holding import shrunk

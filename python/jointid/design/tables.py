@@ -7,7 +7,7 @@ import math
 from jointid.base.error_text import printable
 from jointid.base.html import Html, element, table
 from jointid.design.assumptions import assumed
-from jointid.design.design import COMPLETE, Design
+from jointid.design.design_fields import COMPLETE, DesignFields
 from jointid.estimate.wording import rounded
 
 _LIMITS = {
@@ -22,7 +22,7 @@ _VALUES = 9  # values in an answer
 _REACHED = 0.98  # a limit of which so much is used is reached
 
 
-def head(design: Design) -> list[str]:
+def head(design: DesignFields) -> list[str]:
     """The titles of the columns."""
     known = any(each.before is not None for each in design.parameters.values())
     named = ["parameter", "value", *(["error before"] if known else [])]
@@ -30,7 +30,7 @@ def head(design: Design) -> list[str]:
     return [*named, *(["thesis's motion"] if design.reference else []), "unit"]
 
 
-def rows(design: Design) -> list[list[str]]:
+def rows(design: DesignFields) -> list[list[str]]:
     """One row a parameter: value, errors before and expected, as a share, the worst, the thesis's, unit."""
     found, titles = [], head(design)
     for each in design.parameters.values():
@@ -45,7 +45,7 @@ def rows(design: Design) -> list[list[str]]:
     return found
 
 
-def limits_used(design: Design) -> list[str]:
+def limits_used(design: DesignFields) -> list[str]:
     """One sentence a limit: what is reached of it."""
     peaks, side = design.peaks, design.joint.kind == "prismatic"
     low, high = design.limits.position
@@ -69,7 +69,7 @@ def limits_used(design: Design) -> list[str]:
     return lines
 
 
-def summary(design: Design) -> str:
+def summary(design: DesignFields) -> str:
     """Return a design as text."""
     lines = [head(design), *rows(design)]
     widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
@@ -83,7 +83,7 @@ def summary(design: Design) -> str:
     )
 
 
-def answer(design: Design) -> str:
+def answer(design: DesignFields) -> str:
     """Return in a few lines which errors to expect, and what limits them."""
     shown = list(design.parameters.values())[:_VALUES]
     width = max((len(each.name) for each in shown), default=0)
@@ -114,7 +114,7 @@ def answer(design: Design) -> str:
     )
 
 
-def html_summary(design: Design) -> Html:
+def html_summary(design: DesignFields) -> Html:
     """What a notebook shows for a design."""
     return element(
         "div",
@@ -125,16 +125,16 @@ def html_summary(design: Design) -> Html:
     )
 
 
-def _title(design: Design) -> str:
+def _title(design: DesignFields) -> str:
     named = f" of '{design.joint.name}'" if design.joint.name else ""
     return f"designed motion{named}: {design.duration:g} s, {design.status}"
 
 
-def _status(design: Design) -> list[str]:
+def _status(design: DesignFields) -> list[str]:
     return [design.reason] if design.reason and design.status != COMPLETE else []
 
 
-def _weakest(design: Design) -> list[str]:
+def _weakest(design: DesignFields) -> list[str]:
     if design.weakest not in design.parameters:
         return []
     worst = share_text(design.parameters[design.weakest].worst)
@@ -142,7 +142,7 @@ def _weakest(design: Design) -> list[str]:
     return [f"weakest: {design.weakest}, {worst} at worst{limited}"]
 
 
-def _remarks(design: Design) -> list[str]:
+def _remarks(design: DesignFields) -> list[str]:
     return [
         *_weakest(design),
         *improved(design),
@@ -152,7 +152,7 @@ def _remarks(design: Design) -> list[str]:
     ]
 
 
-def judged_with(design: Design) -> str:
+def judged_with(design: DesignFields) -> str:
     """Return how many joints and motions were tried, and what counted."""
     joints = f"{design.joints} joint{'' if design.joints == 1 else 's'}"
     return (
@@ -161,7 +161,7 @@ def judged_with(design: Design) -> str:
     )
 
 
-def improved(design: Design) -> list[str]:
+def improved(design: DesignFields) -> list[str]:
     """Return what was weakest before, and by how much this motion makes it better."""
     shares = {
         name: each.before * each.relative / each.stderr
