@@ -9,7 +9,7 @@ import can
 import pytest
 
 from jointid.base.errors import InputError
-from jointid.hardware.bench.bench import BusOptions
+from jointid.hardware.bench.bus_options import BusOptions
 from jointid.hardware.can import bus as bus_module
 from jointid.hardware.can.bus import open_bus
 from jointid.hardware.elmo.options import ElmoOptions

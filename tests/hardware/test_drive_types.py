@@ -15,7 +15,8 @@ from house_rules import _imported
 import jointid as jid
 from jointid.cli.command_line import main
 from jointid.hardware.bench import drive_types
-from jointid.hardware.bench.drive_types import DriveType, drive_type, drive_type_names
+from jointid.hardware.bench.bench import DriveType, drive_type
+from jointid.hardware.bench.drive_types import drive_type_names
 
 PACKAGE = Path(jid.__file__).parent
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"

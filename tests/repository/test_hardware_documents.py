@@ -6,7 +6,9 @@ from typing import Any
 
 import pytest
 
-from jointid.hardware.bench.bench import Bench, BusOptions, Emulation
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.bus_options import BusOptions
+from jointid.hardware.bench.emulation import Emulation
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_bench import ElmoEmulation

@@ -28,12 +28,13 @@ _LIMITS = ("position", "velocity", "acceleration", "torque", "sensor_range")
 
 def joint_and_bench(path: Path) -> tuple[Joint, Bench | None]:
     """The joint of a file, and its bench if the file has one, whatever motion that names."""
-    from jointid.hardware.bench.bench_file import load_bench
+    from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.bench.bench_file import bench_fields
     from jointid.joint.joint_file import read_document
 
     if "session" not in read_document(path):
         return Joint.load(path), None
-    bench = load_bench(path, with_motion=False)
+    bench = Bench(**bench_fields(path, with_motion=False))
     return bench.joint, bench
 
 

@@ -7,9 +7,11 @@ Each make of drive has a package of its own and is found by its `DriveType`.
 ...     recording = jid.hardware.Session(drive, bench.controller, bench.trajectory, bench.limits).run()
 """
 
-from jointid.hardware.bench.bench import Bench, BusOptions, Emulation
-from jointid.hardware.bench.drive_types import DriveType, drive_type, drive_type_names
+from jointid.hardware.bench.bench import Bench, DriveType, drive_type
+from jointid.hardware.bench.bus_options import BusOptions
+from jointid.hardware.bench.drive_types import drive_type_names
 from jointid.hardware.bench.emulated_joints import emulated_joint, true_joint
+from jointid.hardware.bench.emulation import Emulation
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.bench.frame_replay import replay
 from jointid.hardware.bench.opened_drive import emulated_devices, open_drive

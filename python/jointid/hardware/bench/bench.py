@@ -1,18 +1,18 @@
-"""A bench: a joint, its drive, a motion, a controller and limits."""
+"""A bench: a joint, its drive, a motion, a controller and limits; and the type of drive that moves it."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
+from jointid.hardware.bench.bus_options import BusOptions
+from jointid.hardware.bench.drive_format import DriveFormat
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE, registered
+from jointid.hardware.bench.emulation import Emulation
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
-from jointid.hardware.can.bus import check_bitrates, check_interface
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -21,71 +21,9 @@ from jointid.simulation.arguments import Controller
 from jointid.simulation.designed_for import DesignedFor
 from jointid.simulation.trajectory import Trajectory
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BusOptions:
-    """A CAN bus, as python-can names it.
-
-    Attributes
-    ----------
-    interface : str
-        "socketcan", "pcan", "kvaser", … Default "socketcan".
-    channel : str
-        Default "can0".
-    bitrate : int
-        [bit/s]; with socketcan it is set with the interface, not here. Default 500 000.
-    fd : bool
-        Frames of CAN FD may be sent and received. Default False.
-    data_bitrate : int, optional
-        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
-    """
-
-    interface: str = "socketcan"
-    channel: str = "can0"
-    bitrate: int = 500_000
-    fd: bool = False
-    data_bitrate: int | None = None
-
-    def __post_init__(self) -> None:
-        check_bitrates(self.bitrate, fd=self.fd, data_bitrate=self.data_bitrate)
-        if self.interface != "socketcan":  # a bench without a CAN bus needs no python-can
-            check_interface(self.interface)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Emulation:
-    """The true values of an emulated bench; a session does not know them.
-
-    Attributes
-    ----------
-    truth : mapping of str to float
-        Values of the joint's parameters, by name [SI]. With "ripple_sin_2" and "ripple_cos_2" the gear
-        itself ripples, if the joint's model has this order; without, it does not.
-    sensors : Sensors
-        Noise, ripple and the rest of the torque sensor. Encoder and converter are the drive's.
-    integration_step : float
-        Of the joint, at most [s].
-    position : float
-        Angle of the joint at first [rad].
-    drive : object, optional
-        Options of the emulated drive, of its type's own kind. Default: the type's default.
-    """
-
-    truth: Mapping[str, float]
-    sensors: _core.Sensors = field(default_factory=_core.Sensors)
-    integration_step: float = 2.5e-4
-    position: float = 0.0
-    drive: Any = None
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.integration_step <= 0.01:
-            raise InputError(
-                "more than 0 and at most 0.01 s is expected",
-                argument="integration_step",
-                value=self.integration_step,
-            )
-        if not math.isfinite(self.position):
-            raise InputError("a finite angle is expected", argument="position", value=self.position)
+if TYPE_CHECKING:
+    from jointid.hardware.emulated.device import Device
+    from jointid.hardware.session.drive import Drive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,20 +94,77 @@ class Bench:
         >>> bench.address
         'socketcan can0, node 127'
         """
-        from jointid.hardware.bench.bench_file import load_bench
+        from jointid.hardware.bench.bench_file import bench_fields
 
-        return load_bench(path)
+        return cls(**bench_fields(path))
 
 
-def joint_with_truth(joint: Joint, truth: Mapping[str, float]) -> Joint:
-    """A joint with true parameters, and ripple only where the truth has it.
+class DriveType(DriveFormat):
+    """The adapter of a make of drive; a subclass, registered by an entry point, is all that a drive needs.
+
+    Only `options`, `open` and `emulate` must be written; `tests/third_party_drive` is an example.
+
+    Attributes
+    ----------
+    tables : tuple of str
+        Tables under `[session]` that `options` reads besides `[session.drive]`. Default: none.
+
+    Examples
+    --------
+    In the `pyproject.toml` of the package that brings the drive::
+
+        [project.entry-points."jointid.drives"]
+        acme = "acme_drive:AcmeType"
+    """
+
+    def open(self, bench: Bench) -> AbstractContextManager[Drive]:
+        """Return a context manager that yields the real drive and closes its bus at the end.
+
+        Raises
+        ------
+        InputError
+            The bus cannot be opened.
+        """
+        raise NotImplementedError
+
+    def address(self, bench: Bench) -> str:
+        """Return where the real drive is, shown before a joint moves. Default: its options."""
+        return str(bench.drive)
+
+    def emulate(self, bench: Bench, seed: int) -> AbstractContextManager[Drive]:
+        """Return a context manager that yields an emulated drive on virtual time.
+
+        Parameters
+        ----------
+        bench : Bench
+        seed : int
+            Of the emulated noise.
+
+        Raises
+        ------
+        InputError
+            The bench does not describe an emulated joint.
+        """
+        raise NotImplementedError
+
+    def devices(self, bench: Bench, seed: int) -> tuple[Device, ...]:
+        """Return emulated devices for a CAN bus that other programs use; default: raises InputError."""
+        del seed
+        raise InputError(
+            "this type of drive cannot be emulated on a CAN bus",
+            argument="type",
+            value=bench.drive_type,
+            place="[session.drive]",
+        )
+
+
+def drive_type(name: str) -> DriveType:
+    """Return the adapter of a drive type.
 
     Raises
     ------
     InputError
-        A parameter that the joint's model does not have.
+        No text, no such type, several packages that register it, one that registers a built-in name, or an
+        entry point that cannot be used: `__cause__` is what its package raised.
     """
-    orders = tuple(
-        order for order in joint.model.resolved.ripple if f"ripple_sin_{order:g}" in truth
-    )
-    return joint.replace(model=joint.model.replace(ripple=orders), parameters=dict(truth))
+    return registered(name, DriveType)

@@ -8,8 +8,10 @@ from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.bench.bench import Bench, BusOptions, Emulation, joint_with_truth
-from jointid.hardware.bench.drive_types import DEFAULT_TYPE, DriveType, drive_type, drive_type_names
+from jointid.hardware.bench.bus_options import BusOptions
+from jointid.hardware.bench.drive_format import DriveFormat
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type_names, registered
+from jointid.hardware.bench.emulation import Emulation, joint_with_truth
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.bench.table import Table, type_name, types_of
 from jointid.hardware.session.gains import with_fitting_gains
@@ -51,8 +53,8 @@ _NOT_EMULATED |= {"converter_bits", "converter_range", "converter_noise", "conve
 _EMULATED = ("integration_step", "position")
 
 
-def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
-    """Read a bench file: see `Bench.load`.
+def bench_fields(path: str | Path, *, with_motion: bool = True) -> dict[str, Any]:
+    """Return the fields of the bench that a file describes: see `Bench.load`.
 
     Parameters
     ----------
@@ -70,7 +72,7 @@ def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
         )
     session = Table(document["session"], "session", source)
     name = session.table("drive").choice("type", DEFAULT_TYPE, drive_type_names())
-    adapter = drive_type(name)
+    adapter = registered(name, DriveFormat)
     tables = (*_TABLES, *adapter.tables)
     for key, value in session.entries.items():
         if isinstance(value, dict) and key not in tables:
@@ -96,22 +98,22 @@ def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
         lambda **given: SessionLimits.of(joint, **given), types_of(SessionLimits)
     )
     _check_peaks(session.table("trajectory"), motion, limits)
-    return Bench(
-        joint=joint,
-        controller=_controller(session.table("controller"), joint, options.period),
-        trajectory=trajectory,
-        drive=adapter.options(session, bus),
-        limits=limits,
-        options=options,
-        bus=bus,
-        real_time=session.table("real_time").make(RealTimeOptions),
-        emulation=_emulation(session.table("emulated"), joint, adapter)
+    return {
+        "joint": joint,
+        "controller": _controller(session.table("controller"), joint, options.period),
+        "trajectory": trajectory,
+        "drive": adapter.options(session, bus),
+        "limits": limits,
+        "options": options,
+        "bus": bus,
+        "real_time": session.table("real_time").make(RealTimeOptions),
+        "emulation": _emulation(session.table("emulated"), joint, adapter)
         if "emulated" in session.entries
         else None,
-        drive_type=name,
-        first_motion=session.table("first_motion").make(FirstMotionOptions),
-        designed_for=motion.designed_for,
-    )
+        "drive_type": name,
+        "first_motion": session.table("first_motion").make(FirstMotionOptions),
+        "designed_for": motion.designed_for,
+    }
 
 
 def _motion(table: Table, folder: Path) -> Motion:
@@ -173,7 +175,7 @@ def _controller(table: Table, joint: Joint, period: float) -> Controller:
     return with_fitting_gains(assumed, gains.entries, moved, period)
 
 
-def _emulation(table: Table, joint: Joint, adapter: DriveType) -> Emulation:
+def _emulation(table: Table, joint: Joint, adapter: DriveFormat) -> Emulation:
     truth, sensors = table.table("truth"), table.table("sensors")
     for name, value in truth.entries.items():
         if isinstance(value, bool) or not isinstance(value, int | float):

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.bench.bench import Bench, Emulation, joint_with_truth
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.emulation import Emulation, joint_with_truth
 from jointid.joint.joint import Joint
 from jointid.simulation.stepped import stepped_joint
 

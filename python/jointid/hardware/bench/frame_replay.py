@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
-from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
+from jointid.hardware.bench.bench import drive_type
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE
 from jointid.hardware.bench.run_in_log import LoggedPositions
 from jointid.hardware.can.frame_log import logged_frames
 from jointid.hardware.session.cycle import LoggedCycle, capped, held_torque, target_at

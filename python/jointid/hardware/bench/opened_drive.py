@@ -6,8 +6,7 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
 from jointid.base.argument_checks import require_kind
-from jointid.hardware.bench.bench import Bench
-from jointid.hardware.bench.drive_types import drive_type
+from jointid.hardware.bench.bench import Bench, drive_type
 
 if TYPE_CHECKING:
     from jointid.hardware.emulated.device import Device

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.hardware.bench.bench import Bench, BusOptions
-from jointid.hardware.bench.drive_types import DriveType
+from jointid.hardware.bench.bench import Bench, DriveType
+from jointid.hardware.bench.bus_options import BusOptions
 from jointid.hardware.can.bus import open_bus
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices, elmo_emulation

@@ -16,8 +16,7 @@ from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.schema import ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
-from jointid.hardware.bench.bench import Bench
-from jointid.hardware.bench.drive_types import drive_type
+from jointid.hardware.bench.bench import Bench, drive_type
 from jointid.hardware.proof.certified_limits import limits_facts, notes, widened
 from jointid.hardware.proof.result import FirstMotion
 from jointid.hardware.session.watchdog import Watchdog

@@ -6,8 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from jointid.hardware.bench.bench import Bench
-from jointid.hardware.bench.drive_types import drive_type
+from jointid.hardware.bench.bench import Bench, drive_type
 
 _LARGEST = ("torque", "velocity", "current")
 _SAME = 1e-9  # of a limit, which is written with all its digits

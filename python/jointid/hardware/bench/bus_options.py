@@ -1,0 +1,37 @@
+"""The CAN bus of a bench."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jointid.hardware.can.bus import check_bitrates, check_interface
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BusOptions:
+    """A CAN bus, as python-can names it.
+
+    Attributes
+    ----------
+    interface : str
+        "socketcan", "pcan", "kvaser", … Default "socketcan".
+    channel : str
+        Default "can0".
+    bitrate : int
+        [bit/s]; with socketcan it is set with the interface, not here. Default 500 000.
+    fd : bool
+        Frames of CAN FD may be sent and received. Default False.
+    data_bitrate : int, optional
+        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
+    """
+
+    interface: str = "socketcan"
+    channel: str = "can0"
+    bitrate: int = 500_000
+    fd: bool = False
+    data_bitrate: int | None = None
+
+    def __post_init__(self) -> None:
+        check_bitrates(self.bitrate, fd=self.fd, data_bitrate=self.data_bitrate)
+        if self.interface != "socketcan":  # a bench without a CAN bus needs no python-can
+            check_interface(self.interface)

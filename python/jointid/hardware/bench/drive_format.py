@@ -1,0 +1,116 @@
+"""What a make of drive reads and writes of itself: its options, and its frames in a log."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.errors import InputError
+
+if TYPE_CHECKING:
+    from jointid.hardware.bench.bus_options import BusOptions
+    from jointid.hardware.bench.table import Table
+    from jointid.hardware.can.frame_log import LoggedFrame
+    from jointid.hardware.session.cycle import LoggedCycle
+    from jointid.joint.joint import Joint
+
+
+class DriveFormat:
+    """What a `DriveType` knows without a bench."""
+
+    tables: tuple[str, ...] = ()
+
+    def options(self, session: Table, bus: BusOptions) -> Any:
+        """Return the drive's options, a frozen dataclass, from the joint file.
+
+        Parameters
+        ----------
+        session : Table
+            The table `[session]`; `session.table("drive").without("type").make(Options)` reads the fields of
+            a dataclass from `[session.drive]`, with types, unknown keys and places checked.
+        bus : BusOptions
+            From `[session.bus]`.
+
+        Raises
+        ------
+        InputError
+            A key is unknown or its value cannot be used.
+        """
+        raise NotImplementedError
+
+    def emulation(self, table: Table) -> Any:
+        """Return options of the emulated drive from those keys of `[session.emulated]` that are its own.
+
+        Default: there are none, and any key raises InputError.
+        """
+        table.check_names(())
+        return None
+
+    def metadata(self, options: Any) -> Mapping[str, Any]:
+        """Return the options as JSON's types, to be kept in each recording as "drive_options".
+
+        A drive that is opened by this type returns ``{"drive_type": name, "drive_options": …}`` from its own
+        `metadata`. Default: the fields of the dataclass.
+        """
+        from jointid.hardware.session.metadata import plain
+
+        found: Mapping[str, Any] = plain(options)
+        return found
+
+    def wiring(self, options: Any) -> Mapping[str, Any]:
+        """Return those options that decide about signs and scales: a bench certificate is void when one changes.
+
+        Default: all of them.
+        """
+        return self.metadata(options)
+
+    def recorded_options(self, metadata: Mapping[str, Any]) -> Any:
+        """Return the options that `metadata` wrote; the default ones when a recording has none.
+
+        Default: raises InputError, so that a frame log cannot be replayed.
+
+        Raises
+        ------
+        InputError
+            They are not those of this type.
+        """
+        del metadata
+        raise self._no_replay()
+
+    def decode(
+        self,
+        frames: Iterable[LoggedFrame],
+        joint: Joint,
+        options: Any,
+        identity: Mapping[str, Any],
+    ) -> Sequence[LoggedCycle]:
+        """Return the control cycles that a session's frame log holds, in order.
+
+        Default: raises InputError.
+
+        Parameters
+        ----------
+        frames : iterable of LoggedFrame
+            What the drive gave to its `tap`, and other nodes' frames in logs of other programs.
+        joint : Joint
+        options : object
+        identity : mapping
+            What `Drive.identity` returned in that session; empty when it is not known.
+
+        Raises
+        ------
+        InputError
+            Frames are missing.
+        """
+        del frames, joint, options, identity
+        raise self._no_replay()
+
+    def command_latency(self, options: Any) -> float:
+        """Return the time from sending a command until the drive acts on it [s]. Default: 0."""
+        del options
+        return 0.0
+
+    def _no_replay(self) -> InputError:
+        return InputError(
+            "this type of drive decodes no frame log", argument="drive", value=type(self).__name__
+        )
