@@ -122,22 +122,14 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "matplotlib"},
     ),
     "robot/links": Folder(
-        may_use={*("base", "joint", "recording", "recording/wide")}, packages={"numpy", "pinocchio"}
+        may_use={"base", "joint", "recording", "recording/wide"}, packages={"numpy", "pinocchio"}
     ),
     "robot/motion": Folder(
         may_use={"base", "problem", "recording", "recording/wide", "robot/links"},
         packages={"numpy"},
     ),
     "robot/balance": Folder(
-        may_use={
-            "balance",
-            "base",
-            "estimate",
-            "identification/inference",
-            "identification/search",
-            "robot/links",
-            "robot/motion",
-        },
+        may_use={"balance", "identification/search", "robot/links", "robot/motion"},
         packages={"numpy"},
     ),
     "robot/result": Folder(
@@ -233,7 +225,7 @@ FOLDERS: dict[str, Folder] = {
     "exports": Folder(
         may_use={
             *("base", "joint", "estimate", "simulation", "identification", "problem"),
-            *("robot/links", "robot/balance", "robot/result"),
+            *("robot/links", "robot/result"),
         },
         packages={"numpy", "scipy"},
     ),

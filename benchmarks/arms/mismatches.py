@@ -11,7 +11,7 @@ from simulated_arm import random_motion, run
 import jointid as jid
 from arms.seven import URDF, Arm, Errors, Sensors, of_estimate, random_arm, recorded
 from arms.tx40_tables import percent
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 FAR = 0.05
 

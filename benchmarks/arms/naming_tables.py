@@ -10,7 +10,7 @@ import jointid as jid
 from arms.mismatches import MISMATCHES, late
 from arms.seven import URDF, Errors, Sensors, of_estimate, random_arm, recorded, simulated
 from arms.tx40_tables import percent
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 DELAYS = (0.0, 1e-3, 3e-3, 10e-3)  # [s]
 NEAR = 3e-4  # [s]

@@ -21,7 +21,7 @@ from arms.seven import (
     simulated,
 )
 from arms.tx40_tables import percent
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 NEAR = 0.03
 NOISES = (1e-5, 3e-5, 1e-4, 3e-4)  # [rad]

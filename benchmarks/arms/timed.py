@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import jointid as jid
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 URDF = Path(__file__).resolve().parents[2] / "tests" / "simulated_arm" / "seven_joints.urdf"
 

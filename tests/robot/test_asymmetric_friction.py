@@ -9,7 +9,7 @@ import pytest
 from small_arm import VISCOUS, recording, urdf
 
 import jointid as jid
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 pytest.importorskip("pinocchio")
 DIFFERENCE, OFFSET = 0.3, 0.2  # of the elbow, half of what is more in the positive direction

@@ -7,7 +7,7 @@ import pytest
 from small_arm import COULOMB, ROTOR, URDF, VISCOUS, recording, urdf
 
 import jointid as jid
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 pytest.importorskip("pinocchio")
 

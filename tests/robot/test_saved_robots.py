@@ -14,7 +14,7 @@ from small_arm import recording, urdf
 
 import jointid as jid
 from jointid.report.robot_page import robot_report
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 pytest.importorskip("pinocchio")
 

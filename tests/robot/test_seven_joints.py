@@ -19,7 +19,7 @@ from simulated_arm import (
 )
 
 import jointid as jid
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 pytest.importorskip("pinocchio")
 

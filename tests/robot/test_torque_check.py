@@ -13,7 +13,7 @@ import small_arm
 import jointid as jid
 from jointid.problem.low_pass import low_passed
 from jointid.robot import identifying
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 pytest.importorskip("pinocchio")
 

@@ -14,7 +14,7 @@ from simulated_arm import JOINTS, URDF, Arm, Run, Sensors, random_arm, random_mo
 
 import jointid as jid
 from jointid.estimate.findings import Finding
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 
 pinocchio = pytest.importorskip("pinocchio")
 

@@ -11,7 +11,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.exports.urdf_model import is_joint
 from jointid.exports.xml_patch import Element, comment, elements, tag_end
-from jointid.robot.balance.inertia import FREE, URDF
+from jointid.robot.links.inertia_modes import FREE, URDF
 from jointid.robot.result.result import RobotEstimate
 
 Array = NDArray[np.float64]

@@ -16,10 +16,10 @@ from jointid.comparison.judging import Entrant, judged
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance.held_out import blocks_of, part_of_balance, predicted_torque
-from jointid.robot.balance.inertia import MODES, Inertia
 from jointid.robot.fit.aligning import aligned
 from jointid.robot.fit.attempt import Attempt, Request, fitted
 from jointid.robot.identifying import identify_robot
+from jointid.robot.links.inertia_modes import MODES, Inertia
 from jointid.robot.links.models import MODELS, PLAIN, SHAPED, friction_models, name_of
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.request import least_speeds, recordings_of

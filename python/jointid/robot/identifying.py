@@ -14,7 +14,6 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import check_flag
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.balance.inertia import FREE, MODES, Inertia
 from jointid.robot.checks.cross_checking import cross_checked, disagreement, slow_motion
 from jointid.robot.checks.torque_check import wrong_torques
 from jointid.robot.facts.assumptions import assumption_findings
@@ -25,6 +24,7 @@ from jointid.robot.facts.unexamined_causes import unexamined
 from jointid.robot.fit.aligning import aligned, delay_findings
 from jointid.robot.fit.attempt import Request, attempted
 from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
+from jointid.robot.links.inertia_modes import FREE, MODES, Inertia
 from jointid.robot.links.models import friction_models
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import plain_signals

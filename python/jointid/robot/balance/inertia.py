@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,17 +10,12 @@ from numpy.typing import NDArray
 from jointid.robot.balance.balance import Balance
 from jointid.robot.balance.prior import Prior
 from jointid.robot.balance.solving import PriorRows
+from jointid.robot.links.inertia_modes import FREE, SCALED
 from jointid.robot.links.link_tree import INERTIAL, INERTIAL_UNITS
 from jointid.robot.links.momentum import columns_of
 from jointid.robot.links.robot import Robot
 
 Array = NDArray[np.float64]
-
-Inertia = Literal["urdf", "scaled", "free"]
-URDF: Inertia = "urdf"
-SCALED: Inertia = "scaled"
-FREE: Inertia = "free"
-MODES: tuple[Inertia, ...] = (URDF, SCALED, FREE)
 
 _STATES = 64  # random ones: far more rows than parameters
 _DEPENDENT = 1e-8  # what is left of a column, of its length, that the others explain

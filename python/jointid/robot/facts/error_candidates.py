@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.robot.balance.inertia import FREE, SCALED, moment_columns
+from jointid.robot.balance.inertia import moment_columns
 from jointid.robot.facts.perturbed import moved_zeros, tilted_gravity
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.fit.excerpt_rows import ExcerptRows, Share
+from jointid.robot.links.inertia_modes import FREE, SCALED
 from jointid.robot.links.robot import Robot
 
 Array = NDArray[np.float64]

@@ -9,7 +9,6 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, rounded, two_digits
-from jointid.robot.balance.inertia import FREE, SCALED
 from jointid.robot.facts.error_candidates import (
     CENTRE,
     LINK,
@@ -21,6 +20,7 @@ from jointid.robot.facts.error_candidates import (
 )
 from jointid.robot.facts.wrong_facts import WrongFact
 from jointid.robot.fit.zeros import Zeros
+from jointid.robot.links.inertia_modes import FREE, SCALED
 from jointid.robot.links.robot import Robot
 from jointid.robot.result.finding_types import TYPES, listed, titled
 

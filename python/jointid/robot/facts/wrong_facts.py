@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.robot.balance.inertia import FREE, URDF
 from jointid.robot.fit.quick_fit import quick_fit_of, thinned
+from jointid.robot.links.inertia_modes import FREE, URDF
 from jointid.robot.links.parameters import LINEAR_FRICTION
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.motion import Motion

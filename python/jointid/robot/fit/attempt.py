@@ -17,10 +17,10 @@ from jointid.robot.balance.choice import certainty, with_shapes
 from jointid.robot.balance.fit import Fit
 from jointid.robot.balance.inertia import basis_of, inertia_columns
 from jointid.robot.balance.products import Products
-from jointid.robot.balance.resampling import RobotDraws
 from jointid.robot.balance.shaped_terms import ShapedTerms, solved_with_shapes
 from jointid.robot.balance.solving import PriorRows, solved
 from jointid.robot.fit.conclusion import concluded
+from jointid.robot.fit.resampling import draws_of
 from jointid.robot.fit.zeros import Zeros, zeros_of
 from jointid.robot.links.models import PLAIN, SHAPED, is_asymmetric, modelled, name_of
 from jointid.robot.links.robot import Robot
@@ -122,7 +122,7 @@ def _solved(
 ) -> tuple[RobotEstimate, Fit]:
     fit, prior = fitted(robot, balance, mode, models)
     estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
-    return replace(estimate, draws=RobotDraws.of(balance, fit, prior)), fit
+    return replace(estimate, draws=draws_of(balance, fit, prior)), fit
 
 
 def fitted(

@@ -14,8 +14,8 @@ from jointid.estimate.student import quantile
 from jointid.problem.window_table import WindowTable
 from jointid.robot.balance.balance import Balance
 from jointid.robot.balance.fit import Fit
-from jointid.robot.balance.inertia import SCALED
 from jointid.robot.links.bodies import possible
+from jointid.robot.links.inertia_modes import SCALED
 from jointid.robot.links.models import terms_of
 from jointid.robot.links.parameters import DIFFERENCE, parameter_facts
 from jointid.robot.links.robot import Robot

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance.balance import Balance, balance_of
-from jointid.robot.balance.inertia import URDF, basis_of, inertia_columns
+from jointid.robot.balance.inertia import basis_of, inertia_columns
 from jointid.robot.balance.products import Products
 from jointid.robot.balance.solving import PriorRows, solved
+from jointid.robot.links.inertia_modes import URDF
 from jointid.robot.links.models import PLAIN
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.motion import Motion

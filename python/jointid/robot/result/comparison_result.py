@@ -13,7 +13,7 @@ from jointid.base.error_text import printable
 from jointid.base.text_table import aligned
 from jointid.estimate.answers import cut, findings
 from jointid.estimate.wording import rounded, two_digits
-from jointid.robot.balance.inertia import Inertia
+from jointid.robot.links.inertia_modes import Inertia
 from jointid.robot.result.answers import FINDINGS, lines_of_joints
 from jointid.robot.result.result import RobotEstimate
 

@@ -12,7 +12,8 @@ from jointid.estimate.objections import LARGE
 from jointid.estimate.statistics import distance_from_bound
 from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.identification.inference.purposes import Torques
-from jointid.robot.balance.inertia import FREE, InertiaColumns
+from jointid.robot.balance.inertia import InertiaColumns
+from jointid.robot.links.inertia_modes import FREE
 from jointid.robot.links.models import linear_terms
 from jointid.robot.links.parameters import LINEAR_FRICTION
 from jointid.robot.result.finding_types import TYPES, listed

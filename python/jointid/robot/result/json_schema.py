@@ -2,7 +2,7 @@
 
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.estimate.json_schema import FINDING, MATRIX, PARAMETER, RESIDUALS, VERDICT, WINDOWS
-from jointid.robot.balance.inertia import MODES
+from jointid.robot.links.inertia_modes import MODES
 from jointid.robot.links.models import MODELS, modelled
 
 _MOST = 1000  # joints

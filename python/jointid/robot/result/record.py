@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,8 @@ from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.problem.window_table import WindowTable
 from jointid.robot.links.robot import Robot
+from jointid.robot.result.bootstrap import RobotDraws
 from jointid.robot.result.cross_check import CrossCheck
-
-if TYPE_CHECKING:
-    from jointid.robot.balance.resampling import RobotDraws
 
 Array = NDArray[np.float64]
 

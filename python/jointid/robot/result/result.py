@@ -159,7 +159,7 @@ class RobotEstimate(RobotEstimateRecord, Shown):
         >>> found.bootstrap().parameters["joint_1.coulomb"].ratio  # doctest: +SKIP
         1.02
         """
-        from jointid.robot.balance.resampling import bootstrapped
+        from jointid.robot.result.bootstrap import bootstrapped
 
         return bootstrapped(self.draws, self.parameters, self.robot.names, n, seed)
 

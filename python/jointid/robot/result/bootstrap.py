@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.balance.resampling import Cells, cells_of, draws
-from jointid.balance.segments import segment_length
+from jointid.balance.resampling import Cells, draws
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.bootstrap import Bootstrap
+from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.inference.bootstrap import drawn_parameter
-
-if TYPE_CHECKING:
-    from jointid.estimate.statistics import ParameterEstimate
-    from jointid.robot.balance.balance import Balance
-    from jointid.robot.balance.fit import Fit
-    from jointid.robot.balance.solving import PriorRows
 
 Array = NDArray[np.float64]
 
@@ -35,36 +28,6 @@ class RobotDraws:
     upper: Array  # the same
     values: Array
     labels: tuple[tuple[int | None, str], ...]
-
-    @classmethod
-    def of(cls, balance: Balance, fit: Fit, prior: PriorRows) -> Self:
-        """Return the sums of a fit; what is known beforehand of further parameters stands behind its own."""
-        rows = balance.rows
-        weight = 1.0 / fit.scatter[rows.joint]
-        length = segment_length(rows.start, rows.stop, rows.piece)
-        cells = cells_of(
-            fit.jacobian * weight[:, None],
-            -fit.residual * weight,
-            recording=rows.piece,
-            begin=rows.start,
-            end=rows.stop,
-            length=length,
-        )
-        prior = prior.padded(fit.values.size - prior.matrix.shape[1])
-        missed = prior.matrix @ fit.values - prior.target
-        lower, upper = np.array(fit.bounds).T
-        return cls(
-            cells=replace(
-                cells,
-                sure_square=prior.matrix.T @ prior.matrix,
-                sure_gradient=prior.matrix.T @ missed,
-            ),
-            block=length,
-            lower=lower,
-            upper=upper,
-            values=fit.values,
-            labels=fit.labels,
-        )
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the sums out of a pickled estimate."""
