@@ -203,7 +203,7 @@ class Prepared:
     def _choices(self, search: Search) -> dict[str, Any]:
         """The settings without the recordings, whose fingerprints take a look at every byte."""
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
-        choices = {
+        return {
             "version": _core.__version__,
             "kind": self.given[0].kind,
             "method": search.chosen_method,
@@ -215,18 +215,12 @@ class Prepared:
             **_of_gain(choice, penalty),
             "windows": penalty.window_duration,
             "cumulative": penalty.cumulative,
-            "torque_hold": problem.settings.torque_hold,
-            "mask_standstill": problem.settings.mask_standstill,
-            "shift": dict(problem.shift),
-            "min_speed": problem.min_speed,
+            **problem.settings.kept,
             **_of_instant(self.refinements.sensor_instant),
             "seed": search.seed,
             "ga": None if search.chosen_method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
         }
-        unusual = self.settings.unusual.items()  # `parameters` are in the joint
-        others = {n: v for n, v in unusual if n not in choices and n != "parameters"}
-        return choices | others
 
 
 def _of_instant(instant: SensorInstant | None) -> dict[str, Any]:

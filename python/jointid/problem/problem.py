@@ -124,17 +124,12 @@ class Problem:
         self, made: Callable[..., Made], windows: Windows, residual: str | None = None
     ) -> Made:
         options = self.window_options(windows)
-        recordings = self.in_core  # its errors are values already
+        arguments = self.in_arguments  # its errors are values already
         try:
             return made(
-                recordings=recordings,
-                terms=list(self.choice.terms),
                 windows=options,
                 residual=_core.Residual[residual or self.choice.residual],
-                mask_standstill=self.settings.mask_standstill,
-                gear_ratio=self.choice.gear_ratio,
-                per_recording=list(self.choice.per_recording),
-                threads=self.threads,
+                **arguments,
             )
         except InputError:
             raise_if_slowly_sampled(self.recordings)
@@ -223,6 +218,18 @@ class Problem:
     def in_core(self) -> list[_core.Recording]:
         """The recordings for the core; they share the arrays, and each computes its mask once."""
         return [self._in_core(number) for number in range(len(self.recordings))]
+
+    @property
+    def in_arguments(self) -> dict[str, Any]:
+        """The problem as arguments of functions of the core."""
+        return {
+            "recordings": self.in_core,
+            "terms": list(self.choice.terms),
+            "mask_standstill": self.settings.mask_standstill,
+            "gear_ratio": self.choice.gear_ratio,
+            "per_recording": list(self.choice.per_recording),
+            "threads": self.threads,
+        }
 
     @property
     def masked(self) -> tuple[list[_core.Recording], bool]:

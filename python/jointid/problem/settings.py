@@ -243,11 +243,10 @@ class Settings:
         return cls(**found | {"model": stated_model(options)})
 
     @property
-    def unusual(self) -> dict[str, Any]:
-        """What differs from its default; own terms are in the model."""
-        usual = {name: option.default for name, option in options_of(ProblemOptions).items()}
-        found = {name: getattr(self, name) for name in usual if name != "terms"}
-        return {name: value for name, value in found.items() if value != usual[name]}
+    def kept(self) -> dict[str, Any]:
+        """What an estimate keeps of them as it is: of the others it says what was chosen."""
+        others = {"model", "terms", "parameters", "residual", "windows"}
+        return {n: getattr(self, n) for n in options_of(ProblemOptions) if n not in others}
 
 
 USUAL = Settings.of({})

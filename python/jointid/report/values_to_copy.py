@@ -7,8 +7,10 @@ from typing import Any
 
 from jointid._core import GaOptions
 from jointid.base.html import Html, element
+from jointid.base.options import options_of
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_of
+from jointid.problem.settings import ProblemOptions
 
 
 def values_sections(estimate: Estimate) -> list[Html]:
@@ -63,15 +65,9 @@ def program(estimate: Estimate) -> str:
     named = ", ".join(
         f"{' '.join(str(run['name'] or 'unnamed').split())} ({run['fingerprint']})" for run in runs
     )
-    stated = {
-        "model": str(model_of(settings)),
-        "residual": settings["residual"],
-        "windows": windows,
-        "torque_hold": settings["torque_hold"],
-        "mask_standstill": settings["mask_standstill"],
-        "shift": settings.get("shift"),
-        "min_speed": settings.get("min_speed"),
-    }
+    # Own terms are in the model; the settings' terms are those of the core.
+    found = {**settings, "model": str(model_of(settings)), "windows": windows, "terms": None}
+    stated = {name: found.get(name) for name in options_of(ProblemOptions)}
     arguments = [f"    {name}={value!r}," for name, value in stated.items() if value is not None]
     genetic = ""
     if settings["ga"] is not None and (changed := _changed(settings["ga"])):

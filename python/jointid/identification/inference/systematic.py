@@ -32,15 +32,10 @@ def other_windows(
         return _refitted(problem, penalty, windows, lower, upper, best)
     halved, doubled = _core.window_shifts(
         penalty,
-        recordings=problem.in_core,
-        terms=list(problem.choice.terms),
-        mask_standstill=problem.settings.mask_standstill,
-        gear_ratio=problem.choice.gear_ratio,
-        per_recording=list(problem.choice.per_recording),
         lower=lower,
         upper=upper,
         best=best,
-        threads=problem.threads,
+        **problem.in_arguments,
     )
     return (
         None if halved is None else halved - best,
