@@ -12,8 +12,8 @@ import small_arm
 
 import jointid as jid
 from jointid.robot.facts.unexamined_causes import CAUSES
-from jointid.robot.motion import motion
 from jointid.robot.motion.loud_samples import quiet_velocity
+from jointid.robot.motion.motion import motion
 
 pytest.importorskip("pinocchio")
 

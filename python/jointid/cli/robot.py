@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
+from jointid.base.options import options_of
 from jointid.cli.advice import without_options
 from jointid.cli.arguments import with_terms
 from jointid.cli.options import stated_options
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from jointid.robot.result.result import RobotEstimate
 
 _OF_ONE_JOINT = ("joint", "checkpoint", "resume", "selftest", "causes", "population", "generations")
-_OF_ROBOTS = ("windows", "shift", "min_speed")
 _READ = ("torque_hold", "terms")  # with the recordings, and with the model
 
 
@@ -154,14 +154,16 @@ def saved_robot(path: Path) -> RobotEstimate | None:
 
 def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
     """The options of a robot; refuse what holds for one joint only, before the work."""
-    options = stated_options(arguments)
+    from jointid.robot.options import RobotFitOptions
+
+    options, own = stated_options(arguments), options_of(RobotFitOptions)
     for name in _OF_ONE_JOINT:
         if getattr(arguments, name, None) not in (None, False):
             raise InputError(
                 "this is for one joint, not for a robot",
                 argument=f"ga.{name}" if name in ("population", "generations") else name,
             )
-    of_one = [name for name in options if name not in (*_OF_ROBOTS, *_READ)]
+    of_one = [name for name in options if name not in (*own, *_READ)]
     for name in (
         *of_one,
         *(n for n in ("drop_copies", "drop_invalid") if getattr(arguments, n, None)),
@@ -172,4 +174,4 @@ def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
         raise InputError("a robot's estimate is saved as .json", argument="save", value=save)
     check_folder("save", save)
     check_page("report", arguments.report)
-    return {name: value for name, value in options.items() if name in _OF_ROBOTS}
+    return {name: value for name, value in options.items() if name in own}

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from jointid.balance.held_out import in_errors, one_error, preferred
 from jointid.base.argument_checks import require_kind, whole_number
 from jointid.base.errors import InputError
+from jointid.base.options import checked, takes
 from jointid.comparison.judging import Entrant, judged
 from jointid.joint.model import Model
+from jointid.problem.settings import MaskOptions
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance.held_out import blocks_of, part_of_balance, predicted_torque
 from jointid.robot.fit.aligning import aligned
@@ -23,14 +25,16 @@ from jointid.robot.links.inertia_modes import MODES, Inertia
 from jointid.robot.links.models import MODELS, PLAIN, SHAPED, friction_models, name_of
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.request import least_speeds, recordings_of
-from jointid.robot.motion.shifts import Shift, shift_option
+from jointid.robot.motion.shifts import shift_option
 from jointid.robot.motion.stamps import all_on_even_clocks
+from jointid.robot.options import RobotFitOptions
 from jointid.robot.result.comparison_result import ComparedRobotModel, RobotComparison
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 
+@takes(RobotFitOptions)
 def compare_robot_models(
     recordings: RobotRecording | Sequence[RobotRecording],
     robot: Robot,
@@ -38,10 +42,7 @@ def compare_robot_models(
     models: Sequence[Model | str] = (PLAIN, SHAPED),
     inertia: Inertia | Sequence[Inertia] = MODES,
     folds: int = 5,
-    windows: float | None = None,
-    min_speed: float | Sequence[float] | Mapping[str, float] | None = None,
-    mask_standstill: bool = True,
-    shift: Shift | None = None,
+    **options: Unpack[RobotFitOptions],
 ) -> RobotComparison:
     """Compare what is identified of a robot by how well it predicts torque that it was not fitted to.
 
@@ -49,7 +50,7 @@ def compare_robot_models(
     is fitted to all blocks but one and predicts the torque of that block, for each block in turn. The winner is the
     candidate with the fewest parameters that is not worse than the best by more than one standard error of their
     difference, block by block. With its inertia, each joint's model is chosen by the same rule from the joint's own
-    torque.
+    torque. The options are the same for all candidates; delays and zeros that are found come from all recordings.
 
     Parameters
     ----------
@@ -61,8 +62,7 @@ def compare_robot_models(
         Any of "urdf", "scaled" and "free" (all by default).
     folds : int
         Number of blocks of one recording, or largest number of groups of several. Default 5.
-    windows, min_speed, mask_standstill, shift
-        As in `identify_robot`; the same for all candidates. Delays and zeros that are found come from all recordings.
+    **options
 
     Returns
     -------
@@ -85,16 +85,16 @@ def compare_robot_models(
     modes = _modes(inertia)
     every = _models(models, robot)
     count = whole_number("folds", folds, 2, 1000)
-    slowest = least_speeds(min_speed, robot)
+    slowest, mask = least_speeds(options["min_speed"], robot), checked(MaskOptions, options)
     request = Request(
         inertia=modes[0],
         models=(PLAIN,) * robot.n,
-        windows=windows,
+        windows=options["windows"],
         slowest=slowest,
-        mask_standstill=mask_standstill,
+        **mask,
         further_modes=modes[1:],
     )
-    attempt = aligned(all_on_even_clocks(given), robot, request, shift).attempt
+    attempt = aligned(all_on_even_clocks(given), robot, request, options["shift"]).attempt
     blocks = blocks_of(attempt.balance.rows, attempt.runs, count)
     rows, left_out = [], {}
     for mode in modes:
@@ -121,7 +121,7 @@ def compare_robot_models(
         model=found,
         windows=attempt.duration,
         min_speed=slowest.tolist(),
-        mask_standstill=mask_standstill,
+        **mask,
         shift=shift_option(attempt.delay, attempt.robot),
     )
     several = len(given) > 1

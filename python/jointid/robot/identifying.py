@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Unpack
 
 import numpy as np
 
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
-from jointid.joint.checks import check_flag
-from jointid.joint.model import Model
+from jointid.base.options import checked, takes
+from jointid.problem.settings import MaskOptions
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.checks.cross_checking import cross_checked, disagreement, slow_motion
 from jointid.robot.checks.torque_check import wrong_torques
@@ -29,23 +30,21 @@ from jointid.robot.links.models import friction_models
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import plain_signals
 from jointid.robot.motion.request import least_speeds, recordings_of
-from jointid.robot.motion.shifts import Shift, shift_option, torque_shift
+from jointid.robot.motion.shifts import shift_option, torque_shift
 from jointid.robot.motion.stamps import all_on_even_clocks
+from jointid.robot.options import RobotOptions
 from jointid.robot.result.cross_check import CrossCheck
 from jointid.robot.result.findings import RANK
 from jointid.robot.result.result import RobotEstimate
 
 
+@takes(RobotOptions)
 def identify_robot(
     recordings: RobotRecording | Sequence[RobotRecording],
     robot: Robot,
     *,
     inertia: Inertia = "urdf",
-    model: Model | str | Mapping[str, Model | str] | None = None,
-    windows: float | None = None,
-    min_speed: float | Sequence[float] | Mapping[str, float] | None = None,
-    mask_standstill: bool = True,
-    shift: Shift | None = None,
+    **options: Unpack[RobotOptions],
 ) -> RobotEstimate:
     """Identify the friction of a robot's joints from recordings of all of them, without accelerations.
 
@@ -62,25 +61,7 @@ def identify_robot(
     inertia : {"urdf", "scaled", "free"}
         Whether the links' inertias are those of the URDF, scaled link by link, or identified: as base parameters,
         the combinations that motion shows. Default ``"urdf"``.
-    model : Model, str or mapping, optional
-        Friction of the joints: "coulomb_viscous", "stribeck", or "auto": each joint has static friction if
-        that predicts its held-out torque better. With ``:asymmetric`` behind it, or as ``Model(asymmetric=True)``,
-        friction differs between the directions: "viscous" is then the mean, and "viscous_difference" half of what is
-        more in the positive direction; half the difference of Coulomb friction is in "torque_offset". A mapping from
-        joints' names to models says it for some of them. Default: the robot's models, else "auto".
-    windows : float or int, optional
-        Duration of the windows [s]; a whole number is how many. Default: what the velocities' noise asks for, at most
-        0.1 s; of recordings longer than some minutes towards 0.1 s, because there are enough of them.
-    min_speed : float, sequence or mapping of float, optional
-        Speed below which a joint's balance is left out [rad/s or m/s]; one for all, one a joint, or by name.
-        Default 0.
-    mask_standstill : bool
-        Whether to leave out where a joint stands still. Default True.
-    shift : mapping, optional
-        Delay of the "torque" against the position [s], to be taken away; positive: the torque is late. One for all
-        joints, a sequence with one for each, or a mapping by joints' names, e.g. ``{"torque": 0.001}``. An empty
-        mapping shifts nothing. Default: the delay that is certain, of all joints alike and of a joint that clearly has
-        another, but for a torque that is early by more than a sample; the findings tell it.
+    **options
 
     Returns
     -------
@@ -111,14 +92,15 @@ def identify_robot(
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
         )
-    check_flag("", "mask_standstill", mask_standstill)
+    mask = checked(MaskOptions, options)
     request = Request(
         inertia=inertia,
-        models=tuple(friction_models(model, robot.names, robot.models)),
-        windows=windows,
-        slowest=least_speeds(min_speed, robot),
-        mask_standstill=mask_standstill,
+        models=tuple(friction_models(options["model"], robot.names, robot.models)),
+        windows=options["windows"],
+        slowest=least_speeds(options["min_speed"], robot),
+        **mask,
     )
+    shift = options["shift"]
     requested_delay = None if shift is None else torque_shift(shift, robot)
     signals = plain_signals(recorded, robot)
     runs, given = all_on_even_clocks(recorded), robot
@@ -165,7 +147,7 @@ def identify_robot(
         "window_duration": attempt.duration,
         "zero_offsets": list(robot.zero_offsets or (0.0,) * robot.n),
         "min_speed": [float(each) for each in request.slowest],
-        "mask_standstill": mask_standstill,
+        **mask,
         "shift": shift_option(attempt.delay, robot),
         "version": _core.__version__,
         "recordings": [run.name for run in runs],

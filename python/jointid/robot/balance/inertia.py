@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from jointid.robot.balance.balance import Balance
 from jointid.robot.balance.prior import Prior
 from jointid.robot.balance.solving import PriorRows
-from jointid.robot.links.inertia_modes import FREE, SCALED
+from jointid.robot.links.inertia_modes import FREE, SCALED, URDF
 from jointid.robot.links.link_tree import INERTIAL, INERTIAL_UNITS
 from jointid.robot.links.momentum import columns_of
 from jointid.robot.links.robot import Robot
