@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.problem.own_integrals import known_torque, own_series
 from jointid.problem.recordings import output_torque, raise_if_slowly_sampled
@@ -248,7 +247,6 @@ class Problem:
             hold = self.recordings[number].torque_hold
         if hold is None:
             hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"
-        check_choice("", "torque_hold", hold, _HOLDS)
         return hold
 
     @property

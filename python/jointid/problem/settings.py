@@ -79,8 +79,8 @@ class MaskOptions(TypedDict, total=False):
     ]
 
 
-class BalanceOptions(MaskOptions, total=False):
-    """What poses the balance of a joint, on line, too."""
+class SignalOptions(TypedDict, total=False):
+    """What is known of the parameters, and how the signals are read."""
 
     parameters: Annotated[
         Parameters | None,
@@ -122,6 +122,10 @@ class BalanceOptions(MaskOptions, total=False):
     ]
 
 
+class BalanceOptions(SignalOptions, MaskOptions, total=False):
+    """What poses the balance of a joint, on line, too."""
+
+
 class FitOptions(BalanceOptions, total=False):
     """What all fits of a comparison share."""
 
@@ -157,7 +161,7 @@ class FitOptions(BalanceOptions, total=False):
 
 
 class ModelOptions(TypedDict, total=False):
-    """Which model is identified, and from which part of the motion."""
+    """Which model is identified."""
 
     model: Annotated[
         Model | ModelName | Mapping[str, Any] | None,
@@ -184,6 +188,11 @@ class ModelOptions(TypedDict, total=False):
             metavar="SIGNAL=KIND",
         ),
     ]
+
+
+class SpeedOptions(TypedDict, total=False):
+    """From which part of the motion."""
+
     min_speed: Annotated[
         float | None,
         Option(
@@ -200,7 +209,7 @@ class ModelOptions(TypedDict, total=False):
     ]
 
 
-class ProblemOptions(ModelOptions, FitOptions, total=False):
+class ProblemOptions(ModelOptions, FitOptions, SpeedOptions, total=False):
     """All options that pose a problem."""
 
 
@@ -221,13 +230,13 @@ class Settings:
     """The options of a call, complete and checked; None: chosen from the recordings, or as the joint has it."""
 
     model: Model  # with the own terms
-    min_speed: float | None
-    windows: Windows
-    shift: Mapping[str, float] | None
     parameters: Parameters | None
     residual: Residual | None
     torque_hold: TorqueHold | None
     mask_standstill: bool
+    windows: Windows
+    shift: Mapping[str, float] | None
+    min_speed: float | None
 
     @classmethod
     def of(cls, options: Mapping[str, Any] | ProblemOptions) -> Self:

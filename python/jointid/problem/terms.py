@@ -9,7 +9,6 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.joint.model import Load, Model, ResolvedModel
 from jointid.problem.own_integrals import centred
@@ -99,7 +98,6 @@ def choose_terms(
     # The instruments project the reading, which load friction needs apart for each direction of motion.
     usual = "instruments" if sensor and not model.load_friction else "torque"
     residual = request.residual or usual
-    check_choice("", "residual", residual, RESIDUALS)
     if residual != "torque" and not sensor:
         raise InputError(
             "the recording has no torque sensor",

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 from jointid.base.errors import InputError
-from jointid.joint.checks import check_mapping
 from jointid.joint.joint import Joint
 from jointid.joint.own_terms import is_fixed
 from jointid.joint.parameters import Parameter, merge
@@ -47,8 +46,6 @@ def parameter_bounds(
     InputError
         The call names a parameter that is not among them, or bounds that contradict each other.
     """
-    if changes is not None:
-        check_mapping("", "parameters", changes)
     gains = {n: Parameter(name=n, value=1.0, vary=False) for n in names if is_fixed(n)}
     table = merge(gains | known_values(joint), joint.parameters if joint is not None else {})
     table = merge(
