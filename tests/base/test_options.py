@@ -12,7 +12,10 @@ class Meal(TypedDict, total=False):
     """What a guest may order."""
 
     dish: Annotated[str, Option(kind="str", help="What is cooked. " * 8, default="soup")]
-    spoons: Annotated[int | None, Option(kind="int, optional", help="How many.", checked=abs)]
+    spoons: Annotated[
+        int | None,
+        Option(kind="int, optional", help="How many.", checked=lambda _, value: abs(value)),
+    ]
 
 
 @takes(Meal)

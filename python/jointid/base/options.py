@@ -28,7 +28,7 @@ class Option:
         What it means, for the reference.
     default : object
     checked : callable
-        Returns a value as it is used, or raises an `InputError`. Default: any value as it is.
+        Takes name and value; returns the value as it is used, or raises an `InputError`. Default: any value as it is.
     flag : str
         Its name on the command line; empty: it has none.
     phrase : str
@@ -42,7 +42,7 @@ class Option:
     kind: str
     help: str
     default: object = None
-    checked: Callable[[Any], Any] = lambda value: value
+    checked: Callable[[str, Any], Any] = lambda _, value: value
     flag: str = ""
     phrase: str = ""
     form: str = "text"
@@ -63,7 +63,7 @@ def checked(options: type, stated: Mapping[str, Any]) -> dict[str, Any]:
         A value that cannot be used.
     """
     return {
-        name: option.checked(stated.get(name, option.default))
+        name: option.checked(name, stated.get(name, option.default))
         for name, option in options_of(options).items()
     }
 

@@ -15,7 +15,7 @@ class SearchOptions(TypedDict, total=False):
         Option(
             kind="Search or str, optional",
             help='Settings of the search, or a method: "separable" (default), "ga" or "random".',
-            checked=Search.of,
+            checked=lambda _, value: Search.of(value),
         ),
     ]
 

@@ -26,14 +26,14 @@ def checked_duration(name: str, value: Any) -> float:
     return seconds
 
 
-def _windows(value: Any) -> float | None:
+def _windows(name: str, value: Any) -> float | None:
     if value is None:
         return None
-    seconds = checked_duration("windows", value)
+    seconds = checked_duration(name, value)
     if isinstance(value, numbers.Integral):
         raise InputError(
             "the duration of a window in seconds is expected, like 0.02",
-            argument="windows",
+            argument=name,
             value=value,
         )
     return seconds

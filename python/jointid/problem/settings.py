@@ -4,7 +4,7 @@ A new option is an entry of a `TypedDict` below, of the narrowest that all its f
 `Settings`. Signatures, reference, command line and app follow.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Annotated, Any, Self, TypedDict, get_args
 
 import numpy as np
@@ -26,40 +26,34 @@ Parameters = Mapping[str, float | Mapping[str, object] | Parameter]
 _FASTEST = 1e6  # [rad/s or m/s]
 
 
-def _residual(value: Any) -> Any:
-    if value is not None:
-        check_choice("", "residual", value, RESIDUALS)
+def _or_none(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
+    """The check of an option that may be left out."""
+    return lambda name, value: None if value is None else check(name, value)
+
+
+def _one_of(known: Collection[str]) -> Callable[[str, Any], Any]:
+    def check(name: str, value: Any) -> Any:
+        check_choice("", name, value, known)
+        return value
+
+    return _or_none(check)
+
+
+def _flag(name: str, value: Any) -> bool:
+    check_flag("", name, value)
+    return bool(value)
+
+
+def _mapping(name: str, value: Any) -> Any:
+    check_mapping("", name, value)
     return value
 
 
-def _torque_hold(value: Any) -> Any:
-    if value is not None:
-        check_choice("", "torque_hold", value, get_args(TorqueHold))
-    return value
-
-
-def _parameters(value: Any) -> Any:
-    if value is not None:
-        check_mapping("", "parameters", value)
-    return value
-
-
-def _mask_standstill(value: Any) -> Any:
-    check_flag("", "mask_standstill", value)
-    return value
-
-
-def _shift(value: Any) -> dict[str, float] | None:
-    return None if value is None else checked_shift(value)
-
-
-def _min_speed(value: Any) -> float | None:
-    if value is None:
-        return None
+def _speed(name: str, value: Any) -> float:
     number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     if not number or not 0.0 <= float(value) < _FASTEST:
         raise InputError(
-            "a speed of 0 or more is expected, in rad/s or m/s", argument="min_speed", value=value
+            "a speed of 0 or more is expected, in rad/s or m/s", argument=name, value=value
         )
     return float(value)
 
@@ -74,7 +68,7 @@ class MaskOptions(TypedDict, total=False):
             help="Whether to leave out the parts in which the joint sticks or stands still, where friction is "
             "set-valued and the model does not apply. Default True.",
             default=True,
-            checked=_mask_standstill,
+            checked=_flag,
         ),
     ]
 
@@ -88,7 +82,7 @@ class SignalOptions(TypedDict, total=False):
             kind="mapping, optional",
             help='Changes by name: a number fixes the parameter; {"value", "min", "max", "vary"} or a `Parameter` '
             "changes those fields. Values in SI units.",
-            checked=_parameters,
+            checked=_or_none(_mapping),
             flag="--set",
             phrase="fix a parameter (SI)",
             form="numbers by name",
@@ -104,7 +98,7 @@ class SignalOptions(TypedDict, total=False):
             'biases. "sensor" (the thesis) compares the reading with what the torque leaves for it, "torque" (default '
             'without a sensor) the torque with the reading. Where instruments are weak the default is "sensor", and '
             "`settings` says why.",
-            checked=_residual,
+            checked=_one_of(RESIDUALS),
             flag="--residual",
             phrase="residual to minimise: instruments, sensor or torque",
         ),
@@ -115,7 +109,7 @@ class SignalOptions(TypedDict, total=False):
             kind="str, optional",
             help='"zoh" for a torque command held between samples, "linear" for a measured torque. Default: the '
             "recording's, else the joint's, else \"linear\".",
-            checked=_torque_hold,
+            checked=_one_of(get_args(TorqueHold)),
             flag="--torque-hold",
             phrase="torque between samples: zoh (held command) or linear (measured)",
         ),
@@ -136,7 +130,7 @@ class FitOptions(BalanceOptions, total=False):
             help="An int is the approximate number of windows (gaps and several recordings change it), a float their "
             'duration [s]; "cumulative" compares the running integral at each sample, as the thesis\'s MATLAB program '
             "does. Default: the shortest windows that the noise of the velocity allows.",
-            checked=checked_windows,
+            checked=lambda _, value: checked_windows(value),
             flag="--windows",
             phrase="number of windows, duration (0.05s) or cumulative; default: as short as the noise allows",
             form="windows",
@@ -150,7 +144,7 @@ class FitOptions(BalanceOptions, total=False):
             "the signal is late. An empty mapping shifts nothing. Default: the delays that are certain, but for a "
             "torque that is early by more than a sample, as it seems beside a late or coarse position; the "
             "estimate's `delays` and its report tell them.",
-            checked=_shift,
+            checked=_or_none(lambda _, value: checked_shift(value)),
             flag="--shift",
             phrase="delay of torque, sensor or velocity to remove, positive: late; torque=0 removes none (default: "
             "delays that are certain)",
@@ -171,7 +165,7 @@ class ModelOptions(TypedDict, total=False):
             "joint's model. Default: the joint's. Where neither names one, or the name is \"auto\", the model is "
             'chosen by held-out prediction: "coulomb_viscous" or "stribeck", with gravity free or none where that is '
             "neither stated nor known; `Estimate.selection` has the scores.",
-            checked=Model.of,
+            checked=lambda _, value: Model.of(value),
         ),
     ]
     terms: Annotated[
@@ -200,7 +194,7 @@ class SpeedOptions(TypedDict, total=False):
             help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless "
             "slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose friction "
             'depends on slow motion, such as "stribeck". The estimate\'s `slow_motion` tells it.',
-            checked=_min_speed,
+            checked=_or_none(_speed),
             flag="--min-speed",
             phrase="leave out motion slower than this, rad/s or m/s; 0: leave out nothing (default: chosen from the "
             "data)",
