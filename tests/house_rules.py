@@ -164,8 +164,10 @@ FOLDERS: dict[str, Folder] = {
     ),
     "robot/facts": Folder(
         may_use={
+            "balance",
             "base",
             "estimate",
+            "identification/causes",
             "joint",
             "recording/wide",
             "robot/balance",
@@ -196,6 +198,7 @@ FOLDERS: dict[str, Folder] = {
             "base",
             "comparison",
             "joint",
+            "problem",
             "recording/wide",
             "robot/balance",
             "robot/checks",

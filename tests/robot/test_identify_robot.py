@@ -108,7 +108,7 @@ def test_several_recordings_are_one_fit(path: Path, run: jid.RobotRecording) -> 
 def test_pieces_of_a_long_recording_are_joined(
     path: Path, run: jid.RobotRecording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from jointid.robot.balance.fit import attempt
+    from jointid.robot.fit import attempt
 
     robot = jid.Robot.from_urdf(path)
     whole = jid.identify_robot(run, robot)

@@ -12,8 +12,8 @@ import small_arm
 
 import jointid as jid
 from jointid.robot.facts.unexamined_causes import CAUSES
+from jointid.robot.motion import motion
 from jointid.robot.motion.loud_samples import quiet_velocity
-from jointid.robot.motion.motion import motion
 
 pytest.importorskip("pinocchio")
 
@@ -170,23 +170,26 @@ def warming(run: jid.RobotRecording) -> Array:
 
 
 @pytest.mark.parametrize(
-    "fault",
+    ("fault", "cause"),
     [
-        *(rising(0.05), rising(0.1), rising(0.2)),
-        *(loaded(0.05), loaded(0.15), loaded(0.3)),
-        *(sprung(6.0, 0), sprung(3.0, 1), sprung(15.0, 0)),
-        warming,
+        *((rising(width), "slow_motion") for width in (0.05, 0.1, 0.2)),
+        *((loaded(share), "load_friction") for share in (0.05, 0.15, 0.3)),
+        *((sprung(*each), "") for each in ((6.0, 0), (3.0, 1), (15.0, 0))),
+        (warming, "drift"),
     ],
 )
 @pytest.mark.parametrize("inertia", ["urdf", pytest.param("free", marks=pytest.mark.slow)])
-def test_what_is_not_examined_is_listed_and_needs_care(
-    run: jid.RobotRecording, robot: jid.Robot, inertia: Any, fault: Callable[..., Array]
+def test_a_cause_is_named_or_what_is_not_examined_is_listed_and_needs_care(
+    run: jid.RobotRecording, robot: jid.Robot, inertia: Any, fault: Callable[..., Array], cause: str
 ) -> None:
     found = jid.identify_robot(pushed(run, fault(run)), robot, inertia=inertia)
     assert found.verdict.level != "usable"
-    told = [each for each in found.findings if each.code == "unexamined_causes"]
-    assert told
-    assert all(cause in told[0].cause for cause in CAUSES)
+    listed = [each for each in found.findings if each.code == "unexamined_causes"]
+    assert all(each in finding.cause for finding in listed for each in CAUSES)
+    if cause:
+        told = [each for each in found.findings if each.code == cause]
+        assert {each.parameters[0].split(".")[0] for each in told} == set(found.joints)
+    assert bool(cause or "harmonic" in {each.code for each in found.findings}) != bool(listed)
 
 
 def test_what_no_motion_shows_is_not_printed(run: jid.RobotRecording, robot: jid.Robot) -> None:

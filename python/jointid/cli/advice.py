@@ -29,6 +29,7 @@ _VERBS = {
     "identify": "identify",
     "identify_robot": "identify",
     "compare_models": "compare",
+    "compare_robot_models": "compare",
     "sweep": "sweep",
 }
 _VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
@@ -109,11 +110,9 @@ def _for_another(typed: Sequence[str], command: str, verb: str) -> list[str]:
 
 def with_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:
     """Words of a command with options added, or put in the place of those with the same name and key."""
-    kept = _pairs(typed)
-    for option, value in _pairs(options):
-        kept = [words for words in kept if not _same(words, option, value)]
-        kept.append((option, value))
-    return [word for pair in kept for word in pair if word is not None]
+    added = _pairs(options)
+    kept = [words for words in _pairs(typed) if not any(_same(words, *each) for each in added)]
+    return [word for pair in (*kept, *added) for word in pair if word is not None]
 
 
 def without_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:
@@ -153,7 +152,7 @@ def _parts(
         return "identify", *_arguments(action.arguments, command, model)
     if action.function not in _VERBS:
         return "", [], []
-    other = {"compare_models": "compare", "load": "identify"}
+    other = {"load": "identify"} | {f"compare_{each}models": "compare" for each in ("", "robot_")}
     speaker = command
     if not _has_options(command, action.arguments):
         if command in ("simulate", "emulate", "report"):

@@ -56,6 +56,7 @@ _IDENTIFICATION = {
     "seed": "--seed",
     "threads": "--threads",
 }
+_ROBOT = {"robot": "--robot", "path": "--robot", "facts": "--facts"}
 _SCENARIO = {
     "controller": "--controller",
     "believe": "--believe",
@@ -92,11 +93,15 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "checkpoint": "--checkpoint",
         "resume": "--resume",
         "n": "--bootstrap",
-        "robot": "--robot",
-        "path": "--robot",
-        "facts": "--facts",
+        **_ROBOT,
     },
-    "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
+    "compare": {
+        **_IDENTIFICATION,
+        **_ESTIMATE,
+        "models": "--model",
+        "folds": "--folds",
+        **_ROBOT,
+    },
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
     "sweep": {
         **{name: option for name, option in _IDENTIFICATION.items() if name not in _FACTS},

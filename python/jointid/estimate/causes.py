@@ -111,6 +111,12 @@ class Cause:
         ]
         return "; ".join(filter(None, said))
 
+    def evidence(self, shifts: Mapping[str, float]) -> dict[str, Measured]:
+        """Return the numbers of its finding, with what it moves as shares."""
+        measured = {"share": Measured(self.share), "windows": Measured(self.scale, "s")}
+        moved = {f"{name}.shift": Measured(share) for name, share in shifts.items()}
+        return measured | dict(self.numbers) | moved
+
     @property
     def _moved(self) -> list[str]:
         return [

@@ -21,7 +21,7 @@ from jointid.robot.facts.assumptions import assumption_findings
 from jointid.robot.facts.asymmetry import asymmetry_findings
 from jointid.robot.facts.diagnosis import diagnosed
 from jointid.robot.facts.naming import turned_zeros
-from jointid.robot.facts.unexamined_causes import unexamined
+from jointid.robot.facts.unexamined_causes import misfit_findings
 from jointid.robot.fit.aligning import aligned, delay_findings
 from jointid.robot.fit.attempt import Request, attempted
 from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
@@ -136,7 +136,7 @@ def identify_robot(
         plain = all(each.severity == "info" for each in findings)
         # With another finding, a difference of the directions may follow from that.
         uneven = [*asymmetry_findings(attempt)] if plain else []
-        rest = unexamined(attempt.estimate, diagnosis.corrected.estimate)
+        rest = misfit_findings(attempt, diagnosis.corrected)
         findings = (*findings, *(uneven or rest))
         if attempt.zeros is not None and attempt.zeros.found:
             findings = (*findings, turned_zeros(attempt.zeros, attempt.robot))

@@ -59,14 +59,14 @@ def gravity(fit: FittedBalance) -> Iterator[Candidate]:
     Also beside the weight of a link as described, which may be described wrongly.
     """
     free = {fit.names[index] for index in fit.free}
-    there = "sensor_gain" in fit.names or {"gravity_cos", "gravity_sin"} & free
+    there = fit.knows_link or "sensor_gain" in fit.names or {"gravity_cos", "gravity_sin"} & free
     if _revolute(fit) and not there and not _has_order(fit, "position", 1.0):
         yield Candidate(name="gravity", columns=_angle(fit, 1.0))
 
 
 def inertia_varies(fit: FittedBalance) -> Iterator[Candidate]:
     """From Lagrange's equation of an inertia M(q): M a + M' v² / 2, integrated without the acceleration."""
-    if not _revolute(fit):
+    if fit.knows_link or not _revolute(fit):
         return
     parts = {}
     for order in (1.0, 2.0):
@@ -107,6 +107,9 @@ def load_friction(fit: FittedBalance) -> Iterator[Candidate]:
     """With the load from the sensor, or from the model's gravity and inertia; never from the drive's torque."""
     if "load_friction" in fit.names:
         return
+    if fit.load is not None:
+        yield Candidate(name="load_friction", columns=_against_motion(fit, fit.load)[:, None])
+        return
     from jointid.identification.causes.loads import (
         load_friction_of_sensor,
         load_frictions_of_motion,
@@ -119,6 +122,12 @@ def load_friction(fit: FittedBalance) -> Iterator[Candidate]:
         return
     for load in load_frictions_of_motion(fit):
         yield Candidate(name="load_friction", columns=load[:, None])
+
+
+def _against_motion(fit: FittedBalance, load: Array) -> Array:
+    """Size of a load times the direction."""
+    turned = fit.integral_of_each(lambda _, run: np.sign(run.velocity)) / fit.duration
+    return np.asarray(np.abs(load) * turned)
 
 
 def slow_motion(fit: FittedBalance) -> Iterator[Candidate]:
@@ -177,11 +186,11 @@ def drift(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def harmonic(fit: FittedBalance) -> Iterator[Candidate]:
-    """Of the angles of which the motion covers enough."""
+    """Of orders of which the motion covers enough; the first is gravity's where that is not known."""
     if not _revolute(fit):
         return
     reach = max(float(np.ptp(run.position)) for run in fit.runs)
-    for order in range(2, 7):
+    for order in range(1 if fit.knows_link else 2, 7):
         # Less than half a period is a slope, which other candidates are, too.
         if order * reach > _PERIOD and not _has_order(fit, "position", float(order)):
             yield Candidate(name="harmonic", columns=_angle(fit, float(order)), detail=str(order))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from jointid.base.advice import Action
 from jointid.base.values import dataclass
+from jointid.estimate.types_of_findings import FindingType
 from jointid.identification.causes import candidates as of
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
@@ -49,6 +50,17 @@ class Family:
     remedy: str
     candidates: Callable[[FittedBalance], Iterator[Candidate]] = of.nothing
     advice: Callable[[FittedBalance, Attributed], tuple[Action, ...]]
+
+    @property
+    def finding_type(self) -> FindingType:
+        """What its code stands for."""
+        return FindingType(
+            code=self.name,
+            meaning=f"{self.meaning} explains the misfit in parts of the log that it was not fitted to. Info: no "
+            "parameter moves by more than 5 % or two errors",
+            advice=self.remedy,
+            picture="windows",
+        )
 
 
 def _always(*actions: Action) -> Callable[..., tuple[Action, ...]]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from jointid.estimate.causes import Cause
-from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.estimate.findings import Finding, Severity
 from jointid.identification.causes.families import FAMILIES
-from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.check import Check
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.ripple import RIPPLE
 from jointid.identification.warnings.torque_balance import GROSS, WRONG_SCALE, scaled_with_torque
@@ -20,16 +20,7 @@ _NOTED = (
 )
 
 _OWN = {each.code: each for each in (RIPPLE, WRONG_SCALE)}
-TYPES = {
-    family.name: FindingType(
-        code=family.name,
-        meaning=f"{family.meaning} explains the misfit in parts of the log that it was not fitted to. Info: no "
-        "parameter moves by more than 5 % or two errors",
-        advice=family.remedy,
-        picture="windows",
-    )
-    for family in FAMILIES
-} | _OWN
+TYPES = {family.name: family.finding_type for family in FAMILIES} | _OWN
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -61,7 +52,7 @@ def _missed(evidence: Evidence) -> bool:
 
 
 def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Finding:
-    measured = _measured(cause, cause.relative)
+    measured = cause.evidence(cause.relative)
     beside = [name for name in concerned if name not in cause.relative]
     also = "also makes {} uncertain"
     if cause.name == "wrong_scale":
@@ -93,16 +84,10 @@ def _note(cause: Cause) -> Finding:
     return TYPES[cause.name].finding(
         cause.title,
         details=cause.details,
-        evidence=_measured(cause, cause.shares),
+        evidence=cause.evidence(cause.shares),
         parameters=tuple(cause.relative),
         severity="info",
     )
-
-
-def _measured(cause: Cause, shifts: Mapping[str, float]) -> dict[str, Measured]:
-    measured = {"share": Measured(cause.share), "windows": Measured(cause.scale, "s")}
-    measured |= cause.numbers
-    return measured | {f"{name}.shift": Measured(share) for name, share in shifts.items()}
 
 
 CHECK = Check(_find, tuple(each for code, each in TYPES.items() if code not in _OWN))

@@ -1,50 +1,67 @@
-"""Causes that nothing examines for a robot: where a joint's residual is no noise, one of them may be at work."""
+"""Joints whose residual is no noise: its causes by name, or those that nothing examines for a robot."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.advice import Action
+from jointid.estimate.causes import Causes
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
+from jointid.robot.facts.named_causes import cause_finding, causes_of_joint
+from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES
 from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 
 Array = NDArray[np.float64]
 
-CAUSES = (
-    *("friction that rises smoothly with speed", "friction under load", "drift with temperature"),
-    *("ripple", "springs and counterweights", "a low-pass filter on the torque", "soft gears"),
-)
+CAUSES = ("springs and counterweights", "a low-pass filter on the torque", "soft gears")
 _FEWEST = 40  # windows
 _LAGS = range(2, 9)  # windows; neighbours share their velocity's noise
 _FAR = 6.0  # times the median: a window says no more
 _SURE = 4.5  # standard errors of an autocorrelation
 _MATTERS = 0.005  # of the torque: the part of the residual that is no noise
 _EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
+_MOST_LEFT = 0.5  # of a joint's misfit, by the causes that were found
 _MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
 
 
-def unexamined(estimate: RobotEstimateRecord, corrected: RobotEstimateRecord) -> Iterator[Finding]:
-    """The finding that a residual is no noise, and what was not examined; it caps the verdict at "with care".
+def misfit_findings(attempt: Attempt, corrected: Attempt) -> Iterator[Finding]:
+    """Findings of joints whose residual is no noise: its causes, or what was not examined; both cap the verdict.
 
     Where wrong facts that were named explain it, it is for information: another cause may look like them.
     """
+    estimate = attempt.estimate
     shares = {name: _structured(joint) for name, joint in estimate.joints.items()}
-    left = [_structured(joint) for joint in corrected.joints.values()]
-    explained = max(left) < _EXPLAINED * max(shares.values())
-    concerned = sorted(
-        (name for name in shares if shares[name] > 0.0), key=lambda name: -shares[name]
-    )
+    left = {name: _structured(joint) for name, joint in corrected.estimate.joints.items()}
+    concerned = sorted((name for name in shares if shares[name]), key=lambda name: -shares[name])
     if not concerned:
         return
-    worst, *others = concerned
+    explained = max(left.values()) < _EXPLAINED * max(shares.values())
+    notes = []
+    for name in [] if explained else [*concerned]:
+        causes = causes_of_joint(corrected, name) if left[name] else Causes(found=())
+        for cause in causes.found:
+            yield cause_finding(cause, name, _all_of(estimate, name))
+        if math.prod(1.0 - cause.share for cause in causes.found) < _MOST_LEFT:
+            concerned.remove(name)
+        notes += [f"{name}: {cause}" for cause in causes.harmless]
+    if concerned:
+        named = {name: shares[name] for name in concerned}
+        yield _unexamined(estimate, named, "the named facts explain it" if explained else "", notes)
+
+
+def _unexamined(
+    estimate: RobotEstimateRecord, shares: Mapping[str, float], explained: str, notes: Sequence[str]
+) -> Finding:
+    worst, *others = shares
     more = f" and {len(others)} more" if others else ""
-    every = ", ".join(f"{name} {percent(shares[name])}" for name in concerned)
-    yield TYPES["unexamined_causes"].finding(
+    every = ", ".join(f"{name} {percent(share)}" for name, share in shares.items())
+    return TYPES["unexamined_causes"].finding(
         f"{percent(shares[worst])} of the torque of {worst}{more} is neither explained nor noise",
         Action("inspect", text=f"{worst} as a single joint, for which more causes are examined"),
         details="; ".join(
@@ -52,17 +69,20 @@ def unexamined(estimate: RobotEstimateRecord, corrected: RobotEstimateRecord) ->
                 None,
                 (
                     f"it is so for {every} of the torque" if others else "",
-                    "the named facts explain it" if explained else "",
+                    explained,
+                    *notes,
                     f"not examined for a robot: {', '.join(CAUSES)}",
                 ),
             )
         ),
         severity="info" if explained else "warning",
-        parameters=tuple(
-            f"{name}.{key}" for name in concerned for key in estimate.joints[name].parameters
-        ),
-        evidence={name: Measured(shares[name]) for name in concerned},
+        parameters=tuple(each for name in shares for each in _all_of(estimate, name)),
+        evidence={name: Measured(share) for name, share in shares.items()},
     )
+
+
+def _all_of(estimate: RobotEstimateRecord, name: str) -> tuple[str, ...]:
+    return tuple(f"{name}.{key}" for key in estimate.joints[name].parameters)
 
 
 def _structured(joint: RobotJoint) -> float:

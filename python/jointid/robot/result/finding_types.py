@@ -161,9 +161,9 @@ TYPES = {
         ),
         FindingType(
             code="unexamined_causes",
-            meaning="the rest of the torque is not noise: neighbouring windows are alike. The finding lists causes "
-            'that are not examined for a robot, and makes the verdict "usable with care". Info: the named '
-            "facts explain it",
+            meaning="the rest of the torque is not noise: neighbouring windows are alike, and no known cause explains "
+            "most of it. The finding lists causes that are not examined for a robot, and makes the verdict "
+            '"usable with care". Info: the named facts explain it',
             advice="identify the joint by itself, which examines these causes",
         ),
         FindingType(

@@ -1,0 +1,81 @@
+"""Causes of a misfit of a robot's joint: as those of a single joint, with the rest of the robot held."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import small_arm
+
+import jointid as jid
+
+pytest.importorskip("pinocchio")
+
+
+@pytest.fixture(name="robot", scope="module")
+def _robot(tmp_path_factory: pytest.TempPathFactory) -> jid.Robot:
+    return jid.Robot.from_urdf(small_arm.urdf(tmp_path_factory.mktemp("causes")))
+
+
+@pytest.fixture(name="path", scope="module")
+def _path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return small_arm.urdf(tmp_path_factory.mktemp("causes"))
+
+
+def test_friction_under_load_has_its_size_and_its_joint(path: Path, robot: jid.Robot) -> None:
+    run = small_arm.recording(path)
+    fields = run.fields()
+    speed = np.gradient(run.position[:, 1], run.time)
+    links = (
+        fields["torque"][:, 1]
+        - small_arm.COULOMB[1] * np.sign(speed)
+        - small_arm.VISCOUS[1] * speed
+    )
+    fields["torque"] = fields["torque"].copy()
+    fields["torque"][:, 1] += 0.15 * np.abs(links) * np.sign(speed)
+    found = jid.identify_robot(jid.RobotRecording(**fields), robot)
+    (told,) = found.warnings
+    assert told.code == "load_friction"
+    assert told.title.startswith("elbow: friction that grows with the load (0.15 of the load)")
+    assert told.evidence["coefficient"].value == pytest.approx(0.15, abs=0.01)
+    # What it moves is what it moved.
+    coulomb = found.joints["elbow"].parameters["coulomb"].value
+    moved = 1.0 + told.evidence["coulomb.shift"].value
+    assert coulomb * moved == pytest.approx(small_arm.COULOMB[1], rel=0.01)
+    assert all(name.startswith("elbow.") for name in told.parameters)
+    # A robot's model has no such term: a single joint's has.
+    assert [each.kind for each in told.advice] == ["inspect"]
+
+
+def test_the_advice_against_slow_motion_runs(path: Path, robot: jid.Robot) -> None:
+    def rising(speed: np.ndarray) -> np.ndarray:
+        return np.asarray(small_arm.COULOMB * np.tanh(speed / 0.05) + small_arm.VISCOUS * speed)
+
+    run = small_arm.recording(path, friction=rising)
+    found = jid.identify_robot(run, robot)
+    told = [each for each in found.warnings if each.code == "slow_motion"]
+    advice = told[0].advice[0]
+    assert advice.function == "compare_robot_models"
+    compared = jid.compare_robot_models(run, robot, inertia="urdf", folds=3, **advice.arguments)
+    assert set(compared.models.values()) <= set(advice.arguments["models"])
+
+
+def test_a_joint_that_fits_badly_has_no_causes(path: Path, robot: jid.Robot) -> None:
+    """Something that was given is wrong there: what explains it is chance."""
+    run = small_arm.recording(path)
+    fields = run.fields()
+    push = np.zeros_like(run.position)
+    push[:, 1] = 3.0 * np.sin(2.0 * run.position[:, 1] + 0.3)
+    fields["torque"] = fields["torque"] + push
+    found = jid.identify_robot(jid.RobotRecording(**fields), robot)
+    codes = {each.code for each in found.warnings}
+    assert {"poor_fit", "unexamined_causes"} <= codes
+    assert "harmonic" not in codes
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("static", [0.0, 0.5])
+def test_a_clean_arm_has_none(path: Path, robot: jid.Robot, seed: int, static: float) -> None:
+    run = small_arm.recording(path, seed=seed, static=static)
+    assert jid.identify_robot(run, robot).warnings == ()
