@@ -115,7 +115,8 @@ def html_summary(estimate: EstimateRecord) -> Html:
     )
     if estimate.selection is not None:
         caption += f"; chosen: {estimate.selection.sentence}"
-    lines = [f"{subject(estimate)}: {judged(estimate).level}", *purposes(judged(estimate))]
+    verdict = judged(estimate)
+    lines = [f"{subject(estimate)}: {verdict.level}", *purposes(verdict)]
     return element(
         "div",
         element("p", element("b", lines[0]), *(f"; {each.strip()}" for each in lines[1:])),

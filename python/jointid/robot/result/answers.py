@@ -23,9 +23,10 @@ def answer(
 
     `action` words an advice; `saved` is the file that has the estimate.
     """
+    verdict = judged_robot(estimate)
     lines = [
-        f"{estimate.robot.name or 'robot'}: {judged_robot(estimate).level}",
-        *purposes(judged_robot(estimate)),
+        f"{estimate.robot.name or 'robot'}: {verdict.level}",
+        *purposes(verdict),
         *lines_of_joints(estimate, {}),
         *findings(estimate.findings, action, FINDINGS, saved),
     ]
