@@ -86,7 +86,7 @@ _SHOWN = {
     "recording.wide.robot_saving": "robot recording",
     "report.saving": "report",
     "report.servo_page": "servo report",
-    "robot.document": "robot",
+    "robot.result.document": "robot",
     "servo.document": "servo",
     "study.study_file": "sweep",
     "study.tables": "study table",

@@ -123,7 +123,7 @@ def _facts() -> Example:
         name="robot.toml",
         documents=[facts],
         use=use if _has_pinocchio() else read_facts,
-        modules=["robot.facts"],
+        modules=["robot.links.facts"],
     )
 
 
@@ -187,7 +187,7 @@ def _robot() -> Example:
         name="robot.json",
         documents=[json.loads(found.to_json())],
         use=jid.RobotEstimate.load,
-        modules=["robot.result", "robot.reading_back"],
+        modules=["robot.result.result", "robot.result.reading_back"],
     )
 
 
@@ -359,6 +359,6 @@ OTHERS: dict[str, str] = {
     "recording.readers.npz_reader": "tests/recording/test_bad_files.py",
     "recording.readers.parquet_reader": "tests/recording/test_bad_files.py",
     "recording.readers.wpilog_reader": "tests/recording/test_wpilog.py",
-    "robot.reading_urdf": "tests/robot/test_robot_refusals.py",
+    "robot.links.reading_urdf": "tests/robot/test_robot_refusals.py",
 }
 """Modules that read something else, and where that is tried."""
