@@ -86,7 +86,7 @@ def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
     """The options of a servo; refuse what one without a torque signal does not have, before the work."""
     options = stated_options(arguments)
     stated = (name for name in _OF_TORQUE if getattr(arguments, name) not in (None, False))
-    for name in (*stated, *(options.keys() - _OF_SERVOS)):
+    for name in (*stated, *(name for name in options if name not in _OF_SERVOS)):
         raise InputError(
             "a servo with a voltage as input has no such option",
             argument="n" if name == "bootstrap" else name,
