@@ -98,7 +98,7 @@ def test_a_drive_that_is_not_armed_is_refused_before_it_moves() -> None:
 
 def idle(drive: EmulatedElmo) -> None:
     """It says that it is armed, tells of the lost heartbeat, and leaves the motor on."""
-    drive.lose_host = lambda: None  # type: ignore[method-assign]
+    drive._network.lose_host = lambda: None  # type: ignore[method-assign]
 
 
 def deaf(drive: EmulatedElmo) -> None:
@@ -141,7 +141,7 @@ def test_a_drive_that_tells_nothing_is_asked() -> None:
         network = drive._network
 
         def switch_off_in_silence() -> None:
-            drive.lose_host()
+            network.lose_host()
             network.forget_heartbeat()
 
         network._heartbeat_lost = switch_off_in_silence  # type: ignore[method-assign]

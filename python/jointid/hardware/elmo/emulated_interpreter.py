@@ -6,11 +6,12 @@ import math
 import re
 import struct
 from collections import deque
+from collections.abc import Callable
 from random import Random
-from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
 from jointid.hardware.elmo.codec import Command, Reply, refusal
+from jointid.hardware.elmo.emulated_motor import ElmoMotor
 from jointid.hardware.elmo.emulated_registers import (
     BAD_COMMAND,
     BAD_INDEX,
@@ -19,9 +20,6 @@ from jointid.hardware.elmo.emulated_registers import (
     Number,
     registers,
 )
-
-if TYPE_CHECKING:
-    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 
 VERSION = "Cello 2.02.00.00 emulated"
 _TEXTS = {"VR": VERSION}  # which four bytes cannot hold
@@ -35,15 +33,24 @@ class Interpreter:
 
     Parameters
     ----------
-    drive : EmulatedElmo
+    motor : ElmoMotor
+    identity : callable
+        As `registers` takes it.
+    reply : callable
+        Publishes a result.
     """
 
-    def __init__(self, drive: EmulatedElmo) -> None:
-        self._drive = drive
-        self._registers = registers(drive, lambda: self.last_error)
+    def __init__(
+        self,
+        motor: ElmoMotor,
+        identity: Callable[[int], int],
+        reply: Callable[[bytes], None],
+    ) -> None:
+        self._motor, self._reply = motor, reply
+        self._registers = registers(motor, identity, lambda: self.last_error)
         self._waiting: deque[Command] = deque()
         self._busy = False
-        self._random = Random(drive.settings.node)
+        self._random = Random(motor.settings.node)
         self.last_error = 0
         self.text_status, self.text = NO_REPLY, b""
 
@@ -78,7 +85,7 @@ class Interpreter:
         except ValueError:
             self.text_status, self.text = ERROR_REPLY, f"{BAD_COMMAND};".encode("ascii")
             return
-        self._drive.advance()
+        self._motor.advance()
         error, found = self._done(letters, index, number)
         if error:
             self.last_error = error
@@ -86,23 +93,23 @@ class Interpreter:
         self.text = f"{error if error else found};".encode("ascii")
 
     def _begin(self) -> None:
-        drive = self._drive
+        motor = self._motor
         self._busy = True
-        jitter = drive.settings.idle_jitter
+        jitter = motor.settings.idle_jitter
         late = self._random.uniform(0.0, jitter) if jitter else 0.0
-        drive.bus.at(drive.bus.now() + drive.settings.idle_loop + late, self._interpret)
+        motor.bus.at(motor.bus.now() + motor.settings.idle_loop + late, self._interpret)
 
     def _interpret(self) -> None:
-        enabling = self._drive.settings.enable_time
+        enabling = self._motor.settings.enable_time
         if self._waiting and enabling and self._waiting[0].letters == "MO":
             command = self._waiting[0]
-            if command.value == 1 and not self._drive.motor_on:
-                self._drive.bus.at(self._drive.bus.now() + enabling, self._act)
+            if command.value == 1 and not self._motor.motor_on:
+                self._motor.bus.at(self._motor.bus.now() + enabling, self._act)
                 return
         self._act()
 
     def _act(self) -> None:
-        self._drive.advance()
+        self._motor.advance()
         self._busy = False
         if not self._waiting:
             return
@@ -111,7 +118,7 @@ class Interpreter:
         if error:
             self._refuse(command.letters, command.index, error)
         else:
-            self._drive.reply(_payload(command, value))
+            self._reply(_payload(command, value))
         if self._waiting:
             self._begin()
 
@@ -130,7 +137,7 @@ class Interpreter:
 
     def _refuse(self, letters: str, index: int, code: int) -> None:
         self.last_error = code
-        self._drive.reply(refusal(letters, index, code))
+        self._reply(refusal(letters, index, code))
 
 
 def _number(wording: str) -> Number:

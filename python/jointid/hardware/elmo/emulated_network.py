@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING
 import can
 
 from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo.emulated_interpreter import Interpreter
+from jointid.hardware.elmo.emulated_motor import ElmoMotor
+from jointid.hardware.elmo.emulated_objects import ElmoObjects
 from jointid.hardware.emulated.emergencies import Emergencies
 from jointid.hardware.emulated.object_dictionary import AccessError
 
 if TYPE_CHECKING:
-    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
     from jointid.hardware.emulated.pdo import Pdo
 
 # Bits of 2F21h: which emergencies are sent.
 HEARTBEAT_EVENT, MOTOR_EVENT = 3, 7
+_HEARTBEAT_LOST = 0x800  # in MF
 _PROTOCOL_EVENT, _UNCONFIGURED_EVENT, _OBJECT_EVENT = 1, 2, 8
 _INTERPRETER = (0x20120040,)  # what the PDO of the binary interpreter's commands is mapped to
 
@@ -26,15 +29,24 @@ class ElmoNetwork:
 
     Parameters
     ----------
-    drive : EmulatedElmo
+    motor : ElmoMotor
+    objects : ElmoObjects
+    interpreter : Interpreter
     reset : callable
         Called at a reset; with True where the application is reset, too.
     """
 
-    def __init__(self, drive: EmulatedElmo, reset: Callable[[bool], None]) -> None:
-        self._drive, self._reset = drive, reset
+    def __init__(
+        self,
+        motor: ElmoMotor,
+        objects: ElmoObjects,
+        interpreter: Interpreter,
+        reset: Callable[[bool], None],
+    ) -> None:
+        self._motor, self._objects, self._interpreter = motor, objects, interpreter
+        self._reset = reset
         self.state = "pre-operational"
-        self.emergencies = Emergencies(drive.settings.node, drive.objects, self._alarm)
+        self.emergencies = Emergencies(motor.settings.node, objects, self._alarm)
         self._at_sync: dict[int, bytes] = {}  # of received PDOs that wait for a SYNC
         self._heartbeat_seen: float | None = None
         self._silent = False  # the host's heartbeat has stayed away
@@ -42,11 +54,11 @@ class ElmoNetwork:
 
     def boot(self) -> None:
         """Send the boot-up message."""
-        self.send(canopen.heartbeat_id(self._drive.settings.node), b"\x00")
+        self.send(canopen.heartbeat_id(self._motor.settings.node), b"\x00")
 
     def receive(self, message: can.Message) -> None:
         """A frame has arrived."""
-        drive, node = self._drive, self._drive.settings.node
+        node = self._motor.settings.node
         if message.is_remote_frame or message.is_extended_id or message.is_error_frame:
             return
         identifier, payload = message.arbitration_id, bytes(message.data)
@@ -56,13 +68,13 @@ class ElmoNetwork:
         elif identifier == canopen.SYNC:
             self._synchronise()
         elif identifier == 0x600 + node:
-            answer = drive.objects.answer(payload) if self.state != "stopped" else None
+            answer = self._objects.answer(payload) if self.state != "stopped" else None
             if answer is not None:
                 self.send(0x580 + node, answer)
-        elif identifier == canopen.heartbeat_id(drive.objects.master):
+        elif identifier == canopen.heartbeat_id(self._objects.master):
             self._heartbeat()
         elif self.state == "operational":
-            for number, pdo in enumerate(drive.objects.received):
+            for number, pdo in enumerate(self._objects.received):
                 if pdo.identifier == identifier:
                     self._take(number, pdo, payload)
 
@@ -75,7 +87,7 @@ class ElmoNetwork:
         elif command == canopen.PRE_OPERATIONAL:
             self.state = "pre-operational"
         elif command in (canopen.RESET_NODE, canopen.RESET_COMMUNICATION):
-            self._drive.abort_connection()
+            self.abort_connection()
             self.state = "pre-operational"
             self.forget_heartbeat()
             self._at_sync.clear()
@@ -91,7 +103,7 @@ class ElmoNetwork:
 
     def reply(self, payload: bytes) -> None:
         """Publish a result of the interpreter's."""
-        objects = self._drive.objects
+        objects = self._objects
         objects.result = payload
         for number, pdo in enumerate(objects.sent):
             if objects.replies(number) and self.state == "operational" and pdo.event():
@@ -99,43 +111,42 @@ class ElmoNetwork:
 
     def look(self, now: float) -> None:
         """Look at clocks: the host's heartbeat, the drive's own, event timers."""
-        objects = self._drive.objects
+        objects = self._objects
         seen, allowed = self._heartbeat_seen, objects.consumer_time
         if seen is not None and allowed and now - seen > allowed:
             self._heartbeat_lost()
         if objects.producer_time and now >= self._next_heartbeat:
             self._next_heartbeat = now + objects.producer_time
-            if not self._drive.silent_heartbeat:
+            if not self._motor.silent_heartbeat:
                 state = next(n for n, name in canopen.STATES.items() if name == self.state)
-                self.send(canopen.heartbeat_id(self._drive.settings.node), bytes((state,)))
+                self.send(canopen.heartbeat_id(self._motor.settings.node), bytes((state,)))
         for pdo in objects.sent:
             if pdo.due(now) and self.state == "operational":
                 self._send_pdo(pdo.identifier, pdo.content())
 
     def send(self, identifier: int, payload: bytes) -> None:
         """Put a frame on the bus."""
-        self._drive.bus.transmit(
+        self._motor.bus.transmit(
             can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
         )
 
     # The host.
 
     def _heartbeat(self) -> None:
-        if self._drive.objects.consumer_time <= 0.0:
+        if self._objects.consumer_time <= 0.0:
             return
-        self._heartbeat_seen = self._drive.bus.now()
+        self._heartbeat_seen = self._motor.bus.now()
         if self._silent:
             self._silent = False
-            if not self._drive.failure:
+            if not self._motor.failure:
                 self.emergencies.vanish()
 
     def _heartbeat_lost(self) -> None:
         """Do what 6007h asks of the motor, 2F21h of the emergency and 1029h of the network state."""
-        drive = self._drive
         self._heartbeat_seen, self._silent = None, True
-        drive.lose_host()
+        self.lose_host()
         self._alert(HEARTBEAT_EVENT, 0x8130, 0x11)
-        behaviour = drive.objects.value(0x1029, 1)
+        behaviour = self._objects.value(0x1029, 1)
         if behaviour == 0 and self.state == "operational":
             self.state = "pre-operational"
         elif behaviour == 2:
@@ -143,14 +154,29 @@ class ElmoNetwork:
 
     def _stop(self) -> None:
         self.state = "stopped"
-        self._drive.abort_connection()
+        self.abort_connection()
+
+    def lose_host(self) -> None:
+        """The host's heartbeat has stayed away: do with the motor what 6007h says."""
+        if self._objects.value(0x6007, 0):
+            self._motor.advance()
+            self._motor.switch(on=False)
+            self._motor.failure = _HEARTBEAT_LOST
+
+    def abort_connection(self) -> None:
+        """The node is stopped or reset: do with the motor what 6007h says (CiA 402)."""
+        option = self._objects.value(0x6007, 0)
+        if option and self._motor.motor_on:
+            self._motor.switch(on=False)
+            if option == 1:
+                self._motor.failure = _HEARTBEAT_LOST
 
     # PDOs.
 
     def _synchronise(self) -> None:
         if self.state != "operational":
             return
-        objects = self._drive.objects
+        objects = self._objects
         for number, payload in tuple(self._at_sync.items()):
             del self._at_sync[number]
             self._write(objects.received[number], payload)
@@ -166,7 +192,7 @@ class ElmoNetwork:
 
     def _write(self, pdo: Pdo, payload: bytes) -> None:
         if pdo.mapped == _INTERPRETER:  # whose commands have four bytes or eight
-            self._drive.interpret(payload)
+            self._interpreter.take(payload)
         elif not pdo.mapped or 8 * len(payload) < sum(entry & 0xFF for entry in pdo.mapped):
             self._alert(_UNCONFIGURED_EVENT, 0x8210, 0x21)
         else:
@@ -182,7 +208,7 @@ class ElmoNetwork:
     # Emergencies.
 
     def _alert(self, event: int, code: int, register: int) -> None:
-        self.emergencies.appear(code, register, told=self._drive.objects.emergency_wanted(event))
+        self.emergencies.appear(code, register, told=self._objects.emergency_wanted(event))
 
     def _alarm(self, identifier: int, payload: bytes) -> None:
         if self.state != "stopped":

@@ -5,9 +5,8 @@ After Elmo's CANopen DS 301 implementation guide (MAN-CAN301IG); what it leaves 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from jointid.hardware.elmo.emulated_interpreter import VERSION
+from jointid.hardware.elmo.emulated_interpreter import VERSION, Interpreter
+from jointid.hardware.elmo.emulated_motor import ElmoMotor
 from jointid.hardware.emulated.object_dictionary import (
     NOT_STORED,
     AccessError,
@@ -18,9 +17,6 @@ from jointid.hardware.emulated.object_dictionary import (
 )
 from jointid.hardware.emulated.pdo import EVENT, OFF, Pdo, TransmitPdo
 from jointid.hardware.emulated.sdo_server import SdoServer
-
-if TYPE_CHECKING:
-    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 
 VENDOR, PRODUCT, REVISION = 0x9A, 0x00030924, 0x01010301
 _SERVO = 0x00020192  # 1000h: a servo drive after CiA 402
@@ -39,19 +35,20 @@ class ElmoObjects(ObjectDictionary):
 
     Parameters
     ----------
-    drive : EmulatedElmo
+    motor : ElmoMotor
+    interpreter : Interpreter
     """
 
-    def __init__(self, drive: EmulatedElmo) -> None:
+    def __init__(self, motor: ElmoMotor, interpreter: Interpreter) -> None:
         super().__init__()
-        self._drive = drive
+        self._motor, self._interpreter = motor, interpreter
         self._server = SdoServer(self)
         self.result = bytes(8)  # 2013h: of the binary interpreter
         self._identify()
         self._watch()
         self._measure()
         self._control()
-        node, settings = drive.settings.node, drive.settings
+        node, settings = motor.settings.node, motor.settings
         # The interpreter's frames may have other identifiers than the node's own.
         received = [OFF | 0x200 + node, settings.command_id, OFF | 0x400 + node, OFF | 0x500 + node]
         sent = [OFF | 0x180 + node, settings.reply_id, OFF | 0x380 + node, OFF | 0x480 + node]
@@ -120,7 +117,7 @@ class ElmoObjects(ObjectDictionary):
     # The entries.
 
     def _identify(self) -> None:
-        serial = self._drive.settings.serial
+        serial = self._motor.settings.serial
         self.constant(0x1000, 0, 4, _SERVO)
         self.variable(0x1005, 0, 4, 0x80, check=one_of(0x80))
         for index, text in ((0x1008, "Cello"), (0x1009, "emulated"), (0x100A, VERSION)):
@@ -135,11 +132,11 @@ class ElmoObjects(ObjectDictionary):
         for subindex, number in enumerate((VENDOR, PRODUCT, REVISION, serial), start=1):
             self.constant(0x1018, subindex, 4, number)
         self.constant(0x1200, 0, 1, 2)
-        self.constant(0x1200, 1, 4, 0x600 + self._drive.settings.node)
-        self.constant(0x1200, 2, 4, 0x580 + self._drive.settings.node)
+        self.constant(0x1200, 1, 4, 0x600 + self._motor.settings.node)
+        self.constant(0x1200, 2, 4, 0x580 + self._motor.settings.node)
 
     def _watch(self) -> None:
-        settings = self._drive.settings
+        settings = self._motor.settings
         self.constant(0x1016, 0, 1, _WATCHED)
         self.variable(0x1016, 1, 4, check=within(0, 0xFFFFFF))  # node and time
         self.variable(0x1017, 0, 2)
@@ -153,30 +150,30 @@ class ElmoObjects(ObjectDictionary):
         self.variable(0x2F21, 0, 2, settings.emergency_events, check=within(0, 0x3FF))
 
     def _measure(self) -> None:
-        drive = self._drive
+        motor = self._motor
 
         def measured(index: int, size: int, read: object, *, signed: bool = True) -> None:
             self.add(index, 0, Entry(size=size, signed=signed, read=read, sent=True))  # type: ignore[arg-type]
 
-        measured(0x6041, 2, drive.power.status, signed=False)
-        measured(0x6064, 4, lambda: drive.counts())  # asked for each time: faults replace it
+        measured(0x6041, 2, motor.power.status, signed=False)
+        measured(0x6064, 4, lambda: motor.counts())  # asked for each time: faults replace it
         for index in (0x6069, 0x606B, 0x606C):
-            measured(index, 4, lambda: drive.speed())
+            measured(index, 4, lambda: motor.speed())
         for index in (0x6074, 0x6077, 0x6078):  # torque asked for, torque and current measured
-            measured(index, 2, drive.share_of_rated)
-        measured(0x6079, 4, lambda: round(1e3 * drive.settings.supply), signed=False)
-        self.add(0x6075, 0, Entry(size=4, read=lambda: round(1e3 * drive.rated_current)))
-        self.add(0x6076, 0, Entry(size=4, read=lambda: round(1e3 * drive.rated_torque)))
+            measured(index, 2, motor.share_of_rated)
+        measured(0x6079, 4, lambda: round(1e3 * motor.settings.supply), signed=False)
+        self.add(0x6075, 0, Entry(size=4, read=lambda: round(1e3 * motor.rated_current)))
+        self.add(0x6076, 0, Entry(size=4, read=lambda: round(1e3 * motor.rated_torque)))
         self.constant(0x6502, 0, 4, 0x2D)  # profile position, velocity, torque; homing
 
     def _control(self) -> None:
-        drive = self._drive
+        motor = self._motor
         self.add(
             *(0x6040, 0),
             Entry(
                 size=2,
-                read=lambda: drive.power.word,
-                write=drive.power.control,
+                read=lambda: motor.power.word,
+                write=motor.power.control,
                 received=True,
             ),
         )
@@ -188,11 +185,11 @@ class ElmoObjects(ObjectDictionary):
         self.constant(0x1023, 0, 1, 3)
         self.add(
             *(0x1023, 1),
-            Entry(size=0, write_bytes=lambda given: drive.interpreter.take_text(given)),
+            Entry(size=0, write_bytes=self._interpreter.take_text),
         )
-        self.add(0x1023, 2, Entry(size=1, read=lambda: drive.interpreter.text_status))
-        self.add(0x1023, 3, Entry(size=0, read=lambda: drive.interpreter.text))
-        self.add(0x2012, 0, Entry(size=8, write_bytes=drive.interpret, received=True))
+        self.add(0x1023, 2, Entry(size=1, read=lambda: self._interpreter.text_status))
+        self.add(0x1023, 3, Entry(size=0, read=lambda: self._interpreter.text))
+        self.add(0x2012, 0, Entry(size=8, write_bytes=self._interpreter.take, received=True))
         self.add(0x2013, 0, Entry(size=8, read=lambda: self.result, sent=True))
 
 

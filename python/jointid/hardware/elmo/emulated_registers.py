@@ -9,10 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
+from jointid.hardware.elmo.emulated_motor import ElmoMotor
 
 Number = int | float
 Read = Callable[[int], Number]
@@ -47,47 +45,49 @@ class Register:
     indices: tuple[int, ...] = (0,)
 
 
-def registers(drive: EmulatedElmo, last_error: Callable[[], int]) -> dict[str, Register]:
+def registers(
+    motor: ElmoMotor, identity: Callable[[int], int], last_error: Callable[[], int]
+) -> dict[str, Register]:
     """Return a drive's commands by their letters.
 
     Parameters
     ----------
-    drive : EmulatedElmo
+    motor : ElmoMotor
+    identity : callable
+        Returns vendor, product, revision or serial number, 1 to 4 (1018h).
     last_error : callable
         EC of the last command that was refused.
     """
-    kept = _Kept(drive)
-    limits = _Limits(drive)
+    kept = _Kept(motor)
+    limits = _Limits(motor)
     found = {
-        "MO": Register(read=lambda _: int(drive.motor_on), write=_motor(drive)),
-        "SO": Register(read=lambda _: int(drive.motor_on)),
-        "UM": Register(read=lambda _: drive.unit_mode, write=_unit_mode(drive)),
-        "RM": Register(read=lambda _: drive.reference_mode, write=_reference_mode(drive)),
-        "TC": Register(read=lambda _: float(drive.current), write=_torque(drive)),
-        "PX": Register(read=lambda _: drive.counts(), write=_position(drive)),
-        "PU": Register(read=lambda _: drive.counts()),
-        "VX": Register(read=lambda _: drive.speed()),
-        "IQ": Register(read=lambda _: float(drive.current)),
+        "MO": Register(read=lambda _: int(motor.motor_on), write=_motor(motor)),
+        "SO": Register(read=lambda _: int(motor.motor_on)),
+        "UM": Register(read=lambda _: motor.unit_mode, write=_unit_mode(motor)),
+        "RM": Register(read=lambda _: motor.reference_mode, write=_reference_mode(motor)),
+        "TC": Register(read=lambda _: float(motor.current), write=_torque(motor)),
+        "PX": Register(read=lambda _: motor.counts(), write=_position(motor)),
+        "PU": Register(read=lambda _: motor.counts()),
+        "VX": Register(read=lambda _: motor.speed()),
+        "IQ": Register(read=lambda _: float(motor.current)),
         "ID": Register(read=lambda _: 0.0),
-        "SR": Register(read=lambda _: drive.status()),
-        "MF": Register(read=lambda _: drive.failure),
+        "SR": Register(read=lambda _: motor.status()),
+        "MF": Register(read=lambda _: motor.failure),
         "EC": Register(read=lambda _: last_error()),
         "MS": Register(read=lambda _: 0),
-        "LC": Register(read=lambda _: int(drive.current_limited)),
+        "LC": Register(read=lambda _: int(motor.current_limited)),
         "PL": Register(read=limits.peak, write=limits.set_peak, indices=(1, 2)),
         "CL": Register(read=limits.continuous, write=limits.set_continuous, indices=(1, 2, 3)),
         "MC": Register(read=lambda _: limits.largest),
-        "SN": Register(
-            read=lambda index: _wrapped(drive.objects.number(0x1018, index)), indices=(1, 2, 3, 4)
-        ),
-        "AN": Register(read=lambda index: _analog(drive, index), indices=tuple(range(1, 7))),
-        "TI": Register(read=lambda _: round(drive.settings.temperature), indices=(1, 2)),
+        "SN": Register(read=lambda index: _wrapped(identity(index)), indices=(1, 2, 3, 4)),
+        "AN": Register(read=lambda index: _analog(motor, index), indices=tuple(range(1, 7))),
+        "TI": Register(read=lambda _: round(motor.settings.temperature), indices=(1, 2)),
         "BV": Register(read=lambda _: 100),  # [V], the most that it stands
         "IP": Register(read=lambda _: 0),
         "IB": Register(read=lambda _: 0, indices=tuple(range(1, 11))),
         "TS": Register(read=lambda _: _SAMPLING),
-        "TM": Register(read=lambda _: _wrapped(round(1e6 * drive.bus.now())), write=lambda *_: 0),
-        "ST": Register(read=lambda _: _stop(drive)),
+        "TM": Register(read=lambda _: _wrapped(round(1e6 * motor.bus.now())), write=lambda *_: 0),
+        "ST": Register(read=lambda _: _stop(motor)),
         "BG": Register(read=lambda _: 0),
         "HP": Register(read=lambda _: 0),
     }
@@ -98,23 +98,23 @@ def registers(drive: EmulatedElmo, last_error: Callable[[], int]) -> dict[str, R
 class _Limits:
     """PL and CL, which change what the drive does."""
 
-    def __init__(self, drive: EmulatedElmo) -> None:
-        self._drive = drive
-        self.largest = 2.0 * max(drive.settings.peak_current, drive.settings.continuous_current)
+    def __init__(self, motor: ElmoMotor) -> None:
+        self._motor = motor
+        self.largest = 2.0 * max(motor.settings.peak_current, motor.settings.continuous_current)
         self._more: dict[tuple[str, int], float] = {("PL", 2): 3.0, ("CL", 2): 0.0, ("CL", 3): 0.0}
 
     def peak(self, index: int) -> float:
-        return float(self._drive.current_limits[0] if index == 1 else self._more["PL", index])
+        return float(self._motor.current_limits[0] if index == 1 else self._more["PL", index])
 
     def continuous(self, index: int) -> float:
-        return float(self._drive.current_limits[1] if index == 1 else self._more["CL", index])
+        return float(self._motor.current_limits[1] if index == 1 else self._more["CL", index])
 
     def set_peak(self, index: int, value: Number) -> int:
         if index == 1:
             if not 0.0 <= value <= self.largest:
                 return OUT_OF_RANGE
-            self._drive.current_limits[0] = float(value)
-            self._drive.limit_current()
+            self._motor.current_limits[0] = float(value)
+            self._motor.limit_current()
         else:
             self._more["PL", index] = float(value)
         return 0
@@ -123,7 +123,7 @@ class _Limits:
         if index == 1:
             if not 0.0 <= value <= self.largest:
                 return OUT_OF_RANGE
-            self._drive.current_limits[1] = float(value)
+            self._motor.current_limits[1] = float(value)
         else:
             self._more["CL", index] = float(value)
         return 0
@@ -132,9 +132,9 @@ class _Limits:
 class _Kept:
     """Parameters that are kept. Those of the encoder are set with the motor off."""
 
-    def __init__(self, drive: EmulatedElmo) -> None:
-        self._drive = drive
-        settings = drive.settings
+    def __init__(self, motor: ElmoMotor) -> None:
+        self._motor = motor
+        settings = motor.settings
         self._values: dict[tuple[str, int], Number] = {
             **{("CA", index): 0 for index in range(1, 29)},
             ("CA", 18): abs(settings.counts_per_turn),
@@ -154,15 +154,15 @@ class _Kept:
             found[letters] = self._register(letters, indices)
         found["HL"] = self._speed_bound("HL", 1.0)
         found["LL"] = self._speed_bound("LL", -1.0)
-        drive = self._drive
+        motor = self._motor
         found["XM"] = Register(
-            read=lambda index: drive.modulo[index - 1], write=self._set_modulo, indices=(1, 2)
+            read=lambda index: motor.modulo[index - 1], write=self._set_modulo, indices=(1, 2)
         )
         return found
 
     def _register(self, letters: str, indices: Iterable[int]) -> Register:
         def write(index: int, value: Number) -> int:
-            if letters == "CA" and self._drive.motor_on:
+            if letters == "CA" and self._motor.motor_on:
                 return MOTOR_MUST_BE_OFF
             self._values[letters, index] = type(self._values[letters, index])(value)
             return 0
@@ -173,19 +173,19 @@ class _Kept:
 
     def _speed_bound(self, letters: str, sign: float) -> Register:
         """HL[2] and LL[2]: beyond, the drive shuts down; [3] are bounds of the position."""
-        drive = self._drive
+        motor = self._motor
 
         def read(index: int) -> Number:
             if index == 2:
-                bound = drive.speed_bounds[letters == "HL"]
-                return int(sign * drive.settings.speed_limit if bound is None else bound)
+                bound = motor.speed_bounds[letters == "HL"]
+                return int(sign * motor.settings.speed_limit if bound is None else bound)
             return self._values[letters, index]
 
         def write(index: int, value: Number) -> int:
             if sign * value < 0:
                 return OUT_OF_RANGE
             if index == 2:
-                drive.speed_bounds[letters == "HL"] = float(value)
+                motor.speed_bounds[letters == "HL"] = float(value)
             else:
                 self._values[letters, index] = int(value)
             return 0
@@ -193,82 +193,82 @@ class _Kept:
         return Register(read=read, write=write, indices=(2, 3))
 
     def _set_modulo(self, index: int, value: Number) -> int:
-        if self._drive.motor_on:
+        if self._motor.motor_on:
             return MOTOR_MUST_BE_OFF
-        self._drive.modulo[index - 1] = int(value)
+        self._motor.modulo[index - 1] = int(value)
         return 0
 
 
-def _motor(drive: EmulatedElmo) -> Write:
+def _motor(motor: ElmoMotor) -> Write:
     def write(_: int, value: Number) -> int:
         if value not in (0, 1):
             return OUT_OF_RANGE
-        if value and drive.problem:
+        if value and motor.problem:
             return NOT_READY
-        drive.switch(on=bool(value))
+        motor.switch(on=bool(value))
         return 0
 
     return write
 
 
-def _unit_mode(drive: EmulatedElmo) -> Write:
+def _unit_mode(motor: ElmoMotor) -> Write:
     def write(_: int, value: Number) -> int:
-        if drive.motor_on:
+        if motor.motor_on:
             return MOTOR_MUST_BE_OFF
         if value not in (1, 2, 3, 4, 5):
             return OUT_OF_RANGE
-        if drive.fixed_unit_mode is None:
-            drive.unit_mode = int(value)
+        if motor.fixed_unit_mode is None:
+            motor.unit_mode = int(value)
         return 0
 
     return write
 
 
-def _reference_mode(drive: EmulatedElmo) -> Write:
+def _reference_mode(motor: ElmoMotor) -> Write:
     def write(_: int, value: Number) -> int:
         if value not in (0, 1):
             return OUT_OF_RANGE
-        drive.reference_mode = int(value)
+        motor.reference_mode = int(value)
         return 0
 
     return write
 
 
-def _torque(drive: EmulatedElmo) -> Write:
+def _torque(motor: ElmoMotor) -> Write:
     def write(_: int, value: Number) -> int:
-        if not drive.motor_on:
+        if not motor.motor_on:
             return MOTOR_MUST_BE_ON
-        if drive.unit_mode != _TORQUE:
+        if motor.unit_mode != _TORQUE:
             return BAD_UNIT_MODE
-        if abs(value) > drive.current_limits[0] + _CURRENT_TOLERANCE:
+        if abs(value) > motor.current_limits[0] + _CURRENT_TOLERANCE:
             return OUT_OF_RANGE
-        drive.command_current(_quantised(float(value), drive.settings.mantissa_bits))
+        motor.command_current(_quantised(float(value), motor.settings.mantissa_bits))
         return 0
 
     return write
 
 
-def _position(drive: EmulatedElmo) -> Write:
+def _position(motor: ElmoMotor) -> Write:
     def write(_: int, value: Number) -> int:
-        if drive.motor_on:
+        if motor.motor_on:
             return MOTOR_MUST_BE_OFF
-        drive.count_offset += int(value) - drive.counts()
+        motor.count_offset += int(value) - motor.counts()
         return 0
 
     return write
 
 
-def _stop(drive: EmulatedElmo) -> int:
-    drive.current = 0.0
+def _stop(motor: ElmoMotor) -> int:
+    motor.current = 0.0
     return 0
 
 
-def _analog(drive: EmulatedElmo, index: int) -> float:
+def _analog(motor: ElmoMotor, index: int) -> float:
     """Inputs 1 and 2 [V]; currents of the phases, of which two carry it [A]; the supply [V]."""
     share = {3: 1.0, 4: -1.0, 5: 0.0}
     if index == 6:
-        return drive.settings.supply
-    return drive.voltage() if index < 3 else share[index] * drive.current
+        return motor.settings.supply
+    return motor.voltage() if index < 3 else share[index] * motor.current
 
 
 def _quantised(current: float, bits: int) -> float:
