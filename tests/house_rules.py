@@ -317,6 +317,8 @@ TOP = {"__init__", "__main__"}
 ASKED_FOR = {"hardware", "commissioning"}
 # The registry of drive types names what is loaded only when a bench asks for it.
 NAMED_ON_PURPOSE = {"hardware.bench.drive_types"}
+# Folders in which files may still import each other in a circle.
+CIRCLES_LEFT = {"estimate", "joints", "robot", "servo"}
 MEDIAN = 130  # lines of a Python file, at most
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
 HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit", "pinocchio"}
@@ -365,7 +367,7 @@ def unused_arrows(package: Path) -> list[tuple[str, str]]:
 
 
 def module_graph(package: Path) -> dict[str, set[str]]:
-    """Return what each module of a package imports of it, in functions too, but for the type checker."""
+    """Return what each module of a package imports of it, also in functions or for the type checker."""
     names = {_module(path, package): path for path in sorted(package.rglob("*.py"))}
     known = {name.removesuffix(".__init__") for name in names}
     graph: dict[str, set[str]] = {}
@@ -373,7 +375,7 @@ def module_graph(package: Path) -> dict[str, set[str]]:
         text = path.read_text(encoding="utf-8")
         own = module.removesuffix(".__init__")
         graph[own] = set()
-        for _, target, _ in _imported(text, module, package, typing=False):
+        for _, target, _ in _imported(text, module, package, texts=False):
             inner = target.partition(".")[2]
             if f"{inner}.__init__" in names:
                 inner = f"{inner}.__init__"
@@ -385,22 +387,22 @@ def module_graph(package: Path) -> dict[str, set[str]]:
 
 
 def _circles(package: Path) -> list[str]:
-    """Circles of imports that cross two folders: between modules, and between folders."""
+    """Circles of imports: between files, and between folders."""
     graph = module_graph(package)
     folder = {
         m: _folder(m if (package / m.replace(".", "/")).is_dir() else m.rpartition(".")[0])
         for m in graph
     }
     found = [
-        f"python/jointid: {', '.join(sorted(circle))} import each other across folders"
+        f"python/jointid: files {', '.join(sorted(circle))} import each other"
         for circle in _components(graph)
-        if len({folder[module] for module in circle}) > 1
+        if len(inside := {folder[module] for module in circle}) > 1 or inside - CIRCLES_LEFT
     ]
     folders: dict[str, set[str]] = {}
     for module, targets in graph.items():
         if folder[module]:  # the face imports everything
-            inside = folders.setdefault(folder[module], set())
-            inside |= {folder[t] for t in targets if folder[t] and folder[t] != folder[module]}
+            used = folders.setdefault(folder[module], set())
+            used |= {folder[t] for t in targets if folder[t] and folder[t] != folder[module]}
     found += [
         f"python/jointid: folders {', '.join(sorted(circle))} import each other"
         for circle in _components(folders)
@@ -517,15 +519,13 @@ def _imports(path: Path, repository: Path) -> Iterator[str]:
 
 
 def _imported(
-    text: str, module: str, package: Path, *, typing: bool = True
+    text: str, module: str, package: Path, *, texts: bool = True
 ) -> Iterator[tuple[int, str, bool]]:
     """Yield line, full module name, and whether loading the module leaves it alone.
 
-    With `typing`, also what is imported for the type checker alone.
+    With `texts`, also modules that a text names.
     """
-    for node, late, checked in _naming(text):
-        if checked and not typing:
-            continue
+    for node, late in _naming(text):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield node.lineno, alias.name, late
@@ -543,7 +543,7 @@ def _imported(
                     place.is_dir() or place.with_suffix(".py").exists() or alias.name == "_core"
                 )
                 yield node.lineno, full if is_module else base, late
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+        elif texts and isinstance(node, ast.Constant) and isinstance(node.value, str):
             # A module named in a text is imported by its name, sooner or later.
             named = re.fullmatch(r"(jointid(?:\.\w+)+)(?::\w+)?", node.value)
             if named and module not in NAMED_ON_PURPOSE:
@@ -556,13 +556,13 @@ _CHECKING = {"TYPE_CHECKING", "typing.TYPE_CHECKING"}
 
 
 @cache
-def _naming(text: str) -> list[tuple[ast.AST, bool, bool]]:
-    """A source's imports and texts: whether loading leaves each alone, and whether the type checker alone reads it."""
-    found: list[tuple[ast.AST, bool, bool]] = []
+def _naming(text: str) -> list[tuple[ast.AST, bool]]:
+    """A source's imports and texts, and whether loading leaves each alone."""
+    found: list[tuple[ast.AST, bool]] = []
 
-    def look(node: ast.AST, late: bool, checked: bool) -> None:
+    def look(node: ast.AST, late: bool) -> None:
         if isinstance(node, ast.Import | ast.ImportFrom | ast.Constant):
-            found.append((node, late or checked, checked))
+            found.append((node, late))
             return
         late = late or isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
         only = isinstance(node, ast.If) and ast.unparse(node.test) in _CHECKING
@@ -570,7 +570,7 @@ def _naming(text: str) -> list[tuple[ast.AST, bool, bool]]:
             value = getattr(node, name)
             for each in value if isinstance(value, list) else (value,):
                 if isinstance(each, ast.AST) and each._fields:
-                    look(each, late, checked or (only and name == "body"))
+                    look(each, late or (only and name == "body"))
 
-    look(ast.parse(text), False, False)
+    look(ast.parse(text), False)
     return found
