@@ -210,7 +210,9 @@ FOLDERS: dict[str, Folder] = {
         },
         packages={"numpy"},
     ),
-    "servo": Folder(may_use={"balance", *_DATA, "estimate"}, packages={"numpy"}),
+    "servo": Folder(
+        may_use={"balance", *_DATA, "estimate", "identification/causes"}, packages={"numpy"}
+    ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study", "servo"},
         packages={"numpy", "matplotlib"},

@@ -7,8 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from jointid.base.advice import Action
+from jointid.estimate.causes import Causes
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, rounded, two_digits
+from jointid.identification.causes.cause_finding import finding_of_cause
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.finding_types import TYPES
 from jointid.servo.layout import LAYOUTS, MOTOR
@@ -20,12 +22,15 @@ _OTHER_RUNS = Action("record", text="more runs, with other gains and motions")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
-def findings_of(estimate: ServoEstimate, unknowns: Unknowns) -> tuple[Finding, ...]:
+def findings_of(
+    estimate: ServoEstimate, unknowns: Unknowns, causes: Causes | None = None
+) -> tuple[Finding, ...]:
     """Return the findings, the most severe first."""
     found = [
         *_inseparable(estimate, unknowns),
         *_not_sensed(estimate),
         *_poor_fit(estimate),  # before its effects
+        *_causes(estimate, causes),
         *_at_bound(estimate),
         *_vague(estimate),
     ]
@@ -62,6 +67,13 @@ def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
             details="nothing says how large the motor's torque is",
             parameters=tuple(estimate.parameters),
         )
+
+
+def _causes(estimate: ServoEstimate, causes: Causes | None) -> Iterator[Finding]:
+    for cause in causes.found if causes is not None else ():
+        names = [name for name in cause.relative if name in estimate.parameters]
+        motor = MOTOR if {"torque_per_voltage", "back_emf"} & set(names) else ()
+        yield finding_of_cause(cause, (*names, *motor))
 
 
 def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:

@@ -19,7 +19,9 @@ from jointid.recording.recording import Recording
 from jointid.servo.dividing import share_of
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.findings import findings_of
+from jointid.servo.fitted_servo import FittedServo
 from jointid.servo.layout import DEFAULT_MODEL, HELD, KNOWN, LAYOUTS, LOAD_FRICTION, Layout
+from jointid.servo.named_causes import causes_of_servo
 from jointid.servo.resampling import drawn, units_of
 from jointid.servo.row_lead import lead_of
 from jointid.servo.signals import ServoSignals, signals_of
@@ -151,7 +153,8 @@ def identify_servo(
         findings=(),
         seconds=0.0,
     )
-    found = findings_of(estimate, unknowns)
+    fit = FittedServo.of(joint, runs, grid, filled, unknowns, values)
+    found = findings_of(estimate, unknowns, causes_of_servo(fit, estimate))
     return replace(estimate, findings=found, seconds=time.perf_counter() - started)
 
 

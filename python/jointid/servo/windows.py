@@ -48,6 +48,7 @@ _REACH = int(0.5 * _SPAN * _PIECES)  # grid steps in half of that span
 class ServoGrid:
     """All runs on even grids, one after the other (n instants), and their windows."""
 
+    position: Array  # (n,) [rad]
     velocity: Array  # (n,) [rad/s]
     voltage: Array  # (n,) [V]
     late: Array  # (n,) [V], what a held command adds
@@ -166,6 +167,7 @@ def _part(
     steps = np.full(count, step)
     steps[0] = 0.0
     return times, {
+        "position": position,
         "velocity": velocity,
         "voltage": voltage,
         "late": late,

@@ -186,11 +186,11 @@ def drift(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def harmonic(fit: FittedBalance) -> Iterator[Candidate]:
-    """Of orders of which the motion covers enough; the first is gravity's where that is not known."""
-    if not _revolute(fit):
+    """Of orders of which the motion covers enough; the first is gravity's, or of a wrong centre of mass."""
+    if not (_revolute(fit) and fit.has_torque):
         return
     reach = max(float(np.ptp(run.position)) for run in fit.runs)
-    for order in range(1 if fit.knows_link else 2, 7):
+    for order in range(2, 7):
         # Less than half a period is a slope, which other candidates are, too.
         if order * reach > _PERIOD and not _has_order(fit, "position", float(order)):
             yield Candidate(name="harmonic", columns=_angle(fit, float(order)), detail=str(order))

@@ -123,6 +123,11 @@ class FittedBalance(ABC):
         return False
 
     @property
+    def has_torque(self) -> bool:
+        """Whether torque was recorded; otherwise its scale is that of a known load over the angle."""
+        return True
+
+    @property
     def load(self) -> Array | None:
         """Integrals of the torque through the gear; None where motion and sensor have to tell it."""
         return None

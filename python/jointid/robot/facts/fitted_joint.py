@@ -36,7 +36,7 @@ class FittedJoint(FittedBalance):
     joint: int
     attempt: Attempt
     kept: Whole  # its rows of the balance
-    places: tuple[int, ...]  # of its parameters in the fit
+    places: Whole  # of its parameters in the fit
 
     @classmethod
     def of(cls, attempt: Attempt, joint: int) -> Self:
@@ -44,10 +44,8 @@ class FittedJoint(FittedBalance):
         balance, fit = attempt.balance, attempt.fit
         rows, mine = balance.rows, balance.places[joint]
         kept = mine[np.isin(rows.piece[mine], list(attempt.excerpts))]
-        places = tuple(
-            place
-            for place, (owner, name) in enumerate(fit.labels)
-            if owner == joint and name not in _HELD
+        places = np.flatnonzero(
+            [owner == joint and name not in _HELD for owner, name in fit.labels]
         )
         jacobian = fit.jacobian[kept][:, list(places)]
         free = tuple(
@@ -60,7 +58,7 @@ class FittedJoint(FittedBalance):
             attempt=attempt,
             kept=kept,
             places=places,
-            best=fit.values[list(places)],
+            best=fit.values[places],
             free=free,
             residual=fit.residual[kept],
             jacobian=-jacobian[:, list(free)],
@@ -201,7 +199,7 @@ class FittedJoint(FittedBalance):
         changed = self._changed(changes)
         if changed is None:
             return self._alone()
-        return (Action("call", {"models": (self.model, changed)}, function="compare_robot_models"),)
+        return (Action("call", {"models": [self.model, changed]}, function="compare_robot_models"),)
 
     def _changed(self, changes: Mapping[str, Any]) -> str | None:
         """The model with these fields; None where a robot's joint has no such model."""

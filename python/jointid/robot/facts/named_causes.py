@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from jointid.estimate.causes import Cause, Causes
-from jointid.estimate.findings import TITLE, Finding
+from jointid.estimate.findings import Finding
 from jointid.estimate.objections import EXPLAINED
+from jointid.identification.causes.cause_finding import finding_of_cause
 from jointid.identification.causes.causes import causes_of
-from jointid.identification.causes.families import BY_NAME
 from jointid.robot.facts.fitted_joint import FittedJoint
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES
@@ -27,13 +27,6 @@ def causes_of_joint(attempt: Attempt, name: str) -> Causes:
 
 
 def cause_finding(cause: Cause, name: str, parameters: tuple[str, ...]) -> Finding:
-    """Return the finding of a joint's cause, in the words of a single joint."""
-    code = _CALLED.get(cause.name, cause.name)
-    title = f"{name}: {cause.title}"
-    return (TYPES[code] if code in TYPES else BY_NAME[code].finding_type).finding(
-        title if len(title) <= TITLE else f"{name}: {cause.meaning}",
-        *cause.advice,
-        details=cause.details if len(title) <= TITLE else str(cause),
-        evidence=cause.evidence(cause.relative),
-        parameters=parameters,
-    )
+    """Return the finding of a joint's cause."""
+    kind = TYPES.get(_CALLED.get(cause.name, cause.name))
+    return finding_of_cause(cause, parameters, name, kind)

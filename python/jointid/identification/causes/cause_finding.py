@@ -1,0 +1,31 @@
+"""The finding of a cause, whatever its balance is of."""
+
+from __future__ import annotations
+
+from jointid.estimate.causes import Cause
+from jointid.estimate.findings import TITLE, Finding
+from jointid.estimate.types_of_findings import FindingType
+from jointid.identification.causes.families import BY_NAME
+
+
+def finding_of_cause(
+    cause: Cause, parameters: tuple[str, ...], joint: str = "", kind: FindingType | None = None
+) -> Finding:
+    """Return the warning of a cause that moves values, in the words of a single joint.
+
+    Parameters
+    ----------
+    joint : str
+        In front of the title. Default: nothing.
+    kind : FindingType, optional
+        Default: that of the cause.
+    """
+    of = f"{joint}: " if joint else ""
+    fits = len(of + cause.title) <= TITLE
+    return (kind or BY_NAME[cause.name].finding_type).finding(
+        of + (cause.title if fits else cause.meaning),
+        *cause.advice,
+        details=cause.details if fits else str(cause),
+        evidence=cause.evidence(cause.relative),
+        parameters=parameters,
+    )
