@@ -88,6 +88,10 @@ class Cause:
     @property
     def title(self) -> str:
         """What is missing, its size, and what it moves, as much as a title holds."""
+        return self.titled(TITLE)
+
+    def titled(self, most: int) -> str:
+        """Return what is missing and its size, and what it moves up to so many letters."""
         inside = ", ".join(filter(None, (self.detail, self.size.partition(", ")[0])))
         what = self.meaning + (f" ({inside})" if inside else "")
         if not self.harmful:
@@ -96,7 +100,7 @@ class Cause:
             return what
         title, before = what, ": with it, "
         for each in self._moved:
-            if len(title + before + each) <= TITLE:
+            if len(title + before + each) <= most:
                 title, before = title + before + each, ", "
         return title
 

@@ -15,7 +15,8 @@ from jointid.base.values import dataclass
 from jointid.identification.causes.fitted_balance import FittedBalance
 from jointid.identification.causes.samples import Motion, Samples
 from jointid.joint.joint import Joint
-from jointid.servo.layout import BY_LOAD, LOAD_FRICTION
+from jointid.joint.model import Model
+from jointid.servo.layout import BY_LOAD, LAYOUTS, LOAD_FRICTION
 from jointid.servo.signals import ServoSignals
 from jointid.servo.solving import Unknowns, weights
 from jointid.servo.windows import ServoGrid
@@ -183,9 +184,14 @@ class FittedServo(FittedBalance):
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
         """A call of `compare_servo_models`, where a servo can have such a model."""
-        if set(changes) != {LOAD_FRICTION.option}:
+        known: dict[str, Any] = {
+            "name": self.model_name,
+            LOAD_FRICTION.option: self.unknowns.load_friction,
+        }
+        wanted = known | changes
+        if wanted.keys() != known.keys() or wanted["name"] not in LAYOUTS:
             return self.identified_with(**changes)
-        models = [f"{self.model_name}:{LOAD_FRICTION.option}{more}" for more in ("=false", "")]
+        models = [str(Model(**each)) for each in (known, wanted)]
         return (Action("call", {"models": models}, function="compare_servo_models"),)
 
 

@@ -17,6 +17,7 @@ from jointid.recording.order_statistics import quantile_of_sizes
 Array = NDArray[np.float64]
 
 _PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
+_OF_TYPICAL = (0.05, 0.2, 0.6)  # of a fast speed: speeds by which a friction's shape is scaled
 _MOST_RUNS = 3  # recordings of which each is tried by itself
 
 
@@ -34,6 +35,8 @@ class Candidate:
         Which of its kind, e.g. the order of a harmonic.
     numbers : tuple
         Name, value and unit behind the length of the numbers in `detail`, where @ is the unit of length.
+    unit : str
+        Of its coefficient, where that is its size, for a hinge and behind a bar for a slide. Default: none is shown.
     family : str
         Causes that a recording hardly separates share one.
     finest : bool
@@ -44,6 +47,7 @@ class Candidate:
     columns: Array
     detail: str = ""
     numbers: tuple[tuple[str, float, str], ...] = ()
+    unit: str = ""
     family: str = ""
     finest: bool = False
 
@@ -216,6 +220,38 @@ def delay(fit: FittedBalance) -> Iterator[Candidate]:
         change = fit.late(signal)
         if change is not None:
             yield Candidate(name="delay", columns=change[:, None], detail=signal)
+
+
+def other_laws() -> list[_core.Term]:
+    """Return the terms of friction of the speed alone that no other cause stands for.
+
+    Friction that is there at rest is dry, or low-speed friction.
+    """
+    of_speed = [t for t in _core.terms() if t.friction and not (t.needs_load or t.side)]
+    return [term for term in of_speed if not term.at_rest and term.basis != "linear"]
+
+
+def other_law(fit: FittedBalance) -> Iterator[Candidate]:
+    """Friction of the core's table that the model lacks; with a shape in proportion to a power of usual speeds."""
+    present = {term.basis for term in fit.terms if term is not None and term.friction}
+    speeds = _typical_speed(fit) * np.array(_OF_TYPICAL)
+    for term in other_laws():
+        if term.basis in present:
+            continue
+        rows = [_core.shape(name) for name in term.shapes]
+        tried = {tuple(row.typical or speed**row.speed_power for row in rows) for speed in speeds}
+        for shapes in sorted(tried):
+            column = fit.integral_of_each(functools.partial(_of_term, term=term, shapes=shapes))
+            yield Candidate(
+                name="other_law",
+                columns=column[:, None],
+                detail=term.meaning,
+                unit=f"{term.unit}|{term.unit_prismatic}",
+            )
+
+
+def _of_term(_: int, run: Samples, term: _core.Term, shapes: tuple[float, ...]) -> Array:
+    return np.asarray(_core.friction_basis(term.key, run.velocity, np.array(shapes)))
 
 
 def asymmetry(fit: FittedBalance) -> Iterator[Candidate]:

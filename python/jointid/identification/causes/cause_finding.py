@@ -21,11 +21,13 @@ def finding_of_cause(
         Default: that of the cause.
     """
     of = f"{joint}: " if joint else ""
-    fits = len(of + cause.title) <= TITLE
+    title = cause.titled(TITLE - len(of))
+    if len(of + title) > TITLE:
+        title = cause.meaning
     return (kind or BY_NAME[cause.name].finding_type).finding(
-        of + (cause.title if fits else cause.meaning),
+        of + title,
         *cause.advice,
-        details=cause.details if fits else str(cause),
+        details=cause.details if title == cause.title else str(cause),
         evidence=cause.evidence(cause.relative),
         parameters=parameters,
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
+from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.values import dataclass
 from jointid.estimate.types_of_findings import FindingType
@@ -74,6 +75,13 @@ def _with_order(fit: FittedBalance, field: str, cause: Attributed) -> tuple[Acti
     return fit.identified_with(**{field: orders})
 
 
+def _against_another_law(fit: FittedBalance, cause: Attributed) -> tuple[Action, ...]:
+    """Compare with the first model that has the term."""
+    of_it = [term.key for term in of.other_laws() if term.meaning == cause.candidate.detail]
+    models = [model.name for model in _core.models() if set(of_it) & set(model.terms)]
+    return fit.compared_with(name=models[0]) if models else ()
+
+
 def _against_asymmetry(fit: FittedBalance, _: Attributed) -> tuple[Action, ...]:
     """Compare, where no sensor's offset looks like it."""
     if "sensor_offset" in fit.names:
@@ -103,7 +111,15 @@ def _against_slow_motion(fit: FittedBalance, _: Attributed) -> tuple[Action, ...
     return (*fit.compared_with(name=richer), *_SLOW)
 
 
-FAMILIES = (
+OTHER_LAW = Family(
+    name="other_law",
+    meaning="friction of another law",
+    remedy="use a model that has this friction",
+    candidates=of.other_law,
+    advice=_against_another_law,
+)
+
+FAMILIES: tuple[Family, ...] = (
     Family(
         name="gravity",
         meaning="gravity that the model lacks",
@@ -233,6 +249,8 @@ FAMILIES = (
             Action("inspect", text="what happened at that time"),
         ),
     ),
+    # Of a table in which other causes stand for all friction there is none.
+    *((OTHER_LAW,) if of.other_laws() else ()),
 )
 
 BY_NAME = {family.name: family for family in FAMILIES}

@@ -88,6 +88,9 @@ def described(
     elif name == "inertia_varies":
         range_of_it = _half_range(fit, each) / (abs(fit.value("inertia")) or 1.0)
         size, numbers["range"] = f"±{percent(range_of_it)}", Measured(range_of_it)
+    elif each.candidate.unit:
+        unit = each.candidate.unit.split("|")[prismatic]
+        size, numbers["coefficient"] = f"{found[0]:.3g} {unit}", Measured(float(found[0]), unit)
     if name in ("harmonic", "ripple", "inertia_varies"):
         orders = detail.split(" and ")
         detail = " and ".join(f"{order} × {_OF.get(name, '')}angle" for order in orders)
