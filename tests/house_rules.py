@@ -319,8 +319,6 @@ TOP = {"__init__", "__main__"}
 ASKED_FOR = {"hardware", "commissioning"}
 # The registry of drive types names what is loaded only when a bench asks for it.
 NAMED_ON_PURPOSE = {"hardware.bench.drive_types"}
-# Folders in which files may still import each other in a circle.
-CIRCLES_LEFT = {"estimate", "joints", "robot", "servo"}
 MEDIAN = 130  # lines of a Python file, at most
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
 HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit", "pinocchio"}
@@ -398,7 +396,6 @@ def _circles(package: Path) -> list[str]:
     found = [
         f"python/jointid: files {', '.join(sorted(circle))} import each other"
         for circle in _components(graph)
-        if len(inside := {folder[module] for module in circle}) > 1 or inside - CIRCLES_LEFT
     ]
     folders: dict[str, set[str]] = {}
     for module, targets in graph.items():
