@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bus_options import BusOptions
 from jointid.hardware.bench.drive_format import DriveFormat
-from jointid.hardware.bench.drive_types import DEFAULT_TYPE, registered
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE, adapter_of
 from jointid.hardware.bench.emulation import Emulation
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.session.limits import SessionLimits
@@ -167,4 +167,4 @@ def drive_type(name: str) -> DriveType:
         No text, no such type, several packages that register it, one that registers a built-in name, or an
         entry point that cannot be used: `__cause__` is what its package raised.
     """
-    return registered(name, DriveType)
+    return adapter_of(name, DriveType)

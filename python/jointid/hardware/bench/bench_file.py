@@ -10,7 +10,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bus_options import BusOptions
 from jointid.hardware.bench.drive_format import DriveFormat
-from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type_names, registered
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE, adapter_of, drive_type_names
 from jointid.hardware.bench.emulation import Emulation, joint_with_truth
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.bench.table import Table, type_name, types_of
@@ -72,7 +72,7 @@ def bench_fields(path: str | Path, *, with_motion: bool = True) -> dict[str, Any
         )
     session = Table(document["session"], "session", source)
     name = session.table("drive").choice("type", DEFAULT_TYPE, drive_type_names())
-    adapter = registered(name, DriveFormat)
+    adapter = adapter_of(name, DriveFormat)
     tables = (*_TABLES, *adapter.tables)
     for key, value in session.entries.items():
         if isinstance(value, dict) and key not in tables:

@@ -26,8 +26,8 @@ def drive_type_names() -> tuple[str, ...]:
     return tuple(sorted({*_BUILT_IN, *entry_points(group=ENTRY_POINTS).names}))
 
 
-def registered(name: str, kind: type[T]) -> T:
-    """Return the adapter of a drive type as what `kind` says: see `drive_type`."""
+def adapter_of(name: str, kind: type[T]) -> T:
+    """Return the adapter of a drive type, of which the caller needs what `kind` has; see `drive_type`."""
     if not isinstance(name, str):
         raise _refused(name, "a text is expected")
     found: tuple[EntryPoint, ...] = tuple(entry_points(group=ENTRY_POINTS, name=name))
