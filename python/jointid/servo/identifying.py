@@ -153,8 +153,11 @@ def identify_servo(
         findings=(),
         seconds=0.0,
     )
-    fit = FittedServo.of(joint, runs, grid, filled, unknowns, values)
-    found = findings_of(estimate, unknowns, causes_of_servo(fit, estimate))
+    causes = None
+    if draws:  # without errors nothing says what a cause does to the values
+        fit = FittedServo.of(joint, runs, grid, filled, unknowns, values)
+        causes = causes_of_servo(fit, estimate)
+    found = findings_of(estimate, unknowns, causes)
     return replace(estimate, findings=found, seconds=time.perf_counter() - started)
 
 
