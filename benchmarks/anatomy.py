@@ -13,7 +13,7 @@ from store import Record
 import jointid as jid
 from jointid import _core
 from jointid.identification.prepared import prepare
-from jointid.identification.search.engine import Engine, Outcome
+from jointid.identification.search.run import Engine, Outcome
 from jointid.identification.search.search import Search
 from jointid.problem.settings import Settings
 
@@ -27,7 +27,7 @@ def once(contest: Contest, windows: int | None) -> dict[str, float]:
     options = _core.GaOptions()
     search = Search("ga", ga=options)
     marks = [time.perf_counter()]
-    prepared = prepare(contest.recording, contest.joint, Settings.of({"windows": windows}))
+    prepared = prepare((contest.recording,), contest.joint, Settings.of({"windows": windows}))
     marks.append(time.perf_counter())
     engine = Engine.of(prepared.penalty, prepared.domain, 0)
     marks.append(time.perf_counter())

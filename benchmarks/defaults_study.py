@@ -13,7 +13,7 @@ import jointid as jid
 from jointid import _core
 from jointid.cli.demonstration import data_folder
 from jointid.identification.search.domain import SearchDomain, domain_for
-from jointid.identification.search.engine import Engine
+from jointid.identification.search.run import Engine
 from jointid.problem.problem import Problem
 from jointid.problem.terms import Request, choose_terms
 

@@ -101,7 +101,7 @@ def main() -> None:
     lines, all_ratios = [], []
     for name, run, known in logs(parser.parse_args().data):
         estimate = jid.identify(run, known, search="separable")
-        prepared = prepare(run, known)
+        prepared = prepare((run,), known)
         best = np.array([estimate.parameters[each].value for each in prepared.domain.names])
         _, residual, jacobian = prepared.penalty.linearised(best)
         free = [prepared.domain.names.index(each) for each in estimate.free]

@@ -21,7 +21,7 @@ from jointid import _core
 from jointid.base.files import write_whole
 from jointid.cli.demonstration import data_folder
 from jointid.identification.search.domain import SearchDomain, domain_for
-from jointid.identification.search.engine import Engine
+from jointid.identification.search.run import Engine
 from jointid.joint.model import Model
 from jointid.problem.problem import Problem
 from jointid.problem.terms import Request, choose_terms

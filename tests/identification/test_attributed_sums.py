@@ -92,7 +92,7 @@ def test_sums_of_some_samples_at_a_time_are_those_of_all(
 ) -> None:
     joint = jid.thesis_joint()
     whole = jid.load(WELL_EXCITED)
-    problem = prepare([whole.crop(0.0, 3.0), whole.crop(4.0, 9.0)], joint).problem
+    problem = prepare((whole.crop(0.0, 3.0), whole.crop(4.0, 9.0)), joint).problem
     penalty = problem.penalty(None)
     domain = domain_for(penalty, joint, None, problem.peak_speed)
     best = 0.5 * (domain.lower + domain.upper)

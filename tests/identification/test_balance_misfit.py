@@ -45,7 +45,7 @@ def slow_motion(number: int) -> tuple[Problem, jid.Recording]:
         sensor=(signals(time - LATE)[3] - 5.0) / 2.0,
     )
     joint = jid.Joint(inertia=2.5, sensor=True, model=jid.Model("stribeck"))
-    return prepare(run, joint, on_time=True).problem, run
+    return prepare((run,), joint, on_time=True).problem, run
 
 
 @pytest.mark.parametrize("number", range(6))

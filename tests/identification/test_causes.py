@@ -143,7 +143,7 @@ def test_a_cause_that_stretches_show_is_sized_by_all_of_the_recording(
     runs: dict[str, jid.Recording], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(fitted, "_STRETCH", 16)
-    problem = prepare(runs["harmonic"], jid.thesis_joint()).problem
+    problem = prepare((runs["harmonic"],), jid.thesis_joint()).problem
     penalty = problem.penalty(None)
     best = np.array([2.5, 25.0, 20.0, 100.0, 20.0, 2.4, 15.0])
     whole = Fitted.of(problem, penalty, best, (1, 2, 4), most=256)
@@ -176,7 +176,7 @@ def test_sums_of_windows_end_with_their_stretch(
     whole = runs["clean"]
     recordings = [whole] if cut == 0.0 else [whole.crop(0.0, cut), whole.crop(cut + 0.1, 9.0)]
     monkeypatch.setattr(fitted, "_STRETCH", 64)
-    problem = prepare(recordings, jid.thesis_joint()).problem
+    problem = prepare(tuple(recordings), jid.thesis_joint()).problem
     penalty = problem.penalty(None)
     best = np.array([2.5, 25.0, 20.0, 100.0, 20.0, 2.4, 15.0])[: len(penalty.names)]
     every = Fitted.of(problem, penalty, best, (1, 2))

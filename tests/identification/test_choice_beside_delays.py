@@ -65,7 +65,7 @@ def test_the_race_is_run_again_without_the_delay(found: jid.Estimate) -> None:
 
 
 def test_a_model_that_its_fit_does_not_support_gives_way(held: jid.Recording) -> None:
-    stribeck = prepare(held, None, choose=True, unfit={"coulomb_viscous": "it is too simple"})
+    stribeck = prepare((held,), None, choose=True, unfit={"coulomb_viscous": "it is too simple"})
     assert stribeck.selection is not None
     assert stribeck.selection["coulomb_viscous"].refused == "it is too simple"
     assert stribeck.selection.model != "coulomb_viscous"
@@ -127,7 +127,7 @@ def test_a_held_torque_is_proposed(
 ) -> None:
     """A torque early by half a sample is a held one; by no time, or held already, it is not."""
     settings = Settings.of({"torque_hold": torque_hold, "model": "coulomb_viscous"})
-    problem = prepare(held, None, settings).problem
+    problem = prepare((held,), None, settings).problem
     late = -early * held.sample_period
     fit = SimpleNamespace(sample_period=held.sample_period, torque_held=problem.hold(0) == "zoh")
     cause = SimpleNamespace(

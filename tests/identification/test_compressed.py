@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import jointid as jid
 from jointid import _core
 from jointid.identification.search.domain import SearchDomain, domain_for
-from jointid.identification.search.engine import Engine, Outcome
+from jointid.identification.search.run import Engine, Outcome
 from jointid.problem.problem import Problem
 from jointid.problem.terms import Request, choose_terms
 

@@ -90,7 +90,7 @@ def test_errors_are_those_of_resampled_motion() -> None:
     """On a real log: against a block bootstrap that shares nothing with ours but the Jacobian."""
     run = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
-    prepared = prepare(run, joint)
+    prepared = prepare((run,), joint)
     estimate = jid.identify(run, joint, search="separable")
     best = np.array([p.value for p in estimate.parameters.values()])
     _, residual, jacobian = prepared.penalty.linearised(best)

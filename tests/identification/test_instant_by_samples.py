@@ -34,7 +34,7 @@ def runs() -> list[jid.Recording]:
 
 def instants(recordings: Sequence[jid.Recording]) -> list[SensorInstant]:
     """What is found out about the instant of each reading."""
-    found = [prepare(run, JOINT).refinements.sensor_instant for run in recordings]
+    found = [prepare((run,), JOINT).refinements.sensor_instant for run in recordings]
     return [each for each in found if each is not None]
 
 
@@ -73,7 +73,7 @@ def test_a_coarse_reading_in_the_middle_of_the_step_is_left_there(
 def test_a_reading_that_remembers_is_not_taken_for_an_early_one(runs: list[jid.Recording]) -> None:
     """Behind a filter the samples before tell more of the reading than the equation allows."""
     for run in runs[:3]:
-        problem = prepare(run, JOINT).problem
+        problem = prepare((run,), JOINT).problem
         assert by_samples(problem, HALF) is not None
         slow = np.array(run.sensor)
         for k in range(1, len(slow)):
@@ -83,7 +83,7 @@ def test_a_reading_that_remembers_is_not_taken_for_an_early_one(runs: list[jid.R
 
 
 def test_finer_samples_are_left_to_the_windows(runs: list[jid.Recording]) -> None:
-    problem = prepare(runs[0], JOINT).problem
+    problem = prepare((runs[0],), JOINT).problem
     assert by_samples(problem, HALF) is not None
     time = problem.recordings[0].time
     run = problem.recordings[0].with_signals(time=0.25 * time)

@@ -117,7 +117,7 @@ def test_the_estimate_of_one_or_more_threads_is_the_same(clean: jid.Recording) -
 
 def test_either_side_of_the_regression(noisy: list[jid.Recording]) -> None:
     """At the shapes found they are what the residuals themselves give."""
-    prepared = prepare(noisy[0], jid.thesis_joint())
+    prepared = prepare((noisy[0],), jid.thesis_joint())
     estimate = found(noisy[0])
     names = list(prepared.penalty.names)
     best = np.array([estimate.parameters[name].value for name in names])

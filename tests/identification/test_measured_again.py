@@ -95,7 +95,7 @@ def test_draws_come_in_opposite_pairs(runs: list[jid.Recording]) -> None:
 def test_a_shift_of_one_sign_is_no_chance_and_one_of_many_is(runs: list[jid.Recording]) -> None:
     run = runs[0]
     joint = jid.Joint(sensor=False, model=jid.Model.parse("coulomb_viscous:gravity=free"))
-    prepared = prepare(run, joint)
+    prepared = prepare((run,), joint)
     problem, penalty = prepared.problem, prepared.penalty
     best = np.array([jid.identify(run, joint).parameters[name].value for name in penalty.names])
     segments = motion_segments(Motion.of(problem, penalty))

@@ -6,7 +6,7 @@ from example_recordings import WELL_EXCITED
 from simulated_joint import simulate
 
 import jointid as jid
-from jointid.identification.search.engine import Engine
+from jointid.identification.search.run import Engine
 
 
 @pytest.fixture(scope="module")

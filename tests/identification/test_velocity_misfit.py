@@ -36,7 +36,7 @@ def coarse() -> tuple[jid.Recording, jid.Recording]:
 def _prepared(recording: jid.Recording) -> tuple[Prepared, jid.Estimate]:
     joint = jid.Joint(inertia=2.5, sensor=True, model=jid.Model("stribeck"), torque_hold="zoh")
     estimate = jid.identify(recording, joint, search="separable")
-    return prepare(recording, joint), estimate
+    return prepare((recording,), joint), estimate
 
 
 def test_a_joint_at_rest_is_measured_at_rest_again() -> None:

@@ -58,7 +58,7 @@ def shown_gravity(
     if joint is not None and joint.model.gravity is not None:
         return None
     try:
-        model = prepare(runs, joint, settings, choose=True).problem.choice.model
+        model = prepare(tuple(runs), joint, settings, choose=True).problem.choice.model
     except InputError:  # each fit says what it cannot do
         return None
     found = model.resolved.gravity

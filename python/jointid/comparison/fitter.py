@@ -127,7 +127,7 @@ class Fitter:
         search = self._search
         try:
             prepared = prepare(
-                training,
+                tuple(training),
                 self._joint,
                 replace(self._settings, model=spec, windows=windows),
                 threads=search.threads,

@@ -73,7 +73,7 @@ def rehearse(
         for place, recording in enumerate(batch.recordings, start=begin):
             true = drawn[place - begin]
             try:
-                ready = prepare(recording, situation.joint, threads=1, on_time=True)
+                ready = prepare((recording,), situation.joint, threads=1, on_time=True)
             except InputError as error:
                 raise InputError(
                     f"no motion was found from which the joint can be identified: {error.reason}",

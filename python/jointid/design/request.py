@@ -54,7 +54,7 @@ def request_of(joint: Joint, wanted: Sequence[str] | None) -> Request:
             value=str(joint.model),
             place="joint.model",
         )
-    prepared = prepare(_template(joint), joint, Settings.of({"shift": {}, "min_speed": 0.0}))
+    prepared = prepare((_template(joint),), joint, Settings.of({"shift": {}, "min_speed": 0.0}))
     domain = prepared.domain
     names = tuple(name for name in domain.names if not domain.fixed(name))
     # No motion divides an offset from the friction of the two directions: it is taken as it is.

@@ -38,7 +38,7 @@ from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.plain_least_squares import second_look
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
-from jointid.identification.search.engine import Balance
+from jointid.identification.search.run import Balance
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect

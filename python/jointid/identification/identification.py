@@ -80,38 +80,27 @@ def identified(
         Whether the causes of a misfit are looked for: what compares models needs those of one of them. A drift that
         is taken away is looked for in any case. Default True.
     """
-    started = time.perf_counter()
-    model = settings.model
-    merged = model.over(joint.model) if isinstance(joint, Joint) else model
+    runs = listed(recordings)
+    merged = settings.model.over(joint.model) if isinstance(joint, Joint) else settings.model
+    tried = [settings]
     if merged.load_friction is True:
-        found = [
-            identified(
-                recordings,
-                joint,
-                replace(settings, model=model.replace(load_friction=load)),
-                search,
-                attribute=attribute,
-            )
-            for load in loads(merged, listed(recordings), joint)
-        ]
-        # A load that scales all values fits anything.
-        return min(found, key=lambda each: (_blocked(each), each.residuals.relative))
-    unfit: dict[str, str] = {}
-    while True:
-        prepared = prepare(
-            recordings,
-            joint,
-            settings,
-            threads=search.threads,
-            choose=True,
-            unfit=unfit,
-        )
-        outcome = run_search(search, prepared.penalty, prepared.domain)
-        estimate = prepared.estimate(search, outcome, started, attribute)
-        reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
-        if not reason or fitted in unfit:
-            return estimate
-        unfit[fitted] = reason  # held-out windows did not show it: the next best model
+        choices = loads(merged, runs, joint)
+        models = [settings.model.replace(load_friction=load) for load in choices]
+        tried = [replace(settings, model=model) for model in models]
+    found: list[Estimate] = []
+    for own in tried:
+        started, unfit = time.perf_counter(), dict[str, str]()
+        while True:
+            prepared = prepare(runs, joint, own, threads=search.threads, choose=True, unfit=unfit)
+            outcome = run_search(search, prepared.penalty, prepared.domain)
+            estimate = prepared.estimate(search, outcome, started, attribute)
+            reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
+            if not reason or fitted in unfit:
+                break
+            unfit[fitted] = reason  # held-out windows did not show it: the next best model
+        found.append(estimate)
+    # A load that scales all values fits anything.
+    return min(found, key=lambda each: (_blocked(each), each.residuals.relative))
 
 
 def _blocked(estimate: Estimate) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -40,8 +40,7 @@ from jointid.identification.refinements.sensor_instant import (
     without_early_reading,
 )
 from jointid.identification.search.domain import SearchDomain, domain_for
-from jointid.identification.search.engine import Outcome
-from jointid.identification.search.run import run_search
+from jointid.identification.search.run import Outcome, run_search
 from jointid.identification.search.search import Search
 from jointid.identification.search.stated_bounds import known_parameters
 from jointid.joint.joint import Joint
@@ -49,7 +48,6 @@ from jointid.joint.model import AUTO
 from jointid.joint.own_terms import INERTIA
 from jointid.problem.constant_torque import balanced
 from jointid.problem.problem import Problem
-from jointid.problem.recordings import listed
 from jointid.problem.settings import USUAL, Settings
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.recording.mending import Mend, mended
@@ -251,7 +249,7 @@ def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
 
 
 def prepare(
-    recordings: Recording | Sequence[Recording],
+    given: tuple[Recording, ...],
     joint: Joint | None,
     settings: Settings = USUAL,
     *,
@@ -266,6 +264,8 @@ def prepare(
 
     Parameters
     ----------
+    given : tuple of Recording
+        Checked, as `listed` returns them.
     choose : bool
         Whether a model without a name is chosen from the recordings. Default False: it is coulomb_viscous,
         and the name "auto" is refused.
@@ -284,7 +284,6 @@ def prepare(
     InputError
         Input that cannot be used.
     """
-    given = listed(recordings)
     raise_if_still(given)
     runs, mends = zip(*(mended(run) for run in given), strict=True)
     require_joint(joint)

@@ -13,8 +13,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.prepared import Prepared, prepare
-from jointid.identification.search.engine import Engine, Outcome
-from jointid.identification.search.run import concluded, separable
+from jointid.identification.search.run import Engine, Outcome, concluded, separable
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.problem.settings import Settings
