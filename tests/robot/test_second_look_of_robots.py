@@ -11,7 +11,7 @@ import pytest
 import small_arm
 
 import jointid as jid
-from jointid.robot.facts.unexamined_causes import CAUSES
+from jointid.robot.facts.named_causes import CAUSES
 from jointid.robot.motion import motion
 from jointid.robot.motion.loud_samples import quiet_velocity
 
@@ -184,12 +184,13 @@ def test_a_cause_is_named_or_what_is_not_examined_is_listed_and_needs_care(
 ) -> None:
     found = jid.identify_robot(pushed(run, fault(run)), robot, inertia=inertia)
     assert found.verdict.level != "usable"
-    listed = [each for each in found.findings if each.code == "unexamined_causes"]
-    assert all(each in finding.cause for finding in listed for each in CAUSES)
+    names = (cause,) if cause else ("unexamined_causes", "harmonic")
+    told = [each for each in found.findings if each.code in names]
+    assert told
+    assert all(each in finding.cause for finding in told for each in CAUSES)
     if cause:
-        told = [each for each in found.findings if each.code == cause]
         assert {each.parameters[0].split(".")[0] for each in told} == set(found.joints)
-    assert bool(cause or "harmonic" in {each.code for each in found.findings}) != bool(listed)
+        assert "unexamined_causes" not in {each.code for each in found.findings}
 
 
 def test_what_no_motion_shows_is_not_printed(run: jid.RobotRecording, robot: jid.Robot) -> None:

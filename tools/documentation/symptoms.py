@@ -15,6 +15,7 @@ from documentation.pictures import (
     steps,
     windows,
 )
+from jointid.identification.causes.families import FAMILIES
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,11 @@ class Symptom:
 
 
 _RATE = {"start": 1.0, "stop": 1.12}
-# By code.
+# By code. Of a cause without words of its own, what its misfit shows.
 SYMPTOMS: Mapping[str, Symptom] = {
+    family.name: Symptom(f"The residual is no noise: {family.meaning}.", windows)
+    for family in FAMILIES
+} | {
     "stopped": Symptom(
         "The search ended before the penalty had settled; another seed gives other values.", windows
     ),

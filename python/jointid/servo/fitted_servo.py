@@ -196,16 +196,9 @@ class FittedServo(FittedBalance):
 
 
 def _side_by_side(grid: ServoGrid) -> Whole:
-    """Windows of which none overlaps the one before."""
-    kept: list[int] = []
-    last, run = -1, -1
-    for number, (start, end, of) in enumerate(
-        zip(grid.start.tolist(), grid.end.tolist(), grid.run.tolist(), strict=True)
-    ):
-        if of != run or start >= last:
-            kept.append(number)
-            last, run = end, of
-    return np.array(kept)
+    """Windows of which none overlaps another."""
+    first = grid.start[np.searchsorted(grid.run, grid.run)]
+    return np.flatnonzero((grid.start - first) % (grid.end - grid.start) == 0)
 
 
 def _slope(values: Array, place: int) -> Array:

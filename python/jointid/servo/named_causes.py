@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from jointid.estimate.causes import Causes
@@ -10,6 +12,8 @@ from jointid.identification.causes.suspicion import suspicious
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.fitted_servo import FittedServo
 from jointid.servo.layout import KNOWN
+
+_LEAST = 0.4  # of the misfit: whether a smaller share is certain depends on which windows stand side by side
 
 
 def causes_of_servo(fit: FittedServo, estimate: ServoEstimate) -> Causes:
@@ -23,4 +27,5 @@ def causes_of_servo(fit: FittedServo, estimate: ServoEstimate) -> Causes:
     from jointid.identification.causes.causes import causes_of  # of a misfit: not of every fit
 
     torque = fit.grid.columns[fit.kept, KNOWN] / fit.duration
-    return causes_of(fit, estimate.parameters, float(np.sqrt(np.mean(torque**2))))
+    causes = causes_of(fit, estimate.parameters, float(np.sqrt(np.mean(torque**2))))
+    return replace(causes, found=tuple(each for each in causes.found if each.share > _LEAST))

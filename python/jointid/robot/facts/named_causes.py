@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from jointid.estimate.causes import Cause, Causes
@@ -13,6 +15,8 @@ from jointid.robot.facts.fitted_joint import FittedJoint
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES
 
+CAUSES = ("springs and counterweights", "a low-pass filter on the torque", "soft gears")
+UNEXAMINED = f"not examined for a robot: {', '.join(CAUSES)}"
 _CALLED = {"asymmetry": "asymmetric_friction"}  # before there was one name for all balances
 
 
@@ -29,4 +33,5 @@ def causes_of_joint(attempt: Attempt, name: str) -> Causes:
 def cause_finding(cause: Cause, name: str, parameters: tuple[str, ...]) -> Finding:
     """Return the finding of a joint's cause."""
     kind = TYPES.get(_CALLED.get(cause.name, cause.name))
-    return finding_of_cause(cause, parameters, name, kind)
+    found = finding_of_cause(cause, parameters, name, kind)
+    return replace(found, details=f"{found.details}; {UNEXAMINED}")

@@ -12,14 +12,13 @@ from jointid.base.advice import Action
 from jointid.estimate.causes import Causes
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
-from jointid.robot.facts.named_causes import cause_finding, causes_of_joint
+from jointid.robot.facts.named_causes import UNEXAMINED, cause_finding, causes_of_joint
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES
 from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 
 Array = NDArray[np.float64]
 
-CAUSES = ("springs and counterweights", "a low-pass filter on the torque", "soft gears")
 _FEWEST = 40  # windows
 _LAGS = range(2, 9)  # windows; neighbours share their velocity's noise
 _FAR = 6.0  # times the median: a window says no more
@@ -71,7 +70,7 @@ def _unexamined(
                     f"it is so for {every} of the torque" if others else "",
                     explained,
                     *notes,
-                    f"not examined for a robot: {', '.join(CAUSES)}",
+                    UNEXAMINED,
                 ),
             )
         ),
