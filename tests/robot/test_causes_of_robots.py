@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 import small_arm
 
 import jointid as jid
+from jointid.robot.attempt import Request, attempted
+from jointid.robot.named_causes import causes_of_joint
 
 pytest.importorskip("pinocchio")
 
@@ -72,6 +75,19 @@ def test_a_joint_that_fits_badly_has_no_causes(path: Path, robot: jid.Robot) -> 
     codes = {each.code for each in found.warnings}
     assert {"poor_fit", "unexamined_causes"} <= codes
     assert "harmonic" not in codes
+
+
+def test_a_joint_that_stands_in_the_excerpts_has_no_causes(path: Path, robot: jid.Robot) -> None:
+    request = Request(
+        inertia="urdf",
+        models=("auto", "auto"),
+        windows=None,
+        slowest=np.zeros(2),
+        mask_standstill=True,
+    )
+    attempt = attempted([small_arm.recording(path)], robot, request, np.zeros(2))
+    assert causes_of_joint(attempt, "elbow").tried
+    assert not causes_of_joint(replace(attempt, excerpts={}), "elbow").tried
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -11,6 +11,7 @@ from jointid.estimate.findings import Finding
 from jointid.estimate.objections import EXPLAINED
 from jointid.identification.causes.cause_finding import finding_of_cause
 from jointid.identification.causes.causes import causes_of
+from jointid.identification.causes.suspicion import testable
 from jointid.robot.facts.fitted_joint import FittedJoint
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES
@@ -21,11 +22,11 @@ _CALLED = {"asymmetry": "asymmetric_friction"}  # before there was one name for 
 
 
 def causes_of_joint(attempt: Attempt, name: str) -> Causes:
-    """Return the causes of a joint's misfit; none of a balance that explains too little to tell them."""
+    """Return the causes of a joint's misfit; none where the excerpts have too little motion, or little is explained."""
     found = attempt.estimate.joints[name]
-    if not found.residuals.r_squared >= EXPLAINED:
-        return Causes(found=())
     fit = FittedJoint.of(attempt, attempt.robot.names.index(name))
+    if not (found.residuals.r_squared >= EXPLAINED and testable(fit.run)):
+        return Causes(found=())
     torque = attempt.balance.rows.torque[fit.kept] / fit.duration
     return causes_of(fit, found.parameters, float(np.sqrt(np.mean(torque**2))))
 
