@@ -10,6 +10,8 @@ import pytest
 import small_arm
 
 import jointid as jid
+from jointid.estimate.causes import Cause, Causes
+from jointid.robot import unexamined_causes
 from jointid.robot.attempt import Request, attempted
 from jointid.robot.named_causes import causes_of_joint
 
@@ -75,6 +77,18 @@ def test_a_joint_that_fits_badly_has_no_causes(path: Path, robot: jid.Robot) -> 
     codes = {each.code for each in found.warnings}
     assert {"poor_fit", "unexamined_causes"} <= codes
     assert "harmonic" not in codes
+
+
+@pytest.mark.parametrize(("share", "listed"), [(0.51, False), (0.49, True)])
+def test_what_is_half_explained_is_no_longer_listed(
+    path: Path, robot: jid.Robot, monkeypatch: pytest.MonkeyPatch, share: float, listed: bool
+) -> None:
+    cause = Cause(name="drift", share=share, scale=0.1, relative={"viscous": 0.1})
+    monkeypatch.setattr(unexamined_causes, "causes_of_joint", lambda *_: Causes(found=(cause,)))
+    run = small_arm.recording(path, static=0.5)
+    found = jid.identify_robot(run, robot, model="coulomb_viscous")
+    codes = {each.code for each in found.warnings}
+    assert codes == {"drift", *(["unexamined_causes"] if listed else [])}
 
 
 def test_a_joint_that_stands_in_the_excerpts_has_no_causes(path: Path, robot: jid.Robot) -> None:

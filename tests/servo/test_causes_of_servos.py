@@ -8,6 +8,8 @@ import pytest
 from simulated_servo import Bench, Truth, bench_runs, servo_joint, without_free_runs
 
 import jointid as jid
+from jointid.estimate.causes import Cause, Causes
+from jointid.identification.causes import causes
 from jointid.identification.causes.families import BY_NAME
 
 LOGS = Path(__file__).resolve().parents[1] / "data" / "xl330" / "bam_xl330.csv.gz"
@@ -67,6 +69,16 @@ def test_a_run_with_another_load_is_named(runs: list[jid.Recording]) -> None:
     (told,) = [each for each in found.warnings if each.code in BY_NAME]
     assert told.code == "other_run"
     assert "run 15" in told.title
+
+
+@pytest.mark.parametrize(("share", "named_so"), [(0.41, ["drift"]), (0.39, [])])
+def test_a_small_share_depends_on_the_windows_that_are_kept(
+    runs: list[jid.Recording], monkeypatch: pytest.MonkeyPatch, share: float, named_so: list[str]
+) -> None:
+    cause = Cause(name="drift", share=share, scale=0.1, relative={"viscous": 0.1})
+    monkeypatch.setattr(causes, "causes_of", lambda *_: Causes(found=(cause,)))
+    plain = jid.Model("coulomb_viscous", load_friction=False)
+    assert named(jid.identify_servo(runs, servo_joint(), model=plain, draws=0)) == named_so
 
 
 @pytest.mark.parametrize("seed", range(3))
