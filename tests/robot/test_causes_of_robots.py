@@ -11,9 +11,9 @@ import small_arm
 
 import jointid as jid
 from jointid.estimate.causes import Cause, Causes
-from jointid.robot import unexamined_causes
-from jointid.robot.attempt import Request, attempted
-from jointid.robot.named_causes import causes_of_joint
+from jointid.robot.facts import unexamined_causes
+from jointid.robot.facts.named_causes import causes_of_joint
+from jointid.robot.fit.attempt import Request, attempted
 
 pytest.importorskip("pinocchio")
 
