@@ -199,13 +199,13 @@ LIBRARY = {
     *("string", "tomllib", "zlib"),
 }
 COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
-    "identify": (["identify", "RUN", "--quiet"], IDENTIFYING, 251),
+    "identify": (["identify", "RUN", "--quiet"], IDENTIFYING, 252),
     "identify --report": (
         ["identify", "RUN", "--quiet", "--report", "PAGE"],
         IDENTIFYING | {"report", "report.drawing"},
-        280,
+        281,
     ),
-    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 271),
+    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 272),
     "info": (["info", "RUN"], IDENTIFYING, 220),
 }
 

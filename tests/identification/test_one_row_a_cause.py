@@ -98,7 +98,7 @@ def test_a_servo_names_it(row: SimpleNamespace) -> None:
     """Of the bases that the bench's core has, one of which no other cause has the shape stands for the row."""
     row.friction_basis = lambda _, speed, __: np.sign(speed) * np.exp(-((np.abs(speed) / 3.0) ** 4))
     bench = Bench(friction=(("general", 0.03, 0.03, (3.0, 4.0)),))
-    found = jid.identify_servo(bench_runs(seed=1, bench=bench), servo_joint(), draws=0)
+    found = jid.identify_servo(bench_runs(seed=1, bench=bench), servo_joint(), draws=20)
     told = [each for each in found.warnings if each.code in BY_NAME]
     assert [each.code for each in told] == ["other_law"]
     assert told[0].evidence["coefficient"].value == pytest.approx(0.03, rel=0.1)

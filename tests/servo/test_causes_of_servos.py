@@ -78,18 +78,18 @@ def test_a_small_share_depends_on_the_windows_that_are_kept(
     cause = Cause(name="drift", share=share, scale=0.1, relative={"viscous": 0.1})
     monkeypatch.setattr(causes, "causes_of", lambda *_: Causes(found=(cause,)))
     plain = jid.Model("coulomb_viscous", load_friction=False)
-    assert named(jid.identify_servo(runs, servo_joint(), model=plain, draws=0)) == named_so
+    assert named(jid.identify_servo(runs, servo_joint(), model=plain, draws=20)) == named_so
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_clean_servo_has_none(seed: int) -> None:
     every = bench_runs(seed=seed)
     for some in (every, without_free_runs(every), every[:4]):
-        assert named(jid.identify_servo(some, servo_joint(), draws=0)) == []
+        assert named(jid.identify_servo(some, servo_joint(), draws=20)) == []
 
 
 def test_a_log_of_a_servo_has_none() -> None:
     """Over the angle, what resembles the known load would take its place."""
     extra = {"duty": "duty", "driven": "torque_enabled", "gain": "firmware_kp"}
     runs = list(jid.load_runs(LOGS, by="run_index", extra=extra))
-    assert named(jid.identify_servo(runs, servo_joint(supply=7.3), draws=0)) == []
+    assert named(jid.identify_servo(runs, servo_joint(supply=7.3), draws=20)) == []

@@ -11,6 +11,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
+from jointid.estimate.findings import Measured
 from jointid.estimate.record import EstimateRecord
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attributed import Attributed
@@ -20,7 +21,7 @@ from jointid.identification.causes.families import BY_NAME, listed_candidates
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.fitted_balance import FittedBalance
 from jointid.identification.causes.harm import ERRORS, MOVED, error_of, harm_of, scale_of
-from jointid.identification.causes.sizes import described, of_itself, off_scale
+from jointid.identification.causes.sizes import off_scale
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
@@ -276,7 +277,8 @@ def _cause(
     }
     wrong = each.candidate.name == "wrong_scale"
     effect = of_a_scale(parameters, shifts, off_scale(fit, each)) if wrong else ""
-    shifts |= of_itself(fit, each)
+    family = BY_NAME[each.candidate.name]
+    shifts |= family.changes(fit, each)
     shares = {
         name: shift / scale
         for name, shift in shifts.items()
@@ -294,16 +296,16 @@ def _cause(
         for name, share in shares.items()
     }
     known = {name: error_of(parameters[name]) for name in shifts}
-    detail, size, numbers = described(fit, each, delays)
-    family = BY_NAME[each.candidate.name]
+    length, size = "m" if fit.kind == "prismatic" else "rad", family.size(fit, each, delays)
+    numbers = {key: Measured(value, length + unit) for key, value, unit in each.candidate.numbers}
     return Cause(
         name=family.name,
         meaning=family.meaning,
-        detail=detail,
+        detail=(size.detail or each.candidate.detail).replace("@", length),
         share=each.share,
         scale=each.factor * fit.group * fit.window_duration,
-        size=size,
-        numbers=numbers,
+        size=size.text,
+        numbers={**numbers, **size.numbers},
         shifts=shifts,
         relative={name: share for name, share in shares.items() if harm[name] > _NOTICED},
         shares=shares,

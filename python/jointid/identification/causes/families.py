@@ -1,18 +1,20 @@
 """The table of causes that a misfit may have: each is one row, for a joint, a robot's joint and a servo alike.
 
-A new cause is a row here and a function in `candidates`: its name, its meaning and its advice follow everywhere.
+A new cause is a row here and a function in `candidates`: its name, meaning, size and advice follow everywhere.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.values import dataclass
+from jointid.estimate.delays import Delay
 from jointid.estimate.types_of_findings import FindingType
 from jointid.identification.causes import candidates as of
+from jointid.identification.causes import sizes
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
 
@@ -44,6 +46,11 @@ class Family:
         are told apart by the names of its candidates. Default: it is found without columns.
     advice : callable
         Actions against a cause that was found.
+    size : callable
+        Its `Size`, with the delays that are known by themselves. Default: by the candidate's unit.
+    changes : callable
+        Values that it is itself a change of, by their names: a coefficient that is no constant moves by half its
+        range. Default: none.
     """
 
     name: str
@@ -51,6 +58,8 @@ class Family:
     remedy: str
     candidates: Callable[[FittedBalance], Iterator[Candidate]] = of.nothing
     advice: Callable[[FittedBalance, Attributed], tuple[Action, ...]]
+    size: Callable[[FittedBalance, Attributed, Mapping[str, Delay]], sizes.Size] = sizes.by_unit
+    changes: Callable[[FittedBalance, Attributed], dict[str, float]] = lambda *_: {}
 
     @property
     def finding_type(self) -> FindingType:
@@ -126,6 +135,7 @@ FAMILIES: tuple[Family, ...] = (
         remedy="identify gravity, too: `stribeck:gravity=free`",
         candidates=of.gravity,
         advice=lambda fit, _: fit.identified_with(gravity="free"),
+        size=sizes.amplitude,
     ),
     Family(
         name="inertia_varies",
@@ -136,6 +146,10 @@ FAMILIES: tuple[Family, ...] = (
             Action("record", text="motion about one pose, or with a gentler acceleration"),
             Action("inspect", text="whether other joints change the inertia"),
         ),
+        size=sizes.range_of,
+        changes=lambda fit, cause: (
+            {"inertia": sizes.half_range(fit, cause)} if "inertia" in fit.names else {}
+        ),
     ),
     Family(
         name="load_friction",
@@ -143,6 +157,7 @@ FAMILIES: tuple[Family, ...] = (
         remedy="add load_friction to the model",
         candidates=of.load_friction,
         advice=lambda fit, _: fit.compared_with(load_friction=True),
+        size=sizes.of_the_load,
     ),
     Family(
         name="slow_motion",
@@ -177,6 +192,8 @@ FAMILIES: tuple[Family, ...] = (
             Action("record", text="after warming up"),
             Action("inspect", text="the values of the first and the last part of the recording"),
         ),
+        size=sizes.drift_of,
+        changes=sizes.drifts,
     ),
     Family(
         name="harmonic",
@@ -184,6 +201,7 @@ FAMILIES: tuple[Family, ...] = (
         remedy="add harmonics of that order to the model",
         candidates=of.harmonic,
         advice=lambda fit, cause: _with_order(fit, "harmonics", cause),
+        size=sizes.over_angle("angle"),
     ),
     Family(
         name="ripple",
@@ -191,6 +209,7 @@ FAMILIES: tuple[Family, ...] = (
         remedy="add ripple of that order to the model",
         candidates=of.ripple,
         advice=lambda fit, cause: _with_order(fit, "ripple", cause),
+        size=sizes.over_angle("motor angle"),
     ),
     Family(
         name="delay",
@@ -198,6 +217,7 @@ FAMILIES: tuple[Family, ...] = (
         remedy="correct the time stamps of that signal",
         candidates=of.delay,
         advice=against_delay,
+        size=sizes.lateness,
     ),
     Family(
         name="asymmetry",
@@ -205,6 +225,9 @@ FAMILIES: tuple[Family, ...] = (
         remedy="add asymmetric to the model",
         candidates=of.asymmetry,
         advice=_against_asymmetry,
+        changes=lambda fit, cause: (
+            {"viscous": float(cause.coefficients[0])} if "viscous" in fit.names else {}
+        ),
     ),
     Family(
         name="offset",
@@ -212,6 +235,7 @@ FAMILIES: tuple[Family, ...] = (
         remedy="give the joint a torque_offset",
         candidates=of.offset,
         advice=_always(Action("call", {"torque_offset": True}, function="Joint")),
+        size=sizes.constant,
     ),
     Family(
         name="wrong_scale",
@@ -219,6 +243,8 @@ FAMILIES: tuple[Family, ...] = (
         remedy="check gear ratio, torque constant and inertia",
         candidates=of.wrong_scale,
         advice=_always(Action("inspect", text="gear ratio, torque constant and inertia")),
+        size=sizes.scale,
+        changes=sizes.scaled,
     ),
     Family(
         name="other_signal",
@@ -248,6 +274,7 @@ FAMILIES: tuple[Family, ...] = (
             Action("record", text="without contact"),
             Action("inspect", text="what happened at that time"),
         ),
+        size=sizes.constant,
     ),
     # Of a table in which other causes stand for all friction there is none.
     *((OTHER_LAW,) if of.other_laws() else ()),

@@ -1,100 +1,140 @@
-"""How large a cause is: the values that it is itself a change of, its size as a text, and its numbers."""
+"""How large a cause is: its size as a text and as numbers, and the values that it is itself a change of."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jointid.base.values import dataclass
 from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Measured
 from jointid.estimate.wording import percent
-from jointid.identification.causes.attributed import Attributed
 from jointid.identification.causes.candidates import inertia_basis
 from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
 from jointid.identification.causes.samples import span_of
 
-_OF = {"ripple": "motor "}
+if TYPE_CHECKING:
+    from jointid.identification.causes.attributed import Attributed
 
 
-def of_itself(fit: FittedBalance, each: Attributed) -> dict[str, float]:
-    """A coefficient that is no constant: half of its range."""
-    name, detail = each.candidate.name, each.candidate.detail
-    if name == "drift" and detail in fit.names:
-        return {detail: float(0.5 * each.coefficients[0] * _span(fit))}
-    if name == "inertia_varies" and "inertia" in fit.names:
-        return {"inertia": _half_range(fit, each)}
-    if name == "asymmetry" and "viscous" in fit.names:
-        return {"viscous": float(each.coefficients[0])}
-    if name == "wrong_scale":
-        return _of_a_scale(fit, off_scale(fit, each))
-    return {}
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Size:
+    """How large a cause is, as a text and as numbers, and which of its kind where the candidate's text is no words."""
+
+    text: str = ""
+    numbers: Mapping[str, Measured] = field(default_factory=dict)
+    detail: str = ""
 
 
-def off_scale(fit: FittedBalance, each: Attributed) -> float:
-    """By what share the torque shows a larger inertia than the given one."""
-    return float(each.coefficients[0]) / (fit.value("inertia") or 1.0)
+def by_unit(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
+    """Return the coefficient of a candidate that has a unit."""
+    if not cause.candidate.unit:
+        return Size()
+    unit = cause.candidate.unit.split("|")[fit.kind == "prismatic"]
+    value = float(cause.coefficients[0])
+    return Size(text=f"{value:.3g} {unit}", numbers={"coefficient": Measured(value, unit)})
 
 
-def _of_a_scale(fit: FittedBalance, share: float) -> dict[str, float]:
-    """A wrong torque scales the friction with it; a wrong inertia does not, and nothing tells which it is."""
-    frictions = [fit.names[index] for index in fit.friction if index in fit.free]
-    return {name: -share * fit.value(name) for name in frictions}
+def _torque_unit(fit: FittedBalance) -> str:
+    """Return the unit of the balance's torque or force."""
+    return "N" if fit.kind == "prismatic" else "N·m"
 
 
-def _half_range(fit: FittedBalance, each: Attributed) -> float:
-    """Half of the range of an inertia that varies, over the angles of the recordings."""
-    orders = [float(order) for order in each.candidate.detail.split(" and ")]
-    basis = np.hstack([inertia_basis(fit, order) for order in orders])
-    return 0.5 * float(np.ptp(basis @ each.coefficients))
+def amplitude(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
+    """Return the size of a cosine and a sine together."""
+    value, unit = float(np.hypot(*cause.coefficients)), _torque_unit(fit)
+    return Size(text=f"{value:.3g} {unit}", numbers={"amplitude": Measured(value, unit)})
+
+
+def over_angle(angle: str) -> Callable[[FittedBalance, Attributed, Mapping[str, Delay]], Size]:
+    """Return the size of a torque over a multiple of an angle."""
+
+    def size(fit: FittedBalance, cause: Attributed, delays: Mapping[str, Delay]) -> Size:
+        found, order = amplitude(fit, cause, delays), cause.candidate.detail
+        numbers = {**found.numbers, f"order_{order}": Measured(float(order))}
+        return Size(text=found.text, numbers=numbers, detail=f"{order} × {angle}")
+
+    return size
+
+
+def constant(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
+    """Return the size of a constant torque."""
+    value, unit = float(cause.coefficients[0]), _torque_unit(fit)
+    return Size(text=f"{value:.3g} {unit}", numbers={"torque": Measured(value, unit)})
+
+
+def lateness(_: FittedBalance, cause: Attributed, delays: Mapping[str, Delay]) -> Size:
+    """Return by how much a signal is late; its own measurement says more than the misfit."""
+    if cause.candidate.detail == FILTERED:
+        return Size()
+    late = float(cause.coefficients[0])
+    known = delays.get(cause.candidate.detail)
+    if known is not None and known.certain and known.left:
+        late = known.left
+    side = "late" if late > 0.0 else "early"
+    text = f"{side} by about {1e3 * abs(late):.2g} ms"
+    return Size(text=text, numbers={"delay": Measured(late, "s")})
+
+
+def of_the_load(_: FittedBalance, cause: Attributed, __: Mapping[str, Delay]) -> Size:
+    """Return a share of the load."""
+    value = float(cause.coefficients[0])
+    return Size(text=f"{value:.3g} of the load", numbers={"coefficient": Measured(value)})
 
 
 def _span(fit: FittedBalance) -> float:
     return max(map(span_of, fit.runs))
 
 
-def described(
-    fit: FittedBalance, each: Attributed, delays: Mapping[str, Delay]
-) -> tuple[str, str, dict[str, Measured]]:
-    """Detail and size as texts, and their numbers."""
-    name, found = each.candidate.name, each.coefficients
-    prismatic = fit.kind == "prismatic"
-    length, torque = ("m", "N") if prismatic else ("rad", "N·m")
-    detail, size = each.candidate.detail, ""
-    numbers = {key: Measured(value, length + unit) for key, value, unit in each.candidate.numbers}
-    if name in ("gravity", "harmonic", "ripple"):
-        amplitude = float(np.hypot(*found))
-        size, numbers["amplitude"] = f"{amplitude:.3g} {torque}", Measured(amplitude, torque)
-    elif name in ("offset", "disturbance"):
-        size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
-    elif name == "delay" and detail != FILTERED:
-        late = float(found[0])
-        known = delays.get(detail)
-        if known is not None and known.certain and known.left:
-            late = known.left
-        side = "late" if late > 0.0 else "early"
-        size, numbers["delay"] = f"{side} by about {1e3 * abs(late):.2g} ms", Measured(late, "s")
-    elif name == "load_friction":
-        size, numbers["coefficient"] = f"{found[0]:.3g} of the load", Measured(float(found[0]))
-    elif name == "drift":
-        rate = float(found[0]) / (abs(fit.value(detail)) or 1.0)
-        change, minute = rate * _span(fit), 60.0 * rate
-        over, rated = f"{100.0 * change:+.3g} %", f"{100.0 * minute:+.3g} % per minute"
-        size = f"{over} over the recording, {rated} of its value in the middle"
-        numbers |= {"change": Measured(change), "change_a_minute": Measured(minute)}
-    elif name == "wrong_scale":
-        share = off_scale(fit, each)
-        size, numbers["ratio"] = f"{100.0 * share:+.2g} %", Measured(1.0 + share)
-    elif name == "inertia_varies":
-        range_of_it = _half_range(fit, each) / (abs(fit.value("inertia")) or 1.0)
-        size, numbers["range"] = f"±{percent(range_of_it)}", Measured(range_of_it)
-    elif each.candidate.unit:
-        unit = each.candidate.unit.split("|")[prismatic]
-        size, numbers["coefficient"] = f"{found[0]:.3g} {unit}", Measured(float(found[0]), unit)
-    if name in ("harmonic", "ripple", "inertia_varies"):
-        orders = detail.split(" and ")
-        detail = " and ".join(f"{order} × {_OF.get(name, '')}angle" for order in orders)
-        numbers |= {f"order_{order}": Measured(float(order)) for order in orders}
-    for unit in ("@/s", "@"):
-        detail = detail.replace(unit, unit.replace("@", length))
-    return detail, size, numbers
+def drift_of(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
+    """Return the change of a coefficient over the recording and per minute."""
+    rate = float(cause.coefficients[0]) / (abs(fit.value(cause.candidate.detail)) or 1.0)
+    change, minute = rate * _span(fit), 60.0 * rate
+    over, rated = f"{100.0 * change:+.3g} %", f"{100.0 * minute:+.3g} % per minute"
+    return Size(
+        text=f"{over} over the recording, {rated} of its value in the middle",
+        numbers={"change": Measured(change), "change_a_minute": Measured(minute)},
+    )
+
+
+def drifts(fit: FittedBalance, cause: Attributed) -> dict[str, float]:
+    """Return half the change of the coefficient that drifts."""
+    detail = cause.candidate.detail
+    half = float(0.5 * cause.coefficients[0] * _span(fit))
+    return {detail: half} if detail in fit.names else {}
+
+
+def off_scale(fit: FittedBalance, cause: Attributed) -> float:
+    """Return by what share the torque shows a larger inertia than the given one."""
+    return float(cause.coefficients[0]) / (fit.value("inertia") or 1.0)
+
+
+def scale(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
+    """Return the share by which a scale is off."""
+    share = off_scale(fit, cause)
+    return Size(text=f"{100.0 * share:+.2g} %", numbers={"ratio": Measured(1.0 + share)})
+
+
+def scaled(fit: FittedBalance, cause: Attributed) -> dict[str, float]:
+    """Return shifts of the friction, which a wrong torque scales; a wrong inertia does not, and nothing tells which."""
+    frictions = [fit.names[index] for index in fit.friction if index in fit.free]
+    return {name: -off_scale(fit, cause) * fit.value(name) for name in frictions}
+
+
+def half_range(fit: FittedBalance, cause: Attributed) -> float:
+    """Return half the range of an inertia that varies, over the angles of the recordings."""
+    orders = [float(order) for order in cause.candidate.detail.split(" and ")]
+    basis = np.hstack([inertia_basis(fit, order) for order in orders])
+    return 0.5 * float(np.ptp(basis @ cause.coefficients))
+
+
+def range_of(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
+    """Return half the range of an inertia that varies, as a share of it."""
+    share = half_range(fit, cause) / (abs(fit.value("inertia")) or 1.0)
+    orders = cause.candidate.detail.split(" and ")
+    numbers = {"range": Measured(share)} | {f"order_{n}": Measured(float(n)) for n in orders}
+    detail = " and ".join(f"{order} × angle" for order in orders)
+    return Size(text=f"±{percent(share)}", numbers=numbers, detail=detail)
