@@ -59,6 +59,7 @@ def test_the_first_notebook_runs_in_this_process(
     monkeypatch.chdir(FOLDER)
     notebook: Any = nbformat.read(NOTEBOOKS[0], as_version=4)  # type: ignore[no-untyped-call]
     names: dict[str, Any] = {}
+    pyplot.close("all")  # of tests before it in this process
     try:
         for cell in notebook.cells:
             if cell.cell_type == "code":
