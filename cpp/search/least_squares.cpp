@@ -15,7 +15,7 @@ constexpr double kRidge =
     1e-9;  // on unit columns: changes a well-posed answer by 1e-18 relative to its conditioning
 constexpr double kLacking = 1e-12;  // of a scaled direction: normal equations may lack one
 constexpr double kSlack = 1e-9;     // of scaled values and gradients of about 1
-constexpr int kTogether = 12, kOneByOne = 400;  // exchanges between held and free
+constexpr int kTogether = 12;       // exchanges between held and free
 constexpr double kViolation =
     1e-7;  // of the distance moved: beyond, no x satisfies all constraints
 
@@ -25,6 +25,109 @@ Eigen::VectorXd solve_columns(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
   for (std::size_t j = 0; j < set.size(); ++j)
     part.col(static_cast<Eigen::Index>(j)) = a.col(set[j]);
   return base::least_squares(part, b);
+}
+
+/// A quadratic function in a box, and how far its minimum is found.
+struct Box {
+  const Eigen::MatrixXd& square;
+  const Eigen::VectorXd& slope;
+  Eigen::VectorXd low;
+  Eigen::VectorXd high;
+  Eigen::VectorXi side;  ///< -1, 1: held at the lower, upper bound
+  Eigen::VectorXd x;
+};
+
+std::vector<Eigen::Index> free_of(const Box& box) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < box.side.size(); ++i) {
+    if (box.side[i] == 0) free.push_back(i);
+  }
+  return free;
+}
+
+/// The minimum over the free ones, the others where they are held.
+Eigen::VectorXd minimum_of(const Box& box, const std::vector<Eigen::Index>& free) {
+  Eigen::VectorXd held = box.x;
+  for (const Eigen::Index i : free) held[i] = 0.0;
+  const Eigen::VectorXd right = -(box.slope + box.square * held)(free);
+  const Eigen::MatrixXd own = box.square(free, free);
+  Eigen::MatrixXd damped = own;
+  damped.diagonal().array() += kLacking;
+  const Eigen::VectorXd part = base::solve_semidefinite(damped, right);
+  // Once more with what is left: the damping then counts in directions that are lacking only.
+  return part + base::solve_semidefinite(damped, right - own * part);
+}
+
+/// Holds what is outside and frees what the gradient pulls inside, all together: whether that ends.
+bool exchanged(Box& box) {
+  for (int step = 0; step < kTogether; ++step) {
+    for (Eigen::Index i = 0; i < box.side.size(); ++i) {
+      if (box.side[i] != 0) box.x[i] = box.side[i] < 0 ? box.low[i] : box.high[i];
+    }
+    const auto free = free_of(box);
+    box.x(free) = minimum_of(box, free);
+    const Eigen::VectorXd pull = box.slope + box.square * box.x;
+    bool changed = false;
+    for (Eigen::Index i = 0; i < box.side.size(); ++i) {
+      const double slack = kSlack * (1.0 + std::fabs(box.x[i]));
+      int wanted = box.side[i];
+      if (box.side[i] == 0) {
+        wanted = box.x[i] < box.low[i] - slack ? -1 : box.x[i] > box.high[i] + slack ? 1 : 0;
+      } else if (box.side[i] * pull[i] > kSlack) {
+        wanted = 0;
+      }
+      changed = changed || wanted != box.side[i];
+      box.side[i] = wanted;
+    }
+    if (!changed) return true;
+  }
+  return false;
+}
+
+/// From a point inside, one bound after the other: the function never rises, so that this ends.
+void one_by_one(Box& box) {
+  const Eigen::Index n = box.side.size();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    box.x[i] = std::clamp(0.0, box.low[i], box.high[i]);
+    box.side[i] = box.x[i] == box.low[i] ? -1 : box.x[i] == box.high[i] ? 1 : 0;
+  }
+  for (Eigen::Index step = 0; step < 100 + 30 * n; ++step) {
+    const auto free = free_of(box);
+    const Eigen::VectorXd part = minimum_of(box, free);
+    double reach = 1.0;
+    Eigen::Index stopped = -1;
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      const Eigen::Index i = free[k];
+      const double to = part[static_cast<Eigen::Index>(k)];
+      const double bound = to < box.low[i] ? box.low[i] : to > box.high[i] ? box.high[i] : to;
+      if (bound == to) continue;
+      const double own = (bound - box.x[i]) / (to - box.x[i]);
+      if (own < reach || stopped < 0) {
+        reach = std::min(own, reach);
+        stopped = i;
+      }
+    }
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      box.x[free[k]] += reach * (part[static_cast<Eigen::Index>(k)] - box.x[free[k]]);
+    }
+    if (stopped >= 0) {
+      box.side[stopped] =
+          box.x[stopped] - box.low[stopped] < box.high[stopped] - box.x[stopped] ? -1 : 1;
+      box.x[stopped] = box.side[stopped] < 0 ? box.low[stopped] : box.high[stopped];
+      continue;
+    }
+    const Eigen::VectorXd pull = box.slope + box.square * box.x;
+    Eigen::Index enter = -1;
+    double steepest = kSlack;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (box.side[i] * pull[i] > steepest) {
+        steepest = box.side[i] * pull[i];
+        enter = i;
+      }
+    }
+    if (enter < 0) return;
+    box.side[enter] = 0;
+  }
 }
 
 }  // namespace
@@ -96,45 +199,18 @@ Eigen::VectorXd box_minimum(const Eigen::MatrixXd& square, const Eigen::VectorXd
   const double unit = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
   slope *= unit;
   size *= unit;
-  const Eigen::VectorXd low = lower.cwiseProduct(size);
-  const Eigen::VectorXd high = upper.cwiseProduct(size);
-
-  Eigen::VectorXi side = Eigen::VectorXi::Zero(n);  // -1, 1: held at the lower, upper bound
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  for (int step = 0; step < kOneByOne; ++step) {
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (side[i] == 0) free.push_back(i);
-      x[i] = side[i] == 0 ? 0.0 : side[i] < 0 ? low[i] : high[i];
-    }
-    const Eigen::VectorXd right = -(slope + scaled * x)(free);
-    const Eigen::MatrixXd own = scaled(free, free);
-    Eigen::MatrixXd damped = own;
-    damped.diagonal().array() += kLacking;
-    Eigen::VectorXd part = base::solve_semidefinite(damped, right);
-    // Once more with what is left: the damping then counts in directions that are lacking only.
-    part += base::solve_semidefinite(damped, right - own * part);
-    x(free) = part;
-
-    const Eigen::VectorXd pull = slope + scaled * x;
-    bool changed = false;
-    for (Eigen::Index i = 0; i < n && !(changed && step >= kTogether); ++i) {
-      const double slack = kSlack * (1.0 + std::fabs(x[i]));
-      int wanted = side[i];
-      if (side[i] == 0) {
-        wanted = x[i] < low[i] - slack ? -1 : x[i] > high[i] + slack ? 1 : 0;
-      } else if (side[i] * pull[i] > kSlack) {
-        wanted = 0;
-      }
-      changed = changed || wanted != side[i];
-      side[i] = wanted;
-    }
-    if (!changed) break;
-  }
+  Box box{scaled,
+          slope,
+          lower.cwiseProduct(size),
+          upper.cwiseProduct(size),
+          Eigen::VectorXi::Zero(n),
+          Eigen::VectorXd::Zero(n)};
+  if (!exchanged(box)) one_by_one(box);
+  Eigen::VectorXd x = box.x;
   for (Eigen::Index i = 0; i < n; ++i) {
-    x[i] = side[i] < 0   ? lower[i]
-           : side[i] > 0 ? upper[i]
-                         : std::clamp(x[i] / size[i], lower[i], upper[i]) + 0.0;  // no -0
+    x[i] = box.side[i] < 0   ? lower[i]
+           : box.side[i] > 0 ? upper[i]
+                             : std::clamp(x[i] / size[i], lower[i], upper[i]) + 0.0;  // no -0
   }
   return x;
 }

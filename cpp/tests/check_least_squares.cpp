@@ -229,6 +229,23 @@ CHECK_CASE("least squares: inside a box, against the exhaustive search") {
   }
 }
 
+CHECK_CASE("least squares: inside a box of many values, as by non-negative least squares") {
+  for (std::uint32_t trial = 0; trial < 200; ++trial) {
+    base::Random random(10, 0, 0, trial);
+    const Eigen::Index n = 30 + random.below(40);
+    const Eigen::MatrixXd mixed = drawn(random, n + 20, n / 3) * drawn(random, n / 3, n);
+    const Eigen::MatrixXd a = mixed + 0.01 * drawn(random, n + 20, n);
+    const Eigen::VectorXd b = drawn(random, n + 20, 1);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
+    const Eigen::VectorXd far =
+        Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+    const Eigen::VectorXd x = box_minimum(a.transpose() * a, -a.transpose() * b, none, far);
+    const Eigen::VectorXd y = non_negative_least_squares(a, b);
+    CHECK(x.minCoeff() >= 0.0);
+    CHECK_CLOSE((a * x - b).squaredNorm(), (a * y - b).squaredNorm(), 1e-8);
+  }
+}
+
 CHECK_CASE("least squares: a direction that is lacking gets the shortest solution") {
   const Eigen::Matrix2d square = Eigen::Matrix2d::Ones();
   const Eigen::Vector2d far = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());

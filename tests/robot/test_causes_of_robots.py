@@ -109,3 +109,25 @@ def test_a_joint_that_stands_in_the_excerpts_has_no_causes(path: Path, robot: ji
 def test_a_clean_arm_has_none(path: Path, robot: jid.Robot, seed: int, static: float) -> None:
     run = small_arm.recording(path, seed=seed, static=static)
     assert jid.identify_robot(run, robot).warnings == ()
+
+
+def test_a_fault_outside_the_excerpts_is_not_blamed_on_friction(
+    path: Path, robot: jid.Robot
+) -> None:
+    """The first recordings alone are looked at: what they do not show has no name."""
+    runs = [small_arm.recording(path, duration=6.0, seed=seed) for seed in range(6)]
+    fields = runs[-1].fields()
+    fields["torque"] = fields["torque"].copy()
+    fields["torque"][:, 1] += 1.0
+    found = jid.identify_robot([*runs[:-1], jid.RobotRecording(**fields)], robot)
+    assert {each.code for each in found.warnings} == {"unexamined_causes"}
+
+
+def test_a_delay_that_is_left_is_not_named_as_friction(path: Path, robot: jid.Robot) -> None:
+    run = small_arm.recording(path)
+    fields = run.fields()
+    fields["torque"] = np.roll(fields["torque"], 8, axis=0)
+    found = jid.identify_robot(jid.RobotRecording(**fields), robot, shift={})
+    codes = {each.code for each in found.warnings}
+    assert "signal_lag" in codes
+    assert not {"presliding", "slow_motion"} & codes

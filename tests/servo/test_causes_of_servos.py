@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from simulated_servo import Bench, Truth, bench_runs, servo_joint, without_free_runs
 
@@ -93,3 +94,20 @@ def test_a_log_of_a_servo_has_none() -> None:
     extra = {"duty": "duty", "driven": "torque_enabled", "gain": "firmware_kp"}
     runs = list(jid.load_runs(LOGS, by="run_index", extra=extra))
     assert named(jid.identify_servo(runs, servo_joint(supply=7.3), draws=20)) == []
+
+
+def test_a_late_duty_does_not_make_friction_negative() -> None:
+    runs = [
+        run.with_signals(extra={"duty": np.roll(run.extra["duty"], 2)})
+        for run in bench_runs(seed=1)
+    ]
+    found = jid.identify_servo(runs, servo_joint(), draws=20)
+    assert "slow_motion" not in {each.code for each in found.warnings}
+
+
+def test_advice_against_a_constant_torque_is_a_look_at_the_load() -> None:
+    bench = Bench(friction=(("constant", 0.01, 0.0, ()),))
+    found = jid.identify_servo(bench_runs(seed=1, bench=bench), servo_joint(), draws=20)
+    for each in found.findings:
+        if each.code == "offset":
+            assert [action.kind for action in each.advice] == ["inspect"]

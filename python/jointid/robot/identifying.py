@@ -136,7 +136,8 @@ def identify_robot(
         plain = all(each.severity == "info" for each in findings)
         # With another finding, a difference of the directions may follow from that.
         uneven = [*asymmetry_findings(attempt)] if plain else []
-        rest = misfit_findings(attempt, diagnosis.corrected)
+        late = any(each.code == "signal_lag" for each in findings)  # a delay looks like friction
+        rest = misfit_findings(attempt, diagnosis.corrected, named=not late)
         findings = (*findings, *(uneven or rest))
         if attempt.zeros is not None and attempt.zeros.found:
             findings = (*findings, turned_zeros(attempt.zeros, attempt.robot))

@@ -69,7 +69,7 @@ class FittedServo(FittedBalance):
             residual=rows @ weights(values),
             jacobian=every[:, free],
             start=np.zeros(len(free)),
-        )
+        ).at_own_minimum()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -181,6 +181,10 @@ class FittedServo(FittedBalance):
     def identified_with(self, **_: Any) -> tuple[Action, ...]:
         """None: a servo's model has no such term."""
         return (Action("inspect", text="how the servo turns: its model has no such term"),)
+
+    def with_offset(self) -> tuple[Action, ...]:
+        """A look: the load's gravity is the servo's only known torque, and a wrong zero of it looks like an offset."""
+        return (Action("inspect", text="the zero of the position, and the link's angle and mass"),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
         """A call of `compare_servo_models`, where a servo can have such a model."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from jointid.estimate.causes import Causes
 from jointid.estimate.objections import EXPLAINED
+from jointid.identification.causes.harm import possible
 from jointid.identification.causes.suspicion import suspicious
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.fitted_servo import FittedServo
@@ -28,4 +29,5 @@ def causes_of_servo(fit: FittedServo, estimate: ServoEstimate) -> Causes:
 
     torque = fit.grid.columns[fit.kept, KNOWN] / fit.duration
     causes = causes_of(fit, estimate.parameters, float(np.sqrt(np.mean(torque**2))))
+    causes = possible(causes, estimate.parameters)
     return replace(causes, found=tuple(each for each in causes.found if each.share > _LEAST))

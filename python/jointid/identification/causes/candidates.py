@@ -339,4 +339,6 @@ def _angle(fit: FittedBalance, order: float) -> Array:
 
 
 def _typical_speed(fit: FittedBalance) -> float:
-    return max(quantile_of_sizes(run.velocity, 0.9) for run in fit.runs)
+    # Of a joint that rests nearly all the time it is that of the little motion.
+    usual = max(quantile_of_sizes(run.velocity, 0.9) for run in fit.runs)
+    return usual or max(float(np.abs(run.velocity).max()) for run in fit.runs)

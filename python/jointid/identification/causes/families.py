@@ -234,7 +234,7 @@ FAMILIES: tuple[Family, ...] = (
         meaning="constant torque that the model lacks",
         remedy="give the joint a torque_offset",
         candidates=of.offset,
-        advice=_always(Action("call", {"torque_offset": True}, function="Joint")),
+        advice=lambda fit, _: fit.with_offset(),
         size=sizes.constant,
     ),
     Family(

@@ -9,7 +9,8 @@ from __future__ import annotations
 import functools
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from dataclasses import replace
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.values import dataclass
-from jointid.identification.causes.samples import Run, Samples
+from jointid.identification.causes.samples import Run, Samples, span_of
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -103,6 +104,11 @@ class FittedBalance(ABC):
         """The joint's motion in each recording."""
 
     @property
+    def duration_of_recording(self) -> float:
+        """Duration of the longest recording [s]."""
+        return max(map(span_of, self.runs))
+
+    @property
     def run_names(self) -> Sequence[str]:
         """Names of the recordings."""
         return [f"recording {number}" for number in range(len(self.runs))]
@@ -174,6 +180,10 @@ class FittedBalance(ABC):
     def identified_with(self, **changes: Any) -> tuple[Action, ...]:
         """Advice to identify with these fields of the model."""
 
+    def with_offset(self) -> tuple[Action, ...]:
+        """Advice against a constant torque that the model lacks."""
+        return (Action("call", {"torque_offset": True}, function="Joint"),)
+
     @abstractmethod
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
         """Advice to compare with such a model, which the recordings may not determine."""
@@ -215,6 +225,11 @@ class FittedBalance(ABC):
         for index in self.friction:
             friction += self.best[index] * self.columns[:, index]
         return float(np.sum(left**2)) < least**2 * float(np.sum(friction**2))
+
+    def at_own_minimum(self) -> Self:
+        """Return the fit at the minimum of these rows alone: the step to it from that of more rows is no cause's."""
+        step = self.solve(self.jacobian, self.residual)
+        return replace(self, residual=self.residual + self.jacobian @ step)
 
     def solve(self, columns: Array, residual: Array) -> Array:
         """Return the least-squares steps along columns that take the residual away; the first are parameters."""

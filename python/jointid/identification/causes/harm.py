@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
+from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.statistics import ParameterEstimate
 
 ERRORS = 2.0  # standard errors from which a cause does harm
 MOVED = 0.05  # share of a value, the same
 _NORMAL = 1.959964  # standard errors of half a 95 % interval
+_NEGATIVE = 1.5  # of a value: what a shift may take from it
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 
 
@@ -62,3 +65,16 @@ def scale_of(
         if pair is not None:
             return float(np.hypot(p.value, pair.value))
     return abs(p.value)
+
+
+def possible(causes: Causes, parameters: Mapping[str, ParameterEstimate]) -> Causes:
+    """Return causes without those that would make a value clearly negative that cannot be: something else is amiss."""
+
+    def is_possible(cause: Cause) -> bool:
+        return all(
+            shift >= -_NEGATIVE * abs(parameters[name].value)
+            for name, shift in cause.shifts.items()
+            if parameters[name].min == 0.0
+        )
+
+    return replace(causes, found=tuple(filter(is_possible, causes.found)))

@@ -14,7 +14,6 @@ from jointid.estimate.findings import Measured
 from jointid.estimate.wording import percent
 from jointid.identification.causes.candidates import inertia_basis
 from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
-from jointid.identification.causes.samples import span_of
 
 if TYPE_CHECKING:
     from jointid.identification.causes.attributed import Attributed
@@ -85,14 +84,10 @@ def of_the_load(_: FittedBalance, cause: Attributed, __: Mapping[str, Delay]) ->
     return Size(text=f"{value:.3g} of the load", numbers={"coefficient": Measured(value)})
 
 
-def _span(fit: FittedBalance) -> float:
-    return max(map(span_of, fit.runs))
-
-
 def drift_of(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
     """Return the change of a coefficient over the recording and per minute."""
     rate = float(cause.coefficients[0]) / (abs(fit.value(cause.candidate.detail)) or 1.0)
-    change, minute = rate * _span(fit), 60.0 * rate
+    change, minute = rate * fit.duration_of_recording, 60.0 * rate
     over, rated = f"{100.0 * change:+.3g} %", f"{100.0 * minute:+.3g} % per minute"
     return Size(
         text=f"{over} over the recording, {rated} of its value in the middle",
@@ -103,7 +98,7 @@ def drift_of(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> S
 def drifts(fit: FittedBalance, cause: Attributed) -> dict[str, float]:
     """Return half the change of the coefficient that drifts."""
     detail = cause.candidate.detail
-    half = float(0.5 * cause.coefficients[0] * _span(fit))
+    half = float(0.5 * cause.coefficients[0] * fit.duration_of_recording)
     return {detail: half} if detail in fit.names else {}
 
 

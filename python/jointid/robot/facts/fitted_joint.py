@@ -63,6 +63,16 @@ class FittedJoint(FittedBalance):
             residual=fit.residual[kept],
             jacobian=-jacobian[:, list(free)],
             start=np.zeros(len(free)),
+        ).at_own_minimum()
+
+    @property
+    def duration_of_recording(self) -> float:
+        """Of all of it, of which the excerpts are a part."""
+        rows = self.attempt.balance.rows
+        recording = np.asarray(self.attempt.runs)[rows.piece]
+        return max(
+            float(rows.stop[recording == run].max() - rows.start[recording == run].min())
+            for run in np.unique(recording)
         )
 
     @property

@@ -11,6 +11,7 @@ from jointid.estimate.findings import Finding
 from jointid.estimate.objections import EXPLAINED
 from jointid.identification.causes.cause_finding import finding_of_cause
 from jointid.identification.causes.causes import causes_of
+from jointid.identification.causes.harm import possible
 from jointid.identification.causes.suspicion import testable
 from jointid.robot.facts.fitted_joint import FittedJoint
 from jointid.robot.fit.attempt import Attempt
@@ -18,17 +19,23 @@ from jointid.robot.result.finding_types import TYPES
 
 CAUSES = ("springs and counterweights", "a low-pass filter on the torque", "soft gears")
 UNEXAMINED = f"not examined for a robot: {', '.join(CAUSES)}"
+_SHOWN = (
+    0.5  # of the mean square that all rows leave: with less, the excerpts do not show the misfit
+)
 _CALLED = {"asymmetry": "asymmetric_friction"}  # before there was one name for all balances
 
 
 def causes_of_joint(attempt: Attempt, name: str) -> Causes:
-    """Return the causes of a joint's misfit; none where the excerpts have too little motion, or little is explained."""
-    found = attempt.estimate.joints[name]
-    fit = FittedJoint.of(attempt, attempt.robot.names.index(name))
-    if not (found.residuals.r_squared >= EXPLAINED and testable(fit.run)):
+    """Return the causes of a joint's misfit; none where the excerpts do not show it, or where little is explained."""
+    found, joint = attempt.estimate.joints[name], attempt.robot.names.index(name)
+    fit = FittedJoint.of(attempt, joint)
+    whole = float(np.mean(attempt.fit.residual[attempt.balance.places[joint]] ** 2))
+    shown = testable(fit.run) and float(np.mean(fit.residual**2)) > _SHOWN * whole
+    if not (found.residuals.r_squared >= EXPLAINED and shown):
         return Causes(found=())
     torque = attempt.balance.rows.torque[fit.kept] / fit.duration
-    return causes_of(fit, found.parameters, float(np.sqrt(np.mean(torque**2))))
+    causes = causes_of(fit, found.parameters, float(np.sqrt(np.mean(torque**2))))
+    return possible(causes, found.parameters)
 
 
 def cause_finding(cause: Cause, name: str, parameters: tuple[str, ...]) -> Finding:

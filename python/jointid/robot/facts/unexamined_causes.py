@@ -29,10 +29,13 @@ _MOST_LEFT = 0.5  # of a joint's misfit, by the causes that were found
 _MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
 
 
-def misfit_findings(attempt: Attempt, corrected: Attempt) -> Iterator[Finding]:
+def misfit_findings(
+    attempt: Attempt, corrected: Attempt, *, named: bool = True
+) -> Iterator[Finding]:
     """Findings of joints whose residual is no noise: its causes, or what was not examined; both cap the verdict.
 
-    Where wrong facts that were named explain it, it is for information: another cause may look like them.
+    Where wrong facts that were named explain it, it is for information: another cause may look like them. Without
+    `named` no cause is looked for: what is known of the recording already may look like one.
     """
     estimate = attempt.estimate
     shares = {name: _structured(joint) for name, joint in estimate.joints.items()}
@@ -42,7 +45,7 @@ def misfit_findings(attempt: Attempt, corrected: Attempt) -> Iterator[Finding]:
         return
     explained = max(left.values()) < _EXPLAINED * max(shares.values())
     notes = []
-    for name in [] if explained else [*concerned]:
+    for name in [*concerned] if named and not explained else []:
         causes = causes_of_joint(corrected, name) if left[name] else Causes(found=())
         for cause in causes.found:
             yield cause_finding(cause, name, _all_of(estimate, name))
@@ -50,8 +53,10 @@ def misfit_findings(attempt: Attempt, corrected: Attempt) -> Iterator[Finding]:
             concerned.remove(name)
         notes += [f"{name}: {cause}" for cause in causes.harmless]
     if concerned:
-        named = {name: shares[name] for name in concerned}
-        yield _unexamined(estimate, named, "the named facts explain it" if explained else "", notes)
+        left_over = {name: shares[name] for name in concerned}
+        yield _unexamined(
+            estimate, left_over, "the named facts explain it" if explained else "", notes
+        )
 
 
 def _unexamined(
