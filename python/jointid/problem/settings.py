@@ -97,7 +97,7 @@ class SignalOptions(TypedDict, total=False):
             "inertia of a rigid link explain, which neither the reading's noise nor friction that the model lacks "
             'biases. "sensor" (the thesis) compares the reading with what the torque leaves for it, "torque" (default '
             'without a sensor) the torque with the reading. Where instruments are weak the default is "sensor", and '
-            "`settings` says why.",
+            "`settings` says why. On line instruments are refused, and the default is \"sensor\".",
             checked=_one_of(RESIDUALS),
             flag="--residual",
             phrase="residual to minimise: instruments, sensor or torque",
@@ -164,7 +164,8 @@ class ModelOptions(TypedDict, total=False):
             help='Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; each stated field overrides that of the '
             "joint's model. Default: the joint's. Where neither names one, or the name is \"auto\", the model is "
             'chosen by held-out prediction: "coulomb_viscous" or "stribeck", with gravity free or none where that is '
-            "neither stated nor known; `Estimate.selection` has the scores.",
+            "neither stated nor known; `Estimate.selection` has the scores. A sweep chooses none: it takes "
+            '"coulomb_viscous".',
             checked=lambda _, value: Model.of(value),
         ),
     ]
