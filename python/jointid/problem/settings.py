@@ -97,7 +97,7 @@ class SignalOptions(TypedDict, total=False):
             "inertia of a rigid link explain, which neither the reading's noise nor friction that the model lacks "
             'biases. "sensor" (the thesis) compares the reading with what the torque leaves for it, "torque" (default '
             'without a sensor) the torque with the reading. Where instruments are weak the default is "sensor", and '
-            "`settings` says why. On line instruments are refused, and the default is \"sensor\".",
+            '`settings` says why. On line instruments are refused, and the default is "sensor".',
             checked=_one_of(RESIDUALS),
             flag="--residual",
             phrase="residual to minimise: instruments, sensor or torque",
