@@ -6,10 +6,10 @@ from typing import Any
 from closed_loop import TRUTH, thesis_joint
 
 import jointid as jid
-from jointid.design.design import Design
-from jointid.design.design_fields import COMPLETE
-from jointid.design.expected_error import ExpectedError
-from jointid.design.motion_limits import MotionLimits
+from jointid.excitation.design import Design
+from jointid.excitation.design_fields import COMPLETE
+from jointid.excitation.expected_error import ExpectedError
+from jointid.excitation.motion_limits import MotionLimits
 from jointid.simulation.peaks import Peaks
 
 JOINT = thesis_joint().with_parameters(TRUTH)

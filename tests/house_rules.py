@@ -117,7 +117,7 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={"balance", *_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
-    "design": Folder(
+    "excitation": Folder(
         may_use={*(_SOUGHT - {"identification/search"}), "simulation", "plot"},
         packages={"numpy", "matplotlib"},
     ),
@@ -221,7 +221,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *("base", "joint", "estimate", "joints", "robot/result", "servo"),
             "identification/warnings",
-            *("report/drawing", "recording", "commissioning", "comparison", "study", "design"),
+            *("report/drawing", "recording", "commissioning", "comparison", "study", "excitation"),
             "problem",
         },
         packages={"numpy"},
@@ -285,7 +285,7 @@ FOLDERS: dict[str, Folder] = {
                 "servo",
                 "simulation",
                 "study",
-                "design",
+                "excitation",
                 "plot",
                 "report",
                 "exports",
@@ -309,7 +309,7 @@ FOLDERS: dict[str, Folder] = {
                 *("robot", "robot/links", "robot/result"),
                 "servo",
             ),
-            *("simulation", "study", "design"),
+            *("simulation", "study", "excitation"),
             *("plot", "report", "exports", "hardware", "commissioning", "cli"),
         },
     ),

@@ -43,12 +43,12 @@ if TYPE_CHECKING:
     from jointid.commissioning import ring as commissioning
     from jointid.comparison.comparison import compare_models
     from jointid.comparison.result import Comparison
-    from jointid.design.design import Design
-    from jointid.design.design_file import load_design
-    from jointid.design.design_search import DesignProgress, DesignSearch
-    from jointid.design.designing import design_excitation
-    from jointid.design.information import Known
-    from jointid.design.motion_limits import MotionLimits
+    from jointid.excitation.design import Design
+    from jointid.excitation.design_file import load_design
+    from jointid.excitation.design_search import DesignProgress, DesignSearch
+    from jointid.excitation.designing import design_excitation
+    from jointid.excitation.information import Known
+    from jointid.excitation.motion_limits import MotionLimits
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.selection import Selection
@@ -190,12 +190,12 @@ _HOMES = {
     "jointid.cli.demonstration": ("Demonstration", "demo"),
     "jointid.comparison.comparison": ("compare_models",),
     "jointid.comparison.result": ("Comparison",),
-    "jointid.design.design": ("Design",),
-    "jointid.design.design_file": ("load_design",),
-    "jointid.design.design_search": ("DesignProgress", "DesignSearch"),
-    "jointid.design.designing": ("design_excitation",),
-    "jointid.design.information": ("Known",),
-    "jointid.design.motion_limits": ("MotionLimits",),
+    "jointid.excitation.design": ("Design",),
+    "jointid.excitation.design_file": ("load_design",),
+    "jointid.excitation.design_search": ("DesignProgress", "DesignSearch"),
+    "jointid.excitation.designing": ("design_excitation",),
+    "jointid.excitation.information": ("Known",),
+    "jointid.excitation.motion_limits": ("MotionLimits",),
     "jointid.estimate.bootstrap": ("Bootstrap",),
     "jointid.estimate.estimate": ("Estimate",),
     "jointid.estimate.selection": ("Selection",),
@@ -243,7 +243,7 @@ _FOLDERS = frozenset({"commissioning", "hardware", "plot"})
 
 def _next_motion() -> Callable[..., object]:
     """Load what designs the motion to record after an estimate."""
-    from jointid.design.next_motion import motion_after
+    from jointid.excitation.next_motion import motion_after
 
     return motion_after
 

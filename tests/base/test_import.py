@@ -131,8 +131,8 @@ def test_the_missing_core_is_said_at_once(tmp_path: Path) -> None:
 def test_the_room_that_designs_is_loaded_by_the_first_design() -> None:
     before = "from jointid.estimate.estimate import Estimate\n"
     after = "from jointid.base.joining import joined\nassert callable(joined('next_motion'))"
-    assert "jointid.design.next_motion" not in loaded(before)
-    assert "jointid.design.next_motion" in loaded(before + after)
+    assert "jointid.excitation.next_motion" not in loaded(before)
+    assert "jointid.excitation.next_motion" in loaded(before + after)
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from designs import bench_text
 import jointid as jid
 from jointid.cli.command_line import main
 from jointid.cli.progress import MotionProgress
-from jointid.design.tables import answer
+from jointid.excitation.tables import answer
 from jointid.hardware.bench.bench import Bench
 
 Printed = pytest.CaptureFixture[str]

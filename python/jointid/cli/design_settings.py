@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import by_name
 from jointid.cli.scenario import checked_values, controller_of, number_or_angle, sensors_of
-from jointid.design.motion_limits import MotionLimits
+from jointid.excitation.motion_limits import MotionLimits
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits
 
@@ -134,7 +134,7 @@ def sensors_for(
     pairs: Sequence[tuple[str, str]], limits: MotionLimits, joint: Joint, bench: Bench | None
 ) -> Sensors | None:
     """The sensors of the options, beside the session's encoder and what else is assumed; None: the default ones."""
-    from jointid.design.balance_noise import assumed_sensors
+    from jointid.excitation.balance_noise import assumed_sensors
 
     # What a drive's type calls otherwise is not known here, and stays the default.
     counts = getattr(None if bench is None else bench.drive, "counts_per_turn", None)
@@ -172,7 +172,7 @@ def sensors_after(
     pairs: Sequence[tuple[str, str]], sensors: Sensors | None, estimate: Estimate
 ) -> Sensors | None:
     """The same sensors, with the noise that an estimate's residuals show where no option says it."""
-    from jointid.design.posterior import sensors_of
+    from jointid.excitation.posterior import sensors_of
 
     seen = sensors_of(estimate)
     if sensors is None or seen is None or "torque_noise" in dict(pairs):

@@ -15,7 +15,7 @@ from jointid.cli.outputs import check_folder, check_page
 
 if TYPE_CHECKING:
     from jointid.cli.parser import CommandParser
-    from jointid.design.design import Design
+    from jointid.excitation.design import Design
     from jointid.estimate.estimate import Estimate
 
 _PICTURES = (".png", ".pdf", ".svg")
@@ -181,8 +181,8 @@ def _designed(arguments: argparse.Namespace) -> Design:
         sensors_for,
     )
     from jointid.cli.progress import MotionProgress
-    from jointid.design.design_search import DesignSearch
-    from jointid.design.designing import design_excitation
+    from jointid.excitation.design_search import DesignSearch
+    from jointid.excitation.designing import design_excitation
 
     estimate = _estimate(arguments)
     if arguments.joint is not None:
@@ -269,7 +269,7 @@ def _estimate(arguments: argparse.Namespace) -> Estimate | None:
 def _say(found: Design, arguments: argparse.Namespace) -> int:
     """Write what was asked for, and print the design; a motion that keeps no limits is not written."""
     from jointid.cli.exit_codes import BAD_INPUT
-    from jointid.design.design_fields import COMPLETE
+    from jointid.excitation.design_fields import COMPLETE
 
     usable = found.status == COMPLETE
     if usable and arguments.output is not None:
@@ -283,7 +283,7 @@ def _say(found: Design, arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(found.to_dict(), indent=1, ensure_ascii=False, allow_nan=False))
     else:
-        from jointid.design.tables import answer
+        from jointid.excitation.tables import answer
 
         print(found.summary() if arguments.verbose else answer(found))
         written = (("picture", arguments.plot), ("report", arguments.report))

@@ -11,7 +11,7 @@ from jointid._core import GaOptions, Generation
 
 if TYPE_CHECKING:
     from jointid.comparison.fitter import ComparisonStep
-    from jointid.design.design_search import DesignProgress
+    from jointid.excitation.design_search import DesignProgress
     from jointid.study.sweeping import StudyStep
 
 _WIDTH = 24

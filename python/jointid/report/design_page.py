@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from jointid.base.html import Html, element, page, table
-from jointid.design.assumptions import assumed
-from jointid.design.design import Design
-from jointid.design.design_fields import COMPLETE
-from jointid.design.tables import head, improved, judged_with, limits_used, rows, share_text
+from jointid.excitation.assumptions import assumed
+from jointid.excitation.design import Design
+from jointid.excitation.design_fields import COMPLETE
+from jointid.excitation.tables import head, improved, judged_with, limits_used, rows, share_text
 from jointid.joint.units import velocity_label
 from jointid.report.answering import answer
 from jointid.report.drawing.marks import Bars, Level, Line, Panel

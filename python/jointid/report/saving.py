@@ -16,7 +16,7 @@ from jointid.problem.recordings import listed
 if TYPE_CHECKING:
     from jointid.commissioning.result import Commissioning
     from jointid.comparison.result import Comparison
-    from jointid.design.design import Design
+    from jointid.excitation.design import Design
     from jointid.estimate.estimate import Estimate
     from jointid.joints.result import JointEstimates
     from jointid.recording.recording import Recording

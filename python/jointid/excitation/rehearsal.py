@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
-from jointid.design.judging import Situation
+from jointid.excitation.judging import Situation
 from jointid.identification.prepared import Prepared, prepare
 from jointid.problem.constant_torque import balanced
 from jointid.simulation.batch import simulate_batch

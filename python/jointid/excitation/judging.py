@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.design.balance_noise import noise_of_balance
-from jointid.design.motion_limits import MotionLimits
-from jointid.design.prior import Ranges
-from jointid.design.request import Request
-from jointid.design.simulated_friction import largest_other, largest_viscous
+from jointid.excitation.balance_noise import noise_of_balance
+from jointid.excitation.motion_limits import MotionLimits
+from jointid.excitation.prior import Ranges
+from jointid.excitation.request import Request
+from jointid.excitation.simulated_friction import largest_other, largest_viscous
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.batch import setup_of

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from jointid import _core
-from jointid.design.design_fields import DesignFields
+from jointid.excitation.design_fields import DesignFields
 from jointid.simulation.arguments import law_name
 
 _GAINS = ("stiffness", "integral", "damping")

@@ -6,8 +6,8 @@ import math
 
 from jointid.base.error_text import printable
 from jointid.base.html import Html, element, table
-from jointid.design.assumptions import assumed
-from jointid.design.design_fields import COMPLETE, DesignFields
+from jointid.excitation.assumptions import assumed
+from jointid.excitation.design_fields import COMPLETE, DesignFields
 from jointid.estimate.wording import rounded
 
 _LIMITS = {

@@ -11,8 +11,8 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.toml_text import toml_of
-from jointid.design.design_fields import DesignFields
-from jointid.design.expected_error import ExpectedError
+from jointid.excitation.design_fields import DesignFields
+from jointid.excitation.expected_error import ExpectedError
 from jointid.joint.joint_file import joint_document
 from jointid.simulation.motion_file import COMMENTS, SCHEMA, motion_table
 from jointid.simulation.setting_tables import controller_table, plain, sensors_table

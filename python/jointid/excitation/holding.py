@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from jointid.base.errors import InputError
-from jointid.design.judging import Situation
-from jointid.design.reaching import Reached, described, exceeded
+from jointid.excitation.judging import Situation
+from jointid.excitation.reaching import Reached, described, exceeded
 from jointid.simulation.batch import simulate_batch
 from jointid.simulation.peaks import Peaks
 from jointid.simulation.simulated_recording import SimulatedRecording

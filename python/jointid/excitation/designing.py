@@ -14,20 +14,20 @@ from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.design.balance_noise import assumed_sensors
-from jointid.design.checks import check_arguments, check_gain, check_length, check_signs
-from jointid.design.default_law import default_controller
-from jointid.design.design import Design
-from jointid.design.design_fields import COMPLETE, CRITERIA
-from jointid.design.design_search import DesignProgress, DesignSearch
-from jointid.design.expectation import expected_errors, what_limits
-from jointid.design.holding import shrunk
-from jointid.design.information import Known
-from jointid.design.judging import Situation, alike, fade_of
-from jointid.design.motion_limits import MotionLimits
-from jointid.design.prior import Prior, ranges_of, with_room
-from jointid.design.rehearsal import Rehearsal, rehearse
-from jointid.design.request import request_of
+from jointid.excitation.balance_noise import assumed_sensors
+from jointid.excitation.checks import check_arguments, check_gain, check_length, check_signs
+from jointid.excitation.default_law import default_controller
+from jointid.excitation.design import Design
+from jointid.excitation.design_fields import COMPLETE, CRITERIA
+from jointid.excitation.design_search import DesignProgress, DesignSearch
+from jointid.excitation.expectation import expected_errors, what_limits
+from jointid.excitation.holding import shrunk
+from jointid.excitation.information import Known
+from jointid.excitation.judging import Situation, alike, fade_of
+from jointid.excitation.motion_limits import MotionLimits
+from jointid.excitation.prior import Prior, ranges_of, with_room
+from jointid.excitation.rehearsal import Rehearsal, rehearse
+from jointid.excitation.request import request_of
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
 from jointid.simulation.peaks import Peaks

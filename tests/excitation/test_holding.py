@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from jointid.design.holding import _AIM, _LEAST, _STEPS, _next_size
+from jointid.excitation.holding import _AIM, _LEAST, _STEPS, _next_size
 
 
 @pytest.mark.parametrize("constant", [0.0, 0.5, 0.8])

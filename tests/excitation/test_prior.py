@@ -3,7 +3,7 @@
 import pytest
 
 import jointid as jid
-from jointid.design.prior import ranges_of
+from jointid.excitation.prior import ranges_of
 from jointid.joint.parameters import Parameter
 
 KNOWN = {

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.design.information import Known
-from jointid.design.posterior import Posterior, joint_of, posterior_of, sensors_of
+from jointid.excitation.information import Known
+from jointid.excitation.posterior import Posterior, joint_of, posterior_of, sensors_of
 
 THESIS = jid.thesis_joint()
 TRUE = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}

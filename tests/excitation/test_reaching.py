@@ -9,11 +9,11 @@ from closed_loop import TRUTH, thesis_joint
 from designs import motion
 
 import jointid as jid
-from jointid.design.holding import shrunk
-from jointid.design.judging import Situation
-from jointid.design.motion_limits import MotionLimits
-from jointid.design.prior import ranges_of
-from jointid.design.request import request_of
+from jointid.excitation.holding import shrunk
+from jointid.excitation.judging import Situation
+from jointid.excitation.motion_limits import MotionLimits
+from jointid.excitation.prior import ranges_of
+from jointid.excitation.request import request_of
 
 JOINT = thesis_joint()
 REQUEST = request_of(JOINT, None)
@@ -41,7 +41,7 @@ def situation(controller: Any = LAW, **limits: Any) -> Situation:
 @pytest.fixture(autouse=True)
 def _one_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """The motion is not made smaller."""
-    monkeypatch.setattr("jointid.design.holding._STEPS", 1)
+    monkeypatch.setattr("jointid.excitation.holding._STEPS", 1)
 
 
 def problem(where: Situation) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
-from jointid.design.judging import Situation
+from jointid.excitation.judging import Situation
 from jointid.simulation.batch import simulate_batch
 from jointid.simulation.peaks import Peaks
 from jointid.simulation.simulated_recording import SimulatedRecording

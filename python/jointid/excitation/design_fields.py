@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from jointid import _core
-from jointid.design.expected_error import ExpectedError
-from jointid.design.motion_limits import MotionLimits
+from jointid.excitation.expected_error import ExpectedError
+from jointid.excitation.motion_limits import MotionLimits
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.peaks import Peaks

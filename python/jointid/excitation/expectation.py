@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.design.design import Design
-from jointid.design.expected_error import ExpectedError
-from jointid.design.judging import Situation
-from jointid.design.rehearsal import Rehearsal
+from jointid.excitation.design import Design
+from jointid.excitation.expected_error import ExpectedError
+from jointid.excitation.judging import Situation
+from jointid.excitation.rehearsal import Rehearsal
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from typing import get_args
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.design.prior import Ranges
-from jointid.design.request import Request
+from jointid.excitation.prior import Ranges
+from jointid.excitation.request import Request
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import LAWS, Controller
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.design.motion_limits import MotionLimits
+from jointid.excitation.motion_limits import MotionLimits
 from jointid.joint.link import Limits
 
 JOINT = jid.Joint(sensor=True, limits=Limits(position=(-1.0, 3.0), velocity=4.0, torque=100.0))

@@ -11,10 +11,10 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.schema import ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
-from jointid.design.design import Design
-from jointid.design.design_fields import CRITERIA
-from jointid.design.expected_error import ExpectedError
-from jointid.design.motion_limits import MotionLimits
+from jointid.excitation.design import Design
+from jointid.excitation.design_fields import CRITERIA
+from jointid.excitation.expected_error import ExpectedError
+from jointid.excitation.motion_limits import MotionLimits
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document
 from jointid.simulation.motion_file import (

@@ -14,7 +14,7 @@ from designs import designed
 from matplotlib import pyplot
 
 import jointid as jid
-from jointid.design.motion_limits import MotionLimits
+from jointid.excitation.motion_limits import MotionLimits
 
 DESIGN = designed()
 

@@ -12,12 +12,12 @@ import pytest
 from closed_loop import TRUTH, thesis_joint, wrong_controller
 
 import jointid as jid
-from jointid.design import designing, holding
-from jointid.design.judging import Situation
-from jointid.design.motion_limits import MotionLimits
-from jointid.design.prior import ranges_of
-from jointid.design.rehearsal import rehearse
-from jointid.design.request import request_of
+from jointid.excitation import designing, holding
+from jointid.excitation.judging import Situation
+from jointid.excitation.motion_limits import MotionLimits
+from jointid.excitation.prior import ranges_of
+from jointid.excitation.rehearsal import rehearse
+from jointid.excitation.request import request_of
 
 LIMITS = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
 SENSORS = jid.Sensors(torque_noise=0.5)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from jointid import _core
-from jointid.design.simulated_friction import faded_speed, step_at_reversal
+from jointid.excitation.simulated_friction import faded_speed, step_at_reversal
 from jointid.joint.joint import Joint
 
 _OWN = 3e-3  # of the torque limit: a sensor's noise where none is stated

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from jointid.design.design_fields import DesignFields
+from jointid.excitation.design_fields import DesignFields
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,7 +66,7 @@ class Design(DesignFields):
 
     def summary(self) -> str:
         """Return the design as text: expected errors, limits, what limits the weakest."""
-        from jointid.design.tables import summary
+        from jointid.excitation.tables import summary
 
         return summary(self)
 
@@ -84,7 +84,7 @@ class Design(DesignFields):
 
     def to_dict(self) -> dict[str, Any]:
         """Return what `save` writes, in JSON's types; a number that is not finite is a text."""
-        from jointid.design.design_document import document_of
+        from jointid.excitation.design_document import document_of
 
         return document_of(self)
 
@@ -98,7 +98,7 @@ class Design(DesignFields):
         OSError
             The file cannot be written; an existing one is untouched.
         """
-        from jointid.design.design_document import save_design
+        from jointid.excitation.design_document import save_design
 
         save_design(self, path)
 
@@ -106,6 +106,6 @@ class Design(DesignFields):
         return self.summary()
 
     def _repr_html_(self) -> str:
-        from jointid.design.tables import html_summary
+        from jointid.excitation.tables import html_summary
 
         return str(html_summary(self))

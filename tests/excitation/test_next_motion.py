@@ -15,8 +15,8 @@ import jointid as jid
 from jointid.cli.command_line import main
 from jointid.cli.parser import command_parser
 from jointid.cli.wording import Wording
-from jointid.design import next_motion
-from jointid.design.default_law import default_controller
+from jointid.excitation import next_motion
+from jointid.excitation.default_law import default_controller
 
 THESIS = jid.thesis_joint()
 TRUE = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
