@@ -32,7 +32,7 @@ class Picture:
         """The `d` of a mark, legends aside: they come before the axes."""
         seen = [
             each.attrib["d"]
-            for each in self._after_axes()
+            for each in self.after_axes()
             if each.tag == "path" and kind in each.attrib["class"].split()
         ]
         return seen[which]
@@ -56,7 +56,8 @@ class Picture:
     def texts(self) -> list[str]:
         return [each.text or "" for each in self.root.iter("text")]
 
-    def _after_axes(self) -> list[ElementTree.Element]:
+    def after_axes(self) -> list[ElementTree.Element]:
+        """What is drawn of the marks, and the titles between them."""
         children = list(self.root)
         first = next(n for n, each in enumerate(children) if each.attrib.get("class") == "axes")
         return children[first + 1 :]

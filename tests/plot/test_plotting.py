@@ -17,10 +17,12 @@ from closed_loop import TRUTH, thesis_joint, well_excited, wrong_controller
 from cycler import cycler
 from matplotlib import pyplot
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from simulated_servo import Truth, bench_runs, servo_joint, with_truth
 
 import jointid as jid
 from jointid.joint.units import parameter_unit
+from jointid.panels.palette import LIGHT, LOOKS
 
 TRUE = thesis_joint().with_parameters(TRUTH)
 
@@ -265,6 +267,21 @@ def test_keywords_of_curves_are_passed_on_and_axes_are_drawn_into(name: str) -> 
     ax = pyplot.subplots()[1]
     assert _drawn(name, ax, color="#123456", lw=3.25) is ax
     assert any(line.get_color() == "#123456" and line.get_linewidth() == 3.25 for line in ax.lines)
+
+
+def test_a_band_has_the_colour_of_its_curve_and_other_marks_keep_theirs() -> None:
+    axes = _drawn("friction_map", None, color="#123456")
+    assert to_hex(axes.collections[0].get_facecolor()[0]) == "#123456"
+    points, curve = axes.lines
+    assert (points.get_color(), curve.get_color()) == (LIGHT["measured"], "#123456")
+
+
+def test_the_palette_is_that_of_the_reports() -> None:
+    assert [jid.plot.line_style(number)["color"] for number in range(6)] == [
+        LIGHT[look] for look in LOOKS
+    ]
+    points, curve = _drawn("friction_map", None).lines
+    assert (points.get_color(), curve.get_color()) == (LIGHT["measured"], LIGHT["fitted"])
 
 
 @pytest.mark.parametrize("name", _CURVES)

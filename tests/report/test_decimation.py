@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from drawn_pictures import Picture
 
+from jointid.panels.marks import Band, Line, Mark, Panel, Points
 from jointid.report.drawing.decimation import distinct, outline
-from jointid.report.drawing.marks import Band, Line, Mark, Panel, Points
 from jointid.report.drawing.picture import drawn
 
 LONG = 200_000

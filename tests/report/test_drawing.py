@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drawn_pictures import Picture, corners
 
-from jointid.report.drawing.marks import Band, Bars, Level, Line, Mark, Panel, Points
+from jointid.panels.marks import Band, Bars, Level, Line, Mark, Panel, Points, Range
 from jointid.report.drawing.picture import WIDTH, drawn
 
 TENTHS = 10  # places a unit
@@ -92,6 +92,45 @@ def test_a_logarithmic_axis_has_decades() -> None:
     assert heights == pytest.approx(np.full(49, heights.mean()), abs=1.0)
     few = picture(Line(across=x, up=1.0 + x / 20.0), logarithmic=True)
     assert {"1", "2"} <= set(few.texts)
+
+
+def test_an_axis_across_may_be_logarithmic() -> None:
+    x = 10.0 ** np.arange(4.0)
+    line = Line(across=x, up=np.arange(4.0))
+    panel = Panel(across="population", up="error", marks=(line,), logarithmic_across=True)
+    seen = Picture(str(drawn([panel], "a study")))
+    assert {"10⁰", "10¹", "10²", "10³"} <= set(seen.texts)
+    steps = np.diff(seen.points("line")[0][:, 0])
+    assert steps == pytest.approx(np.full(3, steps.mean()), abs=1.0)
+
+
+def test_an_axis_at_the_right_has_its_own_numbers() -> None:
+    x = np.linspace(0.0, 1.0, 5)
+    panel = Panel(
+        across="velocity [rad/s]",
+        up="share [%]",
+        marks=(Line(across=x, up=x),),
+        right=(Line(label="friction", across=x, up=100.0 * x),),
+        right_up="friction [N·m]",
+    )
+    seen = Picture(str(drawn([panel], "two units")))
+    first, second = seen.points("line", 0)[0], seen.points("line", 1)[0]
+    np.testing.assert_array_equal(first, second)  # one shape in two units
+    assert {"friction [N·m]", "friction", "1.0", "100"} <= set(seen.texts)
+    numbers = [each for each in seen.root.iter("text") if each.text == "100"]
+    assert float(numbers[0].attrib["x"]) > second[:, 0].max()
+    assert "At the right: friction [N·m]: friction (line, 5 values)" in (
+        seen.root.findtext("desc") or ""
+    )
+
+
+def test_a_range_is_as_wide_as_the_picture() -> None:
+    seen = picture(Range(low=1.0, high=3.0), Line(across=[0.0, 1.0], up=[0.0, 5.0]))
+    (box,) = seen.points("shade")
+    assert seen.axis("up").value(box[[0, 1], 1]) == pytest.approx([1.0, 3.0], abs=0.02)
+    line = seen.points("line")[0]
+    assert box[0, 0] < line[0, 0] < line[1, 0] < box[2, 0]
+    assert "shade measured" in {each.attrib.get("class") for each in seen.root.iter("path")}
 
 
 def test_bars_stand_on_zero() -> None:

@@ -4,7 +4,8 @@ import re
 
 import pytest
 
-from jointid.report.drawing.palette import BAND, DARK, LIGHT, LOOKS, STYLE
+from jointid.panels.palette import BAND, DARK, LIGHT, LOOKS
+from jointid.report.drawing.style import STYLE
 
 LEAST = 3.0  # WCAG 2.1, 1.4.11: graphical objects
 TEXT = 4.5  # 1.4.3

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drawn_pictures import Picture
 
-from jointid.report.drawing.marks import Bars, Line, Panel, Points
+from jointid.panels.marks import Bars, Line, Panel, Points
 from jointid.report.drawing.picture import WIDTH, drawn
 
 
@@ -42,6 +42,25 @@ def test_two_panels_are_read_at_once_with_names_and_units() -> None:
         at = number(strip["time"])
         assert number(strip["measured"]) == pytest.approx(-3.0 * at, abs=0.02)
         assert number(strip["residual"]) == pytest.approx(at**2, abs=0.06)
+
+
+def test_logarithmic_axes_and_the_axis_at_the_right_are_read_in_their_units() -> None:
+    x = 10.0 ** np.linspace(0.0, 3.0, 4)
+    panel = Panel(
+        across="population",
+        up="error [%]",
+        marks=(Line(across=x, up=np.log10(x)),),
+        right=(Line(label="torque", across=x, up=2.0 * np.log10(x)),),
+        right_up="torque [N·m]",
+        logarithmic_across=True,
+    )
+    seen = read(panel)
+    assert len(seen) >= 70
+    for strip in seen:
+        at = np.log10(number(strip["population"]))
+        assert number(strip["error"]) == pytest.approx(at, abs=0.01)
+        assert number(strip["torque"]) == pytest.approx(2.0 * at, abs=0.01)
+        assert strip["torque"].endswith(" N·m")
 
 
 def test_strips_lie_side_by_side_over_the_panels() -> None:

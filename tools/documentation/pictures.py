@@ -10,13 +10,16 @@ from numpy.typing import NDArray
 import jointid as jid
 from jointid.base.html import Html
 from jointid.estimate.window_views import fitted_signal, whole_windows
-from jointid.report.drawing import palette
-from jointid.report.drawing.marks import Bars, Level, Line, Mark, Panel, Points
-from jointid.report.estimate_pictures import friction_picture, windows_picture
-from jointid.report.figure import captioned
+from jointid.panels import palette
+from jointid.panels.friction import friction_map
+from jointid.panels.marks import Bars, Level, Line, Mark, Panel, Picture, Points
+from jointid.panels.windows import window_means
+from jointid.report.drawing.style import STYLE
+from jointid.report.page.content import Figure
+from jointid.report.renderers.html_page import html_block
 
 Array = NDArray[np.float64]
-Picture = Callable[[jid.Recording, jid.Estimate], Html]
+Drawing = Callable[[jid.Recording, jid.Estimate], Html]
 _AXES = {
     "position": "position [rad]",
     "velocity": "velocity [rad/s]",
@@ -31,7 +34,7 @@ def style() -> str:
         " ".join(f"--{name}: {colour};" for name, colour in colours.items())
         for colours in (palette.LIGHT, palette.DARK)
     )
-    rules = palette.STYLE.partition("\nsvg")[2]
+    rules = STYLE.partition("\nsvg")[2]
     # Only pictures of ours: the theme draws its icons as svg, too.
     inside = ("svg" + rules).replace("svg", ".jointid-picture svg")
     return (
@@ -42,7 +45,7 @@ def style() -> str:
     )
 
 
-def over_time(*signals: str, caption: str, start: float = 0.0, stop: float = np.inf) -> Picture:
+def over_time(*signals: str, caption: str, start: float = 0.0, stop: float = np.inf) -> Drawing:
     """Signals of the recording in a stretch of time."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
@@ -62,12 +65,12 @@ def over_time(*signals: str, caption: str, start: float = 0.0, stop: float = np.
             )
             for name in signals
         ]
-        return captioned(caption, *panels)
+        return _figure(caption, *panels)
 
     return drawn
 
 
-def samples(signal: str, *, caption: str, start: float, stop: float) -> Picture:
+def samples(signal: str, *, caption: str, start: float, stop: float) -> Drawing:
     """Single samples of a signal."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
@@ -77,14 +80,12 @@ def samples(signal: str, *, caption: str, start: float, stop: float) -> Picture:
             Line(look="measured", across=time, up=values),
             Points(look="fitted", across=time, up=values),
         )
-        return captioned(
-            caption, Panel(across="time [s]", up=_AXES[signal], height=170, marks=marks)
-        )
+        return _figure(caption, Panel(across="time [s]", up=_AXES[signal], height=170, marks=marks))
 
     return drawn
 
 
-def rate(*, caption: str, start: float, stop: float) -> Picture:
+def rate(*, caption: str, start: float, stop: float) -> Drawing:
     """The recorded velocity, and the rate of the position."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
@@ -95,20 +96,20 @@ def rate(*, caption: str, start: float, stop: float) -> Picture:
             Line(look="measured", label="rate of the position", across=time, up=slope),
             Line(label="recorded velocity", across=time, up=recording.velocity[chosen]),
         )
-        return captioned(
+        return _figure(
             caption, Panel(across="time [s]", up=_AXES["velocity"], height=190, marks=marks)
         )
 
     return drawn
 
 
-def steps(*, caption: str) -> Picture:
+def steps(*, caption: str) -> Drawing:
     """How long the steps between time stamps are."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
         count, edges = np.histogram(1e3 * np.diff(recording.time), bins=40)
         bars = Bars(edges=edges, up=count.astype(float), look="second")
-        return captioned(
+        return _figure(
             caption,
             Panel(across="step of the time stamps [ms]", up="samples", height=170, marks=(bars,)),
         )
@@ -118,15 +119,15 @@ def steps(*, caption: str) -> Picture:
 
 def friction(_: jid.Recording, estimate: jid.Estimate) -> Html:
     """The friction map of the report."""
-    return friction_picture(estimate)
+    return html_block(Figure(friction_map(estimate)))
 
 
 def windows(_: jid.Recording, estimate: jid.Estimate) -> Html:
     """The report's windows and their residuals over time."""
-    return windows_picture(estimate)
+    return html_block(Figure(window_means(estimate)))
 
 
-def residual_over(axis: str, *, caption: str) -> Picture:
+def residual_over(axis: str, *, caption: str) -> Drawing:
     """The windows' residuals over the position, the velocity, or the load on the gear."""
 
     def drawn(recording: jid.Recording, estimate: jid.Estimate) -> Html:
@@ -147,6 +148,10 @@ def residual_over(axis: str, *, caption: str) -> Picture:
             Level(look="measured", up=0.0),
         )
         up = f"residual of the {signal} [{unit}]"
-        return captioned(caption, Panel(across=label, up=up, height=190, marks=marks))
+        return _figure(caption, Panel(across=label, up=up, height=190, marks=marks))
 
     return drawn
+
+
+def _figure(caption: str, *panels: Panel) -> Html:
+    return html_block(Figure(Picture(caption=caption, panels=panels)))

@@ -7,22 +7,12 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
 from jointid.base.errors import InputError
+from jointid.panels.palette import DASHES, LIGHT, LOOKS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Okabe and Ito's palette: distinct for the colour-blind, and in grey print by lightness.
-MEASURED = "#999999"
-FITTED = "#D55E00"
-SECOND = "#0072B2"
-_LINES: tuple[tuple[str, Any, str], ...] = (
-    ("#000000", "-", "o"),
-    (FITTED, (0, (6, 2)), "s"),
-    (SECOND, (0, (6, 2, 1, 2)), "^"),
-    ("#009E73", (0, (2, 1)), "D"),
-    ("#CC79A7", (0, (8, 2, 1, 1, 1, 1, 1, 2)), "v"),
-    ("#E69F00", (0, (4, 1)), "P"),
-)
+_MARKERS = ("o", "s", "^", "D", "v", "P")
 _STYLE: dict[str, Any] = {
     "figure.dpi": 110,
     "figure.constrained_layout.use": True,
@@ -130,19 +120,25 @@ def line_style(number: int, count: int = 0) -> dict[str, Any]:
     -------
     dict of str to object
     """
-    colour, dash, marker = _LINES[number % len(_LINES)]
+    place = number % len(LOOKS)
+    dashes = DASHES[LOOKS[place]]
     cycle = _chosen("axes.prop_cycle")
     own = [] if cycle is None else cycle.by_key().get("color", [])
     keywords: dict[str, Any] = {
-        "color": own[number % len(own)] if own else colour,
-        "linestyle": dash,
-        "linewidth": _chosen("lines.linewidth") or _STYLE["lines.linewidth"],
+        "color": own[number % len(own)] if own else LIGHT[LOOKS[place]],
+        "linestyle": (0, dashes) if dashes else "-",
+        "linewidth": line_width(),
     }
     if count:
         step = max(1, count // 12)
         keywords |= {
-            "marker": marker,
+            "marker": _MARKERS[place],
             "markersize": 4,
-            "markevery": (number * step // len(_LINES), step),
+            "markevery": (number * step // len(LOOKS), step),
         }
     return keywords
+
+
+def line_width() -> float:
+    """Return the user's width of lines, or ours."""
+    return float(_chosen("lines.linewidth") or _STYLE["lines.linewidth"])

@@ -2,44 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.statistics import FrictionCurve
-from jointid.estimate.window_views import (
-    fitted_signal,
-    map_velocities,
-    whole_windows,
-    window_centres,
-    with_gaps,
-)
-from jointid.joint.units import torque_unit, velocity_label
-from jointid.plot.appearance import FITTED, MEASURED, SECOND, axes_or_new, look
+from jointid.panels import friction, search, windows
+from jointid.panels.marks import Line, Points
+from jointid.plot.appearance import axes_or_new
+from jointid.plot.drawing import draw, of_kind
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-def _draw_curve(axes: Axes, curve: FrictionCurve, style: Mapping[str, Any]) -> None:
-    keywords = look(style, color=FITTED)
-    for side in (curve.velocity < 0.0, curve.velocity > 0.0):
-        axes.fill_between(
-            curve.velocity[side],
-            curve.lower[side],
-            curve.upper[side],
-            color=keywords["color"],
-            alpha=0.25,
-            linewidth=0,
-        )
-        label = keywords.get("label", "identified, with 95 % band")
-        shown = {**keywords, "label": label if curve.velocity[side][0] > 0.0 else None}
-        axes.plot(curve.velocity[side], curve.torque[side], **shown)
 
 
 def friction_map(
@@ -74,25 +49,9 @@ def friction_map(
     if recording is not None:
         require_kind("recording", recording, Recording)
     require_kind("estimate", estimate, Estimate)
-    axes = axes_or_new(ax)
-    windows = estimate.windows if recording is None else estimate.predict(recording).windows
-    whole = whole_windows(windows)
-    axes.plot(
-        windows.velocity[whole],
-        windows.friction[whole],
-        ".",
-        color=MEASURED,
-        markersize=3,
-        label="measured, window mean",
-        rasterized=True,
-    )
-    peak = float(np.abs(windows.velocity).max())
-    _draw_curve(axes, estimate.friction(map_velocities(peak)), style)
-    kind = estimate.settings["kind"]
-    axes.set_xlabel(velocity_label(kind))
-    axes.set_ylabel(f"friction [{torque_unit(kind)}]")
-    axes.legend(loc="upper left", frameon=False)
-    return axes
+    shown = None if recording is None else estimate.predict(recording).windows
+    (panel,) = friction.friction_map(estimate, shown).panels
+    return draw(axes_or_new(ax), panel, style, of_kind(panel, Line), loc="upper left")
 
 
 def window_means(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
@@ -117,26 +76,8 @@ def window_means(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Ax
         Not an estimate.
     """
     require_kind("estimate", estimate, Estimate)
-    axes = axes_or_new(ax)
-    windows = estimate.windows
-    signal, unit = fitted_signal(estimate)
-    centre = window_centres(windows)
-    axes.plot(
-        centre,
-        windows.measured / windows.duration,
-        ".",
-        color=MEASURED,
-        markersize=4,
-        label="measured",
-    )
-    axes.plot(
-        *with_gaps(centre, windows.fitted / windows.duration),
-        **look(style, color=FITTED, label="fitted"),
-    )
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"{signal}, window mean [{unit}]")
-    axes.legend(loc="best", frameon=False)
-    return axes
+    means, _ = windows.window_means(estimate).panels
+    return draw(axes_or_new(ax), means, style, of_kind(means, Line))
 
 
 def residuals(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
@@ -161,15 +102,8 @@ def residuals(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
         Not an estimate.
     """
     require_kind("estimate", estimate, Estimate)
-    axes = axes_or_new(ax)
-    windows = estimate.windows
-    _, unit = fitted_signal(estimate)
-    axes.axhline(0.0, color="black", linewidth=0.6)
-    keywords = look(style, color=SECOND, marker=".", linestyle="none", markersize=3)
-    axes.plot(window_centres(windows), windows.residual / windows.duration, **keywords)
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"residual [{unit}]")
-    return axes
+    _, below = windows.window_means(estimate).panels
+    return draw(axes_or_new(ax), below, style, of_kind(below, Points))
 
 
 def convergence(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
@@ -200,19 +134,5 @@ def convergence(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axe
             "it was made without a genetic search, so there is no convergence to draw",
             argument="estimate",
         )
-    axes = axes_or_new(ax)
-    history = estimate.convergence
-    axes.semilogy(
-        history.generation, history.mean, **look(style, color=MEASURED, label="population mean")
-    )
-    axes.semilogy(
-        history.generation, history.best, **look(style, color=SECOND, label="best so far")
-    )
-    polished = (estimate.settings["ga"] or {}).get("polish") and estimate.settings["method"] == "ga"
-    last = "result, with polish" if polished else "result, without polish"
-    axes.axhline(estimate.penalty, color=FITTED, linestyle="--", label=last)
-    axes.set_xlabel("generation")
-    unit = fitted_signal(estimate)[1]
-    axes.set_ylabel(f"penalty [({unit}·s)²]")
-    axes.legend(loc="best", frameon=False)
-    return axes
+    (panel,) = search.convergence(estimate).panels
+    return draw(axes_or_new(ax), panel, style, of_kind(panel, Line))

@@ -6,22 +6,22 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from jointid import _core
 from jointid.base.argument_checks import require_kind, require_mapping
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.friction_map import friction_torque
 from jointid.joint.joint import Joint
 from jointid.joint.units import torque_unit, velocity_label
-from jointid.plot.appearance import MEASURED, SECOND, axes_or_new, line_style, look
+from jointid.panels.curves import friction_line, friction_terms, known_values
+from jointid.panels.marks import Mark, Panel, Points
+from jointid.panels.palette import LOOKS
+from jointid.plot.appearance import axes_or_new
+from jointid.plot.drawing import draw
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 _SENSOR = ("sensor_gain", "sensor_offset")
 
 
@@ -65,14 +65,20 @@ def friction_curves(
     if not joints:
         raise InputError("at least one joint or estimate is expected", argument="joints", value={})
     for name, joint in joints.items():
-        _check_friction(_values(_joint(joint)), f"joints.{name}")
-    axes = axes_or_new(ax)
-    for number, (name, joint) in enumerate(joints.items()):
-        _draw(axes, _values(_joint(joint)), peak, look(style, **line_style(number), label=name))
+        _check_friction(known_values(_joint(joint)), f"joints.{name}")
+    lines = tuple(
+        friction_line(
+            known_values(_joint(joint)),
+            peak,
+            look=LOOKS[number % len(LOOKS)],
+            label=name,
+            series=True,
+        )
+        for number, (name, joint) in enumerate(joints.items())
+    )
     kinds = {_joint(joint).kind for joint in joints.values()}
-    _label(axes, "friction", "prismatic" if kinds == {"prismatic"} else "revolute")
-    axes.legend(loc="best", frameon=False)
-    return axes
+    panel = _panel("friction", "prismatic" if kinds == {"prismatic"} else "revolute", *lines)
+    return draw(axes_or_new(ax), panel, style, lines)
 
 
 def sensitivity(
@@ -123,7 +129,7 @@ def sensitivity(
     >>> jid.plot.sensitivity(estimate.joint, "viscous", share=0.2)
     """
     require_kind("joint", joint, Joint)
-    values = _values(joint)
+    values = known_values(joint)
     if parameter not in values:
         raise InputError(
             f"it has no value; parameters with a value are {', '.join(values) or 'none'}",
@@ -131,23 +137,23 @@ def sensitivity(
             value=parameter,
         )
     _check_friction(values, "joint")
-    axes = axes_or_new(ax)
-    for number, (name, factor) in enumerate(
-        (
-            ("nominal", 1.0),
-            (f"+{100.0 * share:g} %", 1.0 + share),
-            (f"−{100.0 * share:g} %", 1.0 - share),
-        )
+    lines = []
+    for look, name, factor in (
+        ("measured", "nominal", 1.0),
+        ("fitted", f"+{100.0 * share:g} %", 1.0 + share),
+        ("second", f"−{100.0 * share:g} %", 1.0 - share),
     ):
         changed = values | {parameter: values[parameter] * factor}
         link = 0.0
         if joint.sensor:
             link = changed.get("sensor_gain", 0.0) * reading + changed.get("sensor_offset", 0.0)
-        keywords = look(style, **line_style(number), label=f"{parameter} {name}")
-        _draw(axes, changed, peak, keywords, above=link, forward=True)
-    _label(axes, "torque at constant speed", joint.kind)
-    axes.legend(loc="best", frameon=False)
-    return axes
+        label = f"{parameter} {name}"
+        line = friction_line(
+            changed, peak, above=link, forward=True, look=look, label=label, series=True
+        )
+        lines.append(line)
+    panel = _panel("torque at constant speed", joint.kind, *lines)
+    return draw(axes_or_new(ax), panel, style, lines)
 
 
 def torque_over_velocity(
@@ -188,10 +194,10 @@ def torque_over_velocity(
     if recording.torque is None:
         raise InputError("it has no torque", argument="recording")
     if curve is not None:
-        _check_friction(_values(_joint(curve)), "curve")
+        _check_friction(known_values(_joint(curve)), "curve")
     torque, what = recording.torque, "torque"
     if sensed_by is not None:
-        known = _values(_joint(sensed_by))
+        known = known_values(_joint(sensed_by))
         if recording.sensor is None:
             raise InputError("it has no sensor that could be subtracted", argument="recording")
         if not set(_SENSOR) <= set(known):
@@ -200,48 +206,24 @@ def torque_over_velocity(
             )
         torque = torque - known["sensor_gain"] * recording.sensor - known["sensor_offset"]
         what = "torque minus sensed link torque"
-    axes = axes_or_new(ax)
-    axes.plot(
-        recording.velocity,
-        torque,
-        **look(
-            style,
-            color=MEASURED,
-            marker=".",
-            linestyle="none",
-            markersize=1.5,
-            label="recorded samples",
-            rasterized=True,
-        ),
+    samples = Points(
+        look="measured", label="recorded samples", across=recording.velocity, up=torque
     )
+    lines = []
     if curve is not None:
         peak = float(np.abs(recording.velocity).max())
-        keywords = {**line_style(0), "color": SECOND, "label": "friction of the model"}
-        _draw(axes, _values(_joint(curve)), peak, keywords)
-    _label(axes, what, recording.kind)
-    axes.legend(loc="lower right", frameon=False, markerscale=4.0, fontsize="small")
-    return axes
+        values = known_values(_joint(curve))
+        lines.append(friction_line(values, peak, look="second", label="friction of the model"))
+    panel = _panel(what, recording.kind, samples, *lines)
+    return draw(axes_or_new(ax), panel, style, (samples,), loc="lower right", fontsize="small")
 
 
 def _joint(source: Joint | Estimate) -> Joint:
     return source.joint if isinstance(source, Estimate) else source
 
 
-def _values(joint: Joint) -> dict[str, float]:
-    return {name: p.value for name, p in joint.parameters.items() if p.value is not None}
-
-
-def _terms(values: Mapping[str, float]) -> list[str]:
-    """Return the friction terms whose coefficient and shapes have values."""
-    return [
-        term.key
-        for term in _core.terms()
-        if term.friction and not term.family and {term.name, *term.shapes} <= set(values)
-    ]
-
-
 def _check_friction(values: Mapping[str, float], argument: str) -> None:
-    if not _terms(values):
+    if not friction_terms(values):
         raise InputError(
             "the joint has no values for its friction",
             argument=argument,
@@ -249,26 +231,5 @@ def _check_friction(values: Mapping[str, float], argument: str) -> None:
         )
 
 
-def _draw(
-    axes: Axes,
-    values: Mapping[str, float],
-    peak: float,
-    keywords: Mapping[str, Any],
-    *,
-    above: float = 0.0,
-    forward: bool = False,
-) -> None:
-    """Draw one curve, interrupted at rest, where friction takes any value in between."""
-    speed = peak * np.linspace(0.0, 1.0, 300) ** 2  # dense near rest, where friction is nonlinear
-    speed[0] = 1e-9 * peak
-    velocity = np.concatenate([-speed[::-1], speed])
-    torque = friction_torque(_terms(values), values, velocity) + above
-    middle = len(speed)
-    velocity, torque = np.insert(velocity, middle, 0.0), np.insert(torque, middle, np.nan)
-    shown = slice(middle + 1, None) if forward else slice(None)
-    axes.plot(velocity[shown], torque[shown], **keywords)
-
-
-def _label(axes: Axes, what: str, kind: str) -> None:
-    axes.set_xlabel(velocity_label(kind))
-    axes.set_ylabel(f"{what} [{torque_unit(kind)}]")
+def _panel(what: str, kind: str, *marks: Mark) -> Panel:
+    return Panel(across=velocity_label(kind), up=f"{what} [{torque_unit(kind)}]", marks=marks)

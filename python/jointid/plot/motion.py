@@ -10,27 +10,22 @@ import numpy as np
 from jointid.base.argument_checks import require_kind, require_mapping
 from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
-from jointid.plot.appearance import axes_or_new, line_style, look
+from jointid.panels.marks import Line, Panel
+from jointid.panels.palette import LOOKS
+from jointid.panels.recorded import signal_panel
+from jointid.panels.session import TrackingError, tracking_panel
+from jointid.plot.appearance import axes_or_new
+from jointid.plot.drawing import draw, of_kind
 from jointid.recording.recording import Recording
 from jointid.simulation.simulated_recording import SimulatedRecording
-from jointid.simulation.trajectory import FloatArray, Trajectory
+from jointid.simulation.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Runs = Recording | Mapping[str, Recording]
-# Unit for a revolute joint, and for a prismatic one.
-_UNITS = {
-    "position": ("rad", "m"),
-    "velocity": ("rad/s", "m/s"),
-    "acceleration": ("rad/s²", "m/s²"),
-    "torque": ("N·m", "N"),
-    "motor_torque": ("N·m", "N"),
-    "current": ("A", "A"),
-    "sensor": ("raw", "raw"),
-    "reference": ("rad", "m"),
-}
-_SIGNALS = tuple(name for name in _UNITS if name != "acceleration")
+_DERIVATIVES = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
+_SIGNALS = (*("position", "velocity", "torque", "motor_torque", "current", "sensor", "reference"),)
 
 
 def tracking_error(
@@ -65,19 +60,12 @@ def tracking_error(
     >>> jid.plot.tracking_error({"first guess": before, "identified": after})
     """
     named = _named(runs)
-    errors = [1e3 * _error(run, name) for name, run in named.items()]
+    errors = [_error(run, name, settling) for name, run in named.items()]
+    slides = next(iter(named.values())).kind == "prismatic"
+    panel = tracking_panel(errors, slides)
     axes = axes_or_new(ax)
-    for number, ((name, run), error) in enumerate(zip(named.items(), errors, strict=True)):
-        elapsed = run.time - run.time[0]
-        later = elapsed >= (elapsed[-1] / 6.0 if settling is None else settling)
-        size = float(np.sqrt(np.mean(error[later] ** 2)))
-        text = f"RMS {size:.3g} {_small_unit(run)}"
-        label = f"{name}: {text}" if name else text
-        axes.plot(elapsed, error, **look(style, **line_style(number, len(elapsed)), label=label))
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"tracking error [{_small_unit(next(iter(named.values())))}]")
+    draw(axes, panel, style, of_kind(panel, Line), loc="upper right")
     _room_for_legend(axes)
-    axes.legend(loc="upper right", frameon=False)
     return axes
 
 
@@ -114,17 +102,8 @@ def signal(runs: Runs, name: str, ax: Axes | None = None, **style: Any) -> Axes:
                 f"the recording has no {name}; it has {', '.join(run.signals)}",
                 argument=_argument(label),
             )
-    axes = axes_or_new(ax)
-    for number, (label, run) in enumerate(named.items()):
-        values = getattr(run, name)
-        count = len(run.time) if len(named) > 1 else 0
-        axes.plot(run.time, values, **look(style, **line_style(number, count), label=label))
-    unit = _UNITS[name][next(iter(named.values())).kind == "prismatic"]
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
-    if len(named) > 1:
-        axes.legend(loc="best", frameon=False)
-    return axes
+    panel = signal_panel(named, name)
+    return draw(axes_or_new(ax), panel, style, of_kind(panel, Line))
 
 
 def trajectory(
@@ -160,19 +139,22 @@ def trajectory(
     InputError
         Another value of `what`.
     """
-    derivatives = ("position", "velocity", "acceleration")
-    if what not in derivatives:
-        raise InputError(f"{alternatives(derivatives)} is expected", argument="what", value=what)
+    if what not in _DERIVATIVES:
+        expected = alternatives(tuple(_DERIVATIVES))
+        raise InputError(f"{expected} is expected", argument="what", value=what)
     axes = axes_or_new(ax)
     time = np.linspace(0.0, wanted.duration, 1201)
-    values = wanted.sample(time)[derivatives.index(what)]
-    keywords = look(style, **line_style(len(axes.lines)), label=label or None)
-    axes.plot(time, values, **keywords)
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"desired {what} [{_UNITS[what][0]}]")
+    line = Line(
+        look=LOOKS[len(axes.lines) % len(LOOKS)],
+        label=label,
+        across=time,
+        up=wanted.sample(time)[tuple(_DERIVATIVES).index(what)],
+        series=True,
+    )
+    panel = Panel(across="time [s]", up=f"desired {what} [{_DERIVATIVES[what]}]", marks=(line,))
+    draw(axes, panel, style, (line,), loc="upper right")
     if label:
         _room_for_legend(axes)
-        axes.legend(loc="upper right", frameon=False)
     return axes
 
 
@@ -182,7 +164,8 @@ def _room_for_legend(axes: Axes) -> None:
     drawn = [other for other in family if other.lines]
     low = min(float(other.dataLim.ymin) for other in drawn)
     high = max(float(other.dataLim.ymax) for other in drawn)
-    entries = max(len(other.lines) for other in drawn)
+    labels = (other.get_legend_handles_labels()[1] for other in drawn)
+    entries = max(map(len, labels))
     size = high - low or 1.0
     axes.set_ylim(low - 0.05 * size, high + (0.05 + 0.13 * entries) * size)
 
@@ -204,20 +187,21 @@ def _named(runs: Runs) -> Mapping[str, Recording]:
     return named
 
 
-def _error(run: Recording, name: str) -> FloatArray:
+def _error(run: Recording, name: str, settling: float | None) -> TrackingError:
     if isinstance(run, SimulatedRecording):
-        return run.tracking_error()
-    if run.reference is None:
+        error = run.tracking_error()
+    elif run.reference is None:
         raise InputError(
             "the recording has no reference, so there is no tracking error",
             argument=_argument(name),
         )
-    return np.asarray(run.position - run.reference)
+    else:
+        error = np.asarray(run.position - run.reference)
+    elapsed = run.time - run.time[0]
+    later = elapsed >= (elapsed[-1] / 6.0 if settling is None else settling)
+    size = float(np.sqrt(np.mean(error[later] ** 2)))
+    return TrackingError(name=name, time=elapsed, error=error, size=size)
 
 
 def _argument(name: str) -> str:
     return f"runs.{name}" if name else "runs"
-
-
-def _small_unit(run: Recording) -> str:
-    return "mm" if run.kind == "prismatic" else "mrad"

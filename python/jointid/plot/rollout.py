@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
-from jointid.plot.appearance import FITTED, MEASURED, axes_or_new, look
+from jointid.panels import rollout
+from jointid.plot.appearance import axes_or_new
+from jointid.plot.drawing import draw
 from jointid.servo.rolling_out import Rollout, RunRollout
 
 if TYPE_CHECKING:
@@ -42,21 +42,14 @@ def rolled_out(
 
     Examples
     --------
-    >>> axes = jid.plot.rolled_out(jid.rollout(jid.identify_servo(servo_runs, servo), servo_runs), run=3)
+    >>> axes = jid.plot.rolled_out(jid.simulate(jid.identify(servo_runs, servo), recordings=servo_runs), run=3)
     """
     require_kind("result", result, Rollout)
     chosen = _run(result, run)
-    axes = axes_or_new(ax)
-    time = chosen.time - chosen.time[0]
-    axes.plot(time, np.degrees(chosen.measured), color=MEASURED, label="logged")
-    label = f"simulated, {np.degrees(chosen.error):.2f}° mean error"
-    if chosen.bistable:
-        label += ", bistable"
-    axes.plot(time, np.degrees(chosen.position), **look(style, color=FITTED, label=label))
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("position [deg]")
-    axes.set_title(chosen.name)
-    axes.legend()
+    picture = rollout.rolled_out(chosen)
+    (panel,) = picture.panels
+    axes = draw(axes_or_new(ax), panel, style, panel.marks[-1:])
+    axes.set_title(picture.title)
     return axes
 
 

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from jointid._core import GaOptions, Generation
 from jointid.base.argument_checks import require_kind
-from jointid.plot.appearance import axes_or_new, line_style, look
+from jointid.panels.marks import Line, Mark, Panel, Points
+from jointid.plot.appearance import axes_or_new
+from jointid.plot.drawing import draw, of_kind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,30 +45,24 @@ def adaptation(
         `options` is not a `GaOptions`.
     """
     require_kind("options", options, GaOptions)
-    axes = axes_or_new(ax)
     corner = [0.0, options.diversity_low, options.diversity_high, 1.0]
-    for number, (name, diverse, equal) in enumerate(
-        (
-            ("crossover", options.crossover_probability, options.crossover_probability_alike),
-            ("mutation", options.mutation_probability, options.mutation_probability_alike),
-        )
-    ):
-        end = equal if options.adaptive else diverse
-        keywords = look(style, **line_style(number), label=f"{name} probability")
-        axes.plot(corner, [diverse, diverse, end, end], **keywords)
+    marks: list[Mark] = []
+    for name, look, other in (("crossover", "fitted", "third"), ("mutation", "second", "fourth")):
+        diverse = getattr(options, f"{name}_probability")
+        end = getattr(options, f"{name}_probability_alike") if options.adaptive else diverse
+        law = [diverse, diverse, end, end]
+        label = f"{name} probability"
+        marks.append(Line(look=look, label=label, across=corner, up=law, series=True))
         if generations:
-            axes.plot(
-                [generation.diversity for generation in generations],
-                [getattr(generation, f"{name}_probability") for generation in generations],
-                "os"[number],
-                color=keywords["color"],
-                markersize=4,
-                markerfacecolor="none",
-                label=f"{name} in a search",
-            )
-    axes.set_xlabel("diversity measure (1: all individuals equal) [–]")
-    axes.set_ylabel("probability [–]")
-    axes.set_yscale("log")
+            across = [generation.diversity for generation in generations]
+            up = [getattr(generation, f"{name}_probability") for generation in generations]
+            marks.append(Points(look=other, label=f"{name} in a search", across=across, up=up))
+    panel = Panel(
+        across="diversity measure (1: all individuals equal) [–]",
+        up="probability [–]",
+        marks=tuple(marks),
+        logarithmic=True,
+    )
+    axes = draw(axes_or_new(ax), panel, style, of_kind(panel, Line), loc="center left")
     axes.set_ylim(0.01, 1.3)
-    axes.legend(loc="center left", frameon=False)
     return axes

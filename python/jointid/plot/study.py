@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from jointid.base.argument_checks import require_kind
 from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
-from jointid.joint.units import parameter_unit
-from jointid.plot.appearance import MEASURED, axes_or_new, line_style, look
+from jointid.panels.marks import Line
+from jointid.panels.study import STATISTICS, over_setting, quantity, spans_decades, statistic_of
+from jointid.plot.appearance import axes_or_new
+from jointid.plot.drawing import draw, of_kind
 from jointid.study.study_result import Study
 
 if TYPE_CHECKING:
@@ -20,14 +22,6 @@ if TYPE_CHECKING:
 
 
 Array = NDArray[np.float64]
-
-STATISTICS: dict[str, Callable[[Array], Any]] = {
-    "median": np.median,
-    "mean": np.mean,
-    "spread": lambda values: np.std(values, ddof=1) if len(values) > 1 else np.nan,
-    "best": np.min,
-    "worst": np.max,
-}
 
 
 def sweep(
@@ -40,6 +34,8 @@ def sweep(
     **style: Any,
 ) -> Axes:
     """Draw a quantity over one swept setting as points and a line, over two as a heat map.
+
+    A report has no heat map: it draws a line for each value of the second setting, which a phone shows, too.
 
     Parameters
     ----------
@@ -62,8 +58,8 @@ def sweep(
     Returns
     -------
     Axes
-        Over one setting: the quantity over the setting. Over two: the settings, the quantity as
-        colour and number.
+        Over one setting: the quantity over the setting; where its values are no numbers, a row for each.
+        Over two: the settings, the quantity as colour and number.
 
     Raises
     ------
@@ -91,58 +87,14 @@ def sweep(
                 argument=argument,
                 value=name,
             )
-    values, title = _values(study, value)
-    across = _labels(study, x)
+    values, title = quantity(study, value)
     axes = axes_or_new(ax)
     if y is None:
-        _line(axes, study, x, across, values, statistic, style)
-        axes.set_ylabel(title)
-        if _needs_log_scale(values):
-            axes.set_yscale("log")
-        return axes
-    _heat_map(axes, study, (x, across), (y, _labels(study, y)), values, statistic, style)
+        panel = over_setting(study, x, values, title, statistic=statistic, combined=True)
+        return draw(axes, panel, style, of_kind(panel, Line))
+    _heat_map(axes, study, (x, _labels(study, x)), (y, _labels(study, y)), values, statistic, style)
     axes.set_title(f"{title}, {statistic} of the trials", fontsize="medium")
     return axes
-
-
-def _values(study: Study, value: str) -> tuple[Array, str]:
-    kind, _, name = value.partition(".")
-    if kind != "error" or not name:
-        column = study.column(value)
-        if column.dtype.kind not in "fiu":
-            raise InputError("a column of numbers is expected", argument="value", value=value)
-        return column.astype(np.float64), _title(study, value)
-    if name == "worst":
-        known = sorted(set(study.truth_of(0)) & set(study.parameters))
-        if not known:
-            raise _no_truth(value)
-        return np.max([_values(study, f"error.{n}")[0] for n in known], axis=0), "worst error [%]"
-    found = study.column(name).astype(np.float64)
-    truths = [study.truth_of(row.cell) for row in study.rows]
-    if not all(name in truth for truth in truths):
-        raise _no_truth(value, f"draw {name} itself")
-    true = np.array([truth[name] for truth in truths])
-    return 100.0 * np.abs(found / true - 1.0), f"error of {name} [%]"
-
-
-def _no_truth(value: str, *remedies: str) -> InputError:
-    return InputError(
-        "the study has no true value, so there is no error",
-        argument="value",
-        value=value,
-        remedy=("give the truth to the sweep", *remedies),
-    )
-
-
-def _title(study: Study, value: str) -> str:
-    if value == "penalty":
-        sensor = "sensor_gain" in study.parameters
-        return "penalty [(sensor units·s)²]" if sensor else "penalty [(N·m·s)²]"
-    if value in ("evaluations", "generations"):
-        return f"{value} [–]"
-    tracking = value.startswith("tracking_")
-    unit = "rad" if tracking else parameter_unit(value.removesuffix("_stderr"))
-    return f"{value} [{unit}]" if unit else value
 
 
 def _labels(study: Study, name: str) -> list[Any]:
@@ -151,45 +103,6 @@ def _labels(study: Study, name: str) -> list[Any]:
 
 def _trials_with(study: Study, name: str, label: Any) -> NDArray[np.bool_]:
     return np.array([study.cells[row.cell][name] == label for row in study.rows])
-
-
-def _statistic(statistic: str, values: Array) -> float:
-    known = values[~np.isnan(values)]
-    return float(STATISTICS[statistic](known)) if len(known) else np.nan
-
-
-def _needs_log_scale(values: Array) -> bool:
-    """Return whether the values are positive and span more than a factor of 20."""
-    known = values[np.isfinite(values)]
-    return len(known) > 0 and bool(known.min() > 0.0 and known.max() > 20.0 * known.min())
-
-
-def _line(
-    axes: Axes,
-    study: Study,
-    x: str,
-    labels: list[Any],
-    values: Array,
-    statistic: str,
-    style: Mapping[str, Any],
-) -> None:
-    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in labels)
-    places = labels if numbers else list(range(len(labels)))
-    line = []
-    for place, label in zip(places, labels, strict=True):
-        trials = values[_trials_with(study, x, label)]
-        axes.plot([place] * len(trials), trials, ".", color=MEASURED, markersize=4, zorder=1)
-        line.append(_statistic(statistic, trials))
-    # Settings that are not numbers have no scale: no line between them.
-    ours = line_style(2) if numbers else line_style(2) | {"linestyle": "none"}
-    axes.plot(places, line, **look(style, **ours, marker="o", markersize=5, label=statistic))
-    if numbers and _needs_log_scale(np.array(labels, dtype=np.float64)):
-        axes.set_xscale("log")
-    if not numbers:
-        axes.set_xticks(places, [str(label) for label in labels])
-    axes.plot([], [], ".", color=MEASURED, label="single trial")
-    axes.set_xlabel(x)
-    axes.legend(loc="best", frameon=False)
 
 
 def _heat_map(
@@ -207,7 +120,7 @@ def _heat_map(
     table = np.array(
         [
             [
-                _statistic(
+                statistic_of(
                     statistic, values[_trials_with(study, y, line) & _trials_with(study, x, column)]
                 )
                 for column in columns
@@ -217,7 +130,7 @@ def _heat_map(
     )
     known = table[np.isfinite(table)]
     low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
-    norm = LogNorm(low, high) if _needs_log_scale(table) else Normalize(low, high)
+    norm = LogNorm(low, high) if spans_decades(table) else Normalize(low, high)
     ours = {"norm": norm, "cmap": "cividis_r", "aspect": "auto", "origin": "lower"}
     image = axes.imshow(table, **{**ours, **style})
     for row, column in np.ndindex(table.shape):

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.html import Html, element
+from jointid.panels.marks import Band, Bars, Level, Line, Mark, Points, Range, Shade, numbers
 from jointid.report.drawing.decimation import distinct, outline
-from jointid.report.drawing.marks import Band, Bars, Level, Line, Mark, Points, Shade, numbers
 from jointid.report.drawing.paths import area_path, bars_path, line_path, points_path, runs
 from jointid.report.drawing.scale import Places, Scale, drawable
 
@@ -39,7 +39,10 @@ def mark_kind(mark: Mark) -> str:
     """Return the class that a mark has in the style sheet."""
     if isinstance(mark, Level) or (isinstance(mark, Line) and mark.dashed):
         return "dashed"
-    return {Points: "points", Band: "band", Bars: "bars", Shade: "shade"}.get(type(mark), "line")
+    if isinstance(mark, Line) and mark.series:
+        return "line series"
+    kinds = {Points: "points", Band: "band", Bars: "bars", Shade: "shade", Range: "shade"}
+    return kinds.get(type(mark), "line")
 
 
 def _kind_and_path(mark: Mark, across: Scale, up: Scale) -> tuple[str, str]:
@@ -52,6 +55,12 @@ def _kind_and_path(mark: Mark, across: Scale, up: Scale) -> tuple[str, str]:
         return kind, _band(mark, across, up)
     if isinstance(mark, Shade):
         return kind, _shades(mark, across, up)
+    if isinstance(mark, Range):
+        ends = numbers([mark.low, mark.high])
+        if not drawable(ends, up.logarithmic).all():
+            return kind, ""
+        low, high = up.places(ends).tolist()
+        return kind, f"M{across.start} {low}V{high}H{across.stop}V{low}z"
     if isinstance(mark, Bars):
         edges, values = across.places(mark.edges), numbers(mark.up)
         shown = drawable(values)
@@ -59,7 +68,7 @@ def _kind_and_path(mark: Mark, across: Scale, up: Scale) -> tuple[str, str]:
         return kind, bars_path(edges[:-1][shown], edges[1:][shown], tops, int(up.places(0.0)))
     assert isinstance(mark, Line | Points)
     x, y = numbers(mark.across), numbers(mark.up)
-    shown = drawable(x) & drawable(y, up.logarithmic)
+    shown = drawable(x, across.logarithmic) & drawable(y, up.logarithmic)
     if isinstance(mark, Line):
         return kind, _line(x, y, shown, across, up)
     places, heights = across.places(x[shown]), up.places(y[shown])
@@ -88,7 +97,8 @@ def _line(
 
 def _band(mark: Band, across: Scale, up: Scale) -> str:
     x, low, high = numbers(mark.across), numbers(mark.low), numbers(mark.high)
-    shown = drawable(x) & drawable(low, up.logarithmic) & drawable(high, up.logarithmic)
+    shown = drawable(x, across.logarithmic)
+    shown &= drawable(low, up.logarithmic) & drawable(high, up.logarithmic)
     paths = []
     for run in runs(shown):
         places, under, over = across.places(x[run]), low[run], high[run]

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from jointid.base.html import Html, element
+from jointid.panels.marks import Mark, Panel, numbers
 from jointid.report.drawing.mark_paths import UNIT, legend_sample, mark_kind, mark_path
-from jointid.report.drawing.marks import Mark, Panel, numbers
 from jointid.report.drawing.pointed_values import readouts
 from jointid.report.drawing.scale import Scale, drawable, limits
 from jointid.report.drawing.ticks import Ticks, superscript
 
 WIDTH = 560  # units of the picture
-# Tenths of a unit. Rooms for texts are for the large text of a narrow screen, see the palette.
+# Tenths of a unit. Rooms for texts are for the large text of a narrow screen, see the style sheet.
 _LETTER = 105
 _NARROW, _BROAD = frozenset("iljtfrI,.:;'!|()[] -"), frozenset("mwMW%@−")
 _LINE = 210
@@ -37,23 +37,27 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
     Returns
     -------
     Html
-        An ``svg`` element that scales with the page; the page has `palette.STYLE`.
+        An ``svg`` element that scales with the page; the page has `style.STYLE`.
     """
-    wanted = [[mark.values() for mark in panel.marks] for panel in panels]
-    low, high = limits([each for values in wanted for across, _ in values for each in across])
-    ranges = [
-        _range_of_rows(panel)
-        or limits([each for _, up in values for each in up], panel.logarithmic)
-        for panel, values in zip(panels, wanted, strict=True)
-    ]
+    marks = [mark for panel in panels for mark in (*panel.marks, *panel.right)]
+    logarithmic = panels[-1].logarithmic_across
+    low, high = limits([each for mark in marks for each in mark.values()[0]], logarithmic)
+    ranges = [_range_of_rows(panel) or _range(panel.marks, panel.logarithmic) for panel in panels]
     ticks = [
         Ticks(_rows(panel), ("",) * len(panel.names))
         if panel.names
         else Scale(*up, 0, 1, panel.logarithmic).ticks(panel.height * UNIT // _FOR_A_TICK)
         for panel, up in zip(panels, ranges, strict=True)
     ]
-    left = 80 + _LETTER * max(len(text) for each in ticks for text in (*each.texts, "0"))
-    across = Scale(low, high, left, WIDTH * UNIT - _RIGHT)
+    rights = [
+        Scale(*_range(panel.right), 0, 1).ticks(panel.height * UNIT // _FOR_A_TICK)
+        for panel in panels
+        if panel.right
+    ]
+    left = _room(ticks)
+    across = Scale(
+        low, high, left, WIDTH * UNIT - (_room(rights) if rights else _RIGHT), logarithmic
+    )
     parts: list[Html | str] = []
     below = begin = 0
     for number, (panel, up, each) in enumerate(zip(panels, ranges, ticks, strict=True)):
@@ -67,9 +71,13 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
         last = number == len(panels) - 1
         parts += [*legend, title_place, *_axes(across, upright, each, panel.across if last else "")]
         parts += _row_names(panel, across, upright)
-        marks = [mark_path(mark, across, upright) for mark in panel.marks]
-        parts += [mark for mark in marks if mark is not None]
-        if not any(marks):
+        paths = [mark_path(mark, across, upright) for mark in panel.marks]
+        if panel.right:
+            other = Scale(*_range(panel.right), foot, top)
+            parts += _right_axis(across, other, rights.pop(0), panel.right_up, top - 110)
+            paths += [mark_path(mark, across, other) for mark in panel.right]
+        parts += [path for path in paths if path is not None]
+        if not any(paths):
             middle = str((across.start + across.stop) // 2)
             parts.append(
                 element("text", "no values", class_="across", x=middle, y=str((top + foot) // 2))
@@ -85,6 +93,28 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
         viewBox=f"0 0 {WIDTH * UNIT} {below}",
         role="img",
     )
+
+
+def _range(marks: Sequence[Mark], logarithmic: bool = False) -> tuple[float, float]:
+    return limits([each for mark in marks for each in mark.values()[1]], logarithmic)
+
+
+def _room(ticks: Sequence[Ticks]) -> int:
+    """How wide the numbers at an upright axis are."""
+    return 80 + _LETTER * max(len(text) for each in ticks for text in (*each.texts, "0"))
+
+
+def _right_axis(across: Scale, up: Scale, ticks: Ticks, title: str, above: int) -> list[Html | str]:
+    """The axis at the right with its numbers, and its title above it."""
+    right = str(WIDTH * UNIT - 40)
+    return [
+        element("path", class_="axes", d=f"M{across.stop} {up.stop}V{up.start}"),
+        element("text", _axis_title(title, ticks.exponent), class_="up", x=right, y=str(above)),
+        *(
+            element("text", text, x=str(across.stop + 60), y=str(y + 45))
+            for text, y in zip(ticks.texts, up.places(ticks.values).tolist(), strict=True)
+        ),
+    ]
 
 
 def _axes(across: Scale, up: Scale, ticks: Ticks, title: str) -> list[Html | str]:
@@ -164,7 +194,7 @@ def _legend(panel: Panel, top: int) -> tuple[list[Html | str], int]:
     """The labelled marks in rows as wide as the picture, and the place below them."""
     parts: list[Html | str] = []
     x, y = 40, top + _LINE
-    labelled = [mark for mark in panel.marks if mark.label]
+    labelled = [mark for mark in (*panel.marks, *panel.right) if mark.label]
     if len(labelled) == 0:
         return [], top
     for mark in labelled:
@@ -198,6 +228,9 @@ def _summary(
         if panel.names:
             shown = f"{panel.up}, from above: {', '.join(panel.names)}"
         said.append(f"Up: {shown}{': ' if drawn else ''}{drawn}.")
+        if panel.right:
+            drawn = "; ".join(_counted(mark) for mark in panel.right)
+            said.append(f"At the right: {panel.right_up}: {drawn}.")
     return " ".join(said)
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.html import Html, element
-from jointid.report.drawing.marks import Bars, Line, Mark, Panel, Points, numbers
+from jointid.panels.marks import Bars, Line, Mark, Panel, Points, numbers
 from jointid.report.drawing.scale import Scale, drawable
 
 Array = NDArray[np.float64]
@@ -35,21 +35,24 @@ def readouts(panels: Sequence[Panel], across: Scale, top: int, foot: int) -> lis
     list of Html
         None where nothing is drawn.
     """
-    edges = np.linspace(across.low, across.high, _STRIPS + 1)
+    to, back = (np.log, np.exp) if across.logarithmic else (np.asarray, np.asarray)
+    low, high = to(numbers([across.low, across.high])).tolist()
+    edges = np.linspace(low, high, _STRIPS + 1)
     middles = 0.5 * (edges[1:] + edges[:-1])
     read = [
-        (mark.label, panel.up, _values(mark, middles, float(edges[1] - edges[0])))
+        (mark.label, up, _values(mark, middles, float(edges[1] - edges[0]), to))
         for panel in panels
         if not panel.names
-        for mark in panel.marks
+        for marks, up in ((panel.marks, panel.up), (panel.right, panel.right_up))
+        for mark in marks
     ]
     columns = [
         (*_named(label, up), values.tolist()) for label, up, values in read if values is not None
     ]
     name, unit = _named("", panels[-1].across)
-    places = across.places(edges).tolist()
+    places = across.places(back(edges)).tolist()
     strips = []
-    for number, middle in enumerate(middles.tolist()):
+    for number, middle in enumerate(back(middles).tolist()):
         said = [
             f"{label}: {_shown(values[number])}{unit}"
             for label, unit, values in columns
@@ -64,10 +67,10 @@ def readouts(panels: Sequence[Panel], across: Scale, top: int, foot: int) -> lis
     return strips
 
 
-def _values(mark: Mark, middles: Array, width: float) -> Array | None:
+def _values(mark: Mark, middles: Array, width: float, to: Callable[[Array], Array]) -> Array | None:
     """A mark's value in each strip; NaN where it has none, None for what shows none."""
     if isinstance(mark, Bars):
-        edges, up = numbers(mark.edges), numbers(mark.up)
+        edges, up = to(numbers(mark.edges)), numbers(mark.up)
         if len(up) == 0:
             return None
         place = np.searchsorted(edges, middles, side="right") - 1
@@ -75,7 +78,7 @@ def _values(mark: Mark, middles: Array, width: float) -> Array | None:
         return np.where(inside, up[np.clip(place, 0, len(up) - 1)], np.nan)
     if not isinstance(mark, Line | Points):
         return None
-    x, y = numbers(mark.across), numbers(mark.up)
+    x, y = to(numbers(mark.across)), numbers(mark.up)
     if isinstance(mark, Line):
         return _on_a_line(x, y, middles)
     known = drawable(x) & drawable(y)

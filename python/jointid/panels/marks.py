@@ -1,4 +1,4 @@
-"""What a picture is made of: lines, points, bands, bars, levels and shades, on panels."""
+"""What a picture is made of: lines, points, bands, bars, levels, shades and ranges, on panels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.values import dataclass
-from jointid.report.drawing.palette import LOOKS
+from jointid.panels.palette import LOOKS
 
 Array = NDArray[np.float64]
 
@@ -46,11 +46,14 @@ class Line(Mark):
     across, up : array_like, shape (n,)
     dashed : bool
         Default False.
+    series : bool
+        One of several lines of the same kind, which also differ in their dashes. Default False.
     """
 
     across: ArrayLike
     up: ArrayLike
     dashed: bool = False
+    series: bool = False
     look: str = "fitted"
     label: str = ""
 
@@ -157,6 +160,25 @@ class Shade(Mark):
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Range(Mark):
+    """A stretch of the upright axis, shaded all across the panel.
+
+    Attributes
+    ----------
+    low, high : float
+    """
+
+    low: float
+    high: float
+    look: str = "measured"
+    label: str = ""
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (), (numbers([self.low, self.high]),)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Panel:
     """Two axes and what is drawn on them, the first mark at the bottom.
 
@@ -165,21 +187,47 @@ class Panel:
     marks : tuple of Mark
     across, up : str
         What the axes show, with the unit in brackets: "velocity [rad/s]".
-    logarithmic : bool
-        Of the upright axis. Default False.
+    logarithmic, logarithmic_across : bool
+        Of the upright axis, and of the axis across. Default False.
     height : int
         Of the axes, in units of the picture, which is 560 wide. Default 220.
     names : tuple of str
         Of rows below each other, instead of numbers at the upright axis: marks are drawn at 0 for the first row, -1
         for the second. Default: none.
+    right : tuple of Mark
+        Drawn last, on an upright axis of their own at the right. Default: no such axis.
+    right_up : str
+        What that axis shows.
     """
 
     marks: tuple[Mark, ...]
     across: str
     up: str
     logarithmic: bool = False
+    logarithmic_across: bool = False
     height: int = 220
     names: tuple[str, ...] = ()
+    right: tuple[Mark, ...] = ()
+    right_up: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Picture:
+    """Panels below each other, with one axis across, and what they show.
+
+    Attributes
+    ----------
+    caption : str
+        What is seen, in a sentence or two.
+    panels : tuple of Panel
+        From above.
+    title : str
+        What it is a picture of where a page has several of the same kind, e.g. a joint's name. Default: nothing.
+    """
+
+    caption: str
+    panels: tuple[Panel, ...]
+    title: str = ""
 
 
 def row_height(rows: int) -> int:

@@ -1,0 +1,134 @@
+"""A designed motion: where it goes within its limits, and where it samples friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.joint.units import torque_unit, velocity_label
+from jointid.panels.curves import friction_line, friction_terms, known_values
+from jointid.panels.marks import Bars, Level, Line, Panel, Picture, Range
+
+if TYPE_CHECKING:
+    from jointid.joint.joint import Joint
+    from jointid.simulation.peaks import Peaks
+    from jointid.simulation.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 6001
+_BINS = 40
+
+
+class _Limits(Protocol):
+    """What is drawn of a design's limits."""
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Lowest and highest."""
+
+    @property
+    def velocity(self) -> float:
+        """Largest magnitude."""
+
+
+class DesignedMotion(Protocol):
+    """What is drawn of a design: whoever makes one uses this room, not the other way round."""
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """What is commanded."""
+
+    @property
+    def duration(self) -> float:
+        """Of the motion [s]."""
+
+    @property
+    def joint(self) -> Joint:
+        """The nominal one."""
+
+    @property
+    def limits(self) -> _Limits:
+        """What it keeps."""
+
+    @property
+    def peaks(self) -> Peaks:
+        """What the joints reach."""
+
+
+def motion(design: DesignedMotion) -> Picture:
+    """Position and velocity of the reference over time, and their limits."""
+    time = np.linspace(0.0, design.duration, _SAMPLES)
+    position, velocity, _ = design.trajectory.sample(time)
+    slides = design.joint.kind == "prismatic"
+    limits, peaks = design.limits, design.peaks
+    panels = (
+        _within(
+            time,
+            position,
+            f"position [{'m' if slides else 'rad'}]",
+            limits.position,
+            peaks.position,
+        ),
+        _within(
+            time,
+            velocity,
+            velocity_label(design.joint.kind),
+            (-limits.velocity, limits.velocity),
+            (-peaks.velocity, peaks.velocity),
+            labelled=False,
+        ),
+    )
+    return Picture(
+        caption="Position and velocity of the reference, and their limits. Shaded: what the joints reach.",
+        panels=panels,
+    )
+
+
+def _within(
+    time: Array,
+    values: Array,
+    what: str,
+    limits: tuple[float, float],
+    reached: tuple[float, float],
+    labelled: bool = True,
+) -> Panel:
+    """A signal of the reference with its limits, and what the joints reach."""
+    names = ("joints reach", "reference", "limit") if labelled else ("", "", "")
+    return Panel(
+        across="time [s]",
+        up=what,
+        height=150,
+        marks=(
+            Range(label=names[0], low=reached[0], high=reached[1]),
+            Line(look="second", label=names[1], across=time, up=values),
+            Level(label=names[2], up=limits[0]),
+            Level(up=limits[1]),
+        ),
+    )
+
+
+def sampled_velocities(design: DesignedMotion) -> Picture:
+    """How long the joint moves at each velocity, and its friction there; nothing where it does not move."""
+    time = np.linspace(0.0, design.duration, _SAMPLES)
+    velocity = design.trajectory.sample(time)[1]
+    peak = float(np.abs(velocity).max())
+    counts, edges = np.histogram(velocity, bins=np.linspace(-peak, peak, _BINS + 1))
+    kind, values = design.joint.kind, known_values(design.joint)
+    moves = peak > 0.0
+    curves = [friction_line(values, peak, label="friction")] if friction_terms(values) else []
+    panel = Panel(
+        across=velocity_label(kind),
+        up="share of the time [%]",
+        height=130,
+        marks=(Bars(look="second", edges=edges, up=100.0 * counts / len(velocity)),) * moves,
+        right=tuple(curves * moves),
+        right_up=f"friction [{torque_unit(kind)}]",
+    )
+    friction = ", and the friction of the nominal joint there" if panel.right else ""
+    return Picture(
+        caption=f"Where friction is sampled: how long the joint moves at each velocity{friction}.",
+        panels=(panel,),
+    )

@@ -1,0 +1,127 @@
+"""The signals as recorded, with what an estimate left out shaded, and what its residual does over the position."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.estimate.window_views import fitted_signal, whole_windows
+from jointid.panels.marks import Level, Line, Mark, Panel, Picture, Points, Shade
+from jointid.panels.palette import LOOKS
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+    from jointid.problem.window_table import WindowTable
+    from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_SHOWN = ("position", "velocity", "torque", "motor_torque", "current", "sensor", "temperature")
+_HALF = 0.5  # of a window's time: what was left out of it is more than what was used
+
+
+def left_out(windows: WindowTable, number: int, time: Array) -> tuple[Array, Array]:
+    """Return where the stretches of a recording begin and end [s] that no window used, or less than half of it.
+
+    Parameters
+    ----------
+    windows : WindowTable
+    number : int
+        Of the recording.
+    time : ndarray
+        The recording's, [s].
+    """
+    used = (windows.recording == number) & (
+        windows.duration >= _HALF * (windows.stop - windows.start)
+    )
+    order = np.argsort(windows.start[used], kind="stable")
+    start, stop = windows.start[used][order], windows.stop[used][order]
+    reached = np.maximum.accumulate(np.concatenate([[time[0]], stop]))
+    begins, ends = reached, np.concatenate([start, [time[-1]]])
+    # What one sample period separates is no stretch.
+    apart = ends - begins > 1.5 * float(time[-1] - time[0]) / max(len(time) - 1, 1)
+    return begins[apart], ends[apart]
+
+
+def signals(recording: Recording, begins: Array, ends: Array) -> Picture:
+    """All signals of a recording over time, and what was left out of it shaded; see `left_out`."""
+    names = [name for name in _SHOWN if getattr(recording, name) is not None]
+    panels = []
+    for row, name in enumerate(names):
+        label = "left out" if row == 0 and len(begins) else ""
+        unused = Shade(start=begins, stop=ends, label=label)
+        panels.append(signal_panel({"": recording}, name, unused, height=110))
+    derived = " The velocity is derived from the position." if recording.velocity_derived else ""
+    return Picture(
+        caption="The signals as recorded. Shaded: what the estimate does not use: standstill, slow motion, gaps, and "
+        f"what the call left out.{derived}",
+        panels=tuple(panels),
+    )
+
+
+def signal_panel(
+    runs: Mapping[str, Recording], name: str, *below: Mark, height: int = 220
+) -> Panel:
+    """One signal of one or several runs over time; they all have it.
+
+    Parameters
+    ----------
+    runs : mapping of str to Recording
+        By name, for the legend.
+    name : str
+        Of the signal.
+    *below : Mark
+        What is drawn first.
+    height : int
+        Default 220.
+    """
+    several = len(runs) > 1
+    lines = (
+        Line(
+            look=LOOKS[number % len(LOOKS)] if several else "second",
+            label=label,
+            across=run.time,
+            up=getattr(run, name),
+            series=several,
+        )
+        for number, (label, run) in enumerate(runs.items())
+    )
+    unit = next(iter(runs.values())).unit(name)
+    return Panel(
+        across="time [s]",
+        up=f"{name.replace('_', ' ')} [{'raw' if unit == '1' else unit}]",
+        height=height,
+        marks=(*below, *lines),
+    )
+
+
+def residual_over_position(estimate: Estimate, recordings: Sequence[Recording]) -> Picture:
+    """What is left over the position: ripple of the gear, gravity and a varying inertia show there."""
+    windows = estimate.windows
+    middle = 0.5 * (windows.start + windows.stop)
+    position = np.empty_like(middle)
+    for number, recording in enumerate(recordings):
+        same = windows.recording == number
+        position[same] = np.interp(middle[same], recording.time, recording.position)
+    whole = whole_windows(windows)
+    panel = Panel(
+        across=f"position [{recordings[0].unit('position')}]",
+        up=f"residual [{fitted_signal(estimate)[1]}]",
+        height=110,
+        marks=(
+            Points(
+                look="second",
+                across=position[whole],
+                up=(windows.residual / windows.duration)[whole],
+            ),
+            Level(look="measured", up=0.0),
+        ),
+    )
+    return Picture(
+        caption="The residual over the position: where it follows a curve, gravity, the gear's ripple or an inertia "
+        "that varies is missing in the model.",
+        panels=(panel,),
+    )
