@@ -1,15 +1,20 @@
-"""The page in a real browser: from a log in counts and milliamperes to a joint file, in few clicks."""
+"""The page in a real browser: from a log to a joint file in few clicks, by keyboard, and for a screen reader."""
 
 from __future__ import annotations
 
 import json
 import math
+import os
+import re
+import signal
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from accessibility import violations
 from browser import browser, require
 from example_recordings import WELL_EXCITED
 from served import LARGEST, Served, require_nicegui, served
@@ -19,6 +24,10 @@ import jointid as jid
 COUNTS, RATIO, CONSTANT = 1_048_576, 100.0, 0.05
 pytestmark = pytest.mark.slow
 PATIENCE = 60.0  # [s]: a loaded machine
+IN_PROC = pytest.mark.skipif(
+    not Path("/proc/self/stat").exists(), reason="processes are listed in /proc"
+)
+LOOKS = [(width, scheme) for width in (390, 1280) for scheme in ("light", "dark")]
 
 
 class Hand:
@@ -76,10 +85,37 @@ class Hand:
         self.wait(option, lambda: self.driver.find_element("xpath", found).click() or True)
         self.clicks += 2
 
+    def fill(self, name: str, text: str) -> None:
+        """Replace what a field holds, and leave it by Tab."""
+        from selenium.webdriver import Keys
+
+        self.element(name).send_keys(f"{Keys.CONTROL}a{Keys.NULL}{text}\t")
+
+    def look(self, width: int, scheme: str) -> None:
+        """Show the page at a width, in "light" or "dark"."""
+        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+        wanted = [{"name": "prefers-color-scheme", "value": scheme}]
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": wanted})
+        query = f"(prefers-color-scheme: {scheme})"
+        self.wait("Quasar's scheme", lambda: self.driver.execute_script(_SETTLED, query, width))
+
+    def idle(self) -> None:
+        """Wait until nothing is computed."""
+        self.wait("the end", lambda: not self.driver.find_element("id", "cancel").is_displayed())
+
     def text(self) -> str:
         """Everything that is shown."""
         shown: str = self.driver.find_element("tag name", "body").text
         return shown
+
+
+# Whether the page has followed the scheme and the width, and what fades in has done so.
+_SETTLED = """
+const dark = matchMedia(arguments[0]).matches && arguments[0].includes("dark");
+return innerWidth === arguments[1] && document.body.classList.contains("body--dark") === dark
+  && document.getAnimations().length === 0
+"""
 
 
 @pytest.fixture(scope="module")
@@ -203,12 +239,182 @@ def test_too_large_a_file_is_refused(driver: Any, server: Served, tmp_path: Path
     hand.wait("a refusal", lambda: "one file of at most 3 MB is accepted" in hand.text())
 
 
-@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are listed in /proc")
+@IN_PROC
 def test_closing_the_page_ends_its_work(driver: Any, server: Served, log: Path) -> None:
     hand = opened(driver, server, log)
     hand.wait("a reading process", lambda: workers(server.process.pid))
     driver.get("about:blank")
     hand.wait("no process of any page", lambda: not workers(server.process.pid))
+
+
+def visited(driver: Any, server: Served) -> Hand:
+    """The page before anything is loaded."""
+    hand = Hand(driver)
+    driver.get(server.address)
+    hand.element("example")
+    return hand
+
+
+def broken_rules(hand: Hand, state: str) -> list[str]:
+    """What is wrong with a state of the page at each width and in each scheme."""
+    found = []
+    for width, scheme in LOOKS:
+        hand.look(width, scheme)
+        where = f"{state}, {width} px, {scheme}"
+        found += [f"{where}: {each}" for each in violations(hand.driver)]
+        wide, cut = hand.driver.execute_script(_FITS)
+        found += [f"{where}: {wide} px wide"] * (wide > width)
+        found += [f"{where}: {text!r} is cut" for text in cut]
+    return found
+
+
+_FITS = """
+const shown = [...document.querySelectorAll(".q-field__native > span, .q-btn, .hint")];
+return [document.documentElement.scrollWidth,
+        shown.filter(each => each.scrollWidth > each.clientWidth + 1 && each.clientWidth).map(each => each.innerText)]
+"""
+
+
+def test_states_break_no_rule_and_fit(driver: Any, server: Served, log: Path) -> None:
+    hand = visited(driver, server)
+    found = broken_rules(hand, "empty")
+    hand.click("example")
+    coulomb = round(jid.identify(*demonstration())["coulomb"].value)
+    hand.wait("the example's result", lambda: f"{coulomb} ±" in hand.element("estimate").text)
+    hand.idle()
+    found += broken_rules(hand, "result")
+    hand.click("compare")
+    hand.element("comparison")
+    hand.idle()
+    found += broken_rules(hand, "comparison")
+    hand.fill("fact-gear_ratio", "0")
+    hand.click("identify")
+    hand.wait("a refusal", lambda: "gear ratio is 0" in hand.element("failure").text)
+    hand.idle()
+    assert "gear_ratio" not in hand.text()
+    found += broken_rules(hand, "error")
+    hand = opened(driver, server, log)
+    hand.element("signals")
+    hand.idle()
+    found += broken_rules(hand, "loaded")
+    assert found == []
+
+
+def demonstration() -> tuple[jid.Recording, jid.Joint]:
+    kuka = jid.demo()
+    return kuka.recording, kuka.joint
+
+
+@IN_PROC
+def test_work_shows_its_duration_is_announced_once_and_can_be_cancelled(
+    driver: Any, server: Served, tmp_path: Path
+) -> None:
+    recording, times = jid.load(WELL_EXCITED), 8
+    assert recording.torque is not None
+    step = float(recording.time[1] - recording.time[0])
+    spans = [recording.time + k * (recording.time[-1] + step) for k in range(times)]
+    path = tmp_path / "long.npz"
+    np.savez_compressed(
+        path,
+        time_s=np.concatenate(spans),
+        position_rad=np.tile(recording.position, times),
+        torque_Nm=np.tile(recording.torque, times),
+    )
+    hand = opened(driver, server, path)
+    hand.element("signals")
+    hand.idle()
+    hand.click("compare")
+    shown = hand.element("progress")
+    hand.wait("the comparison runs", lambda: shown.text.startswith("comparing"))
+    for each in workers(server.process.pid):
+        os.kill(each, signal.SIGSTOP)  # it stays as it is
+    announced = driver.find_element("id", "status").get_attribute("textContent")
+    first = shown.text
+    hand.wait("time passes", lambda: shown.text != first and "s of about" in first)
+    assert re.match(r"comparing(, fit \d+ of \d+: \S+)?: \d+ s", shown.text)
+    assert announced.startswith("comparing")
+    assert driver.find_element("id", "status").get_attribute("textContent") == announced
+    assert broken_rules(hand, "at work") == []
+    hand.click("cancel")
+    hand.wait("it is cancelled", lambda: "comparing was cancelled" in hand.text())
+    assert not workers(server.process.pid)
+
+
+def test_a_log_of_the_motor_is_identified_at_the_joint(
+    driver: Any, server: Served, tmp_path: Path
+) -> None:
+    recording = jid.load(WELL_EXCITED)
+    assert recording.torque is not None
+    rows = ["t_s,motor_position,motor_current_A"]
+    for when, position, torque in zip(
+        recording.time, recording.position, recording.torque, strict=True
+    ):
+        rows.append(f"{when:.4f},{RATIO * position:.6f},{torque / RATIO / CONSTANT:.5f}")
+    path = tmp_path / "motor.csv"
+    path.write_text("\n".join(rows), encoding="utf-8")
+    hand = opened(driver, server, path)
+    hand.wait("the side", lambda: hand.element("side-position").get_attribute("value") == "motor")
+    hand.fill("fact-gear_ratio", f"{RATIO:g}")
+    hand.fill("fact-torque_constant", f"{CONSTANT:g}")
+    hand.click("identify")
+    hand.element("estimate")
+    hand.idle()
+    target = driver.downloads / "joint.toml"
+    target.unlink(missing_ok=True)
+    hand.click("export-toml")
+    hand.wait("the joint file", target.exists)
+    joint = jid.Joint.load(target)
+    assert joint.parameters["coulomb"].value == pytest.approx(25.0, rel=0.02)
+    assert joint.parameters["viscous"].value == pytest.approx(20.0, rel=0.02)
+
+
+def test_a_keyboard_reaches_every_control_in_order_and_sees_where_it_is(
+    driver: Any, server: Served, log: Path
+) -> None:
+    from selenium.webdriver import ActionChains, Keys
+
+    hand = opened(driver, server, log)
+    hand.element("signals")
+    hand.idle()
+    driver.execute_script("document.activeElement.blur(); scrollTo(0, 0)")
+    reached: list[str] = []
+    for _ in range(60):
+        ActionChains(driver).send_keys(Keys.TAB).perform()
+        name, outlined = driver.execute_script(_FOCUSED)
+        if not name:  # the end of the page
+            break
+        assert outlined, f"nothing shows that {name} has the focus"
+        reached.append(name)
+    wanted = [
+        *("choose", "example", "column-time", "column-position", "unit-position", "side-position"),
+        *("fact-gear_ratio", "fact-torque_constant", "model", "stretch-from", "stretch-to"),
+        *("identify", "compare"),
+    ]
+    assert [each for each in reached if each in wanted] == wanted
+
+    driver.execute_cdp_cmd("Page.setInterceptFileChooserDialog", {"enabled": True})
+    driver.get_log("performance")
+    hand.element("choose").send_keys(Keys.ENTER)
+    hand.wait(
+        "the dialogue for files",
+        lambda: any(
+            "fileChooserOpened" in each["message"] for each in driver.get_log("performance")
+        ),
+    )
+    driver.execute_cdp_cmd("Page.setInterceptFileChooserDialog", {"enabled": False})
+
+    hand.fill("stretch-from", "2")
+    hand.fill("stretch-to", "3.5")
+    hand.wait("a stretch", lambda: hand.element("leave-out").is_enabled())
+    hand.element("leave-out").send_keys(Keys.ENTER)
+    assert hand.element("left-out").text == "left out: 2.00 to 3.50 s"
+    hand.wait("focus", lambda: driver.switch_to.active_element.get_attribute("id") == "keep-all")
+
+
+_FOCUSED = """
+const at = document.activeElement, shows = each => each && getComputedStyle(each).outlineStyle !== "none";
+return [at.id, shows(at) || shows(at.closest(".q-field__control"))]
+"""
 
 
 def workers(parent: int) -> list[int]:

@@ -79,3 +79,11 @@ def test_what_is_odd_about_a_range(
 ) -> None:
     remark = range_remark(signal, low, high, kind)
     assert (word in remark) if word else remark == ""
+
+
+def test_a_motors_column_is_proposed_with_its_side(tmp_path: Path) -> None:
+    path = tmp_path / "motor.csv"
+    path.write_text("t_s,motor_position,tau_Nm\n0,1,2\n1,2,3\n", encoding="utf-8")
+    seen = first_look(path)
+    assert seen.signals["position"] == 1
+    assert seen.side == {"position": "motor"}

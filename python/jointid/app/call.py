@@ -127,7 +127,7 @@ class Call:
             )
             lines += [f"pieces = [{pieces}]  # by time [s]"]
             what = "pieces"
-        lines += ['joint = jid.Joint.load("joint.toml")  # exported beside this program'] * (
+        lines += ['joint = jid.Joint.load("joint.toml")  # exported next to this program'] * (
             self.joint is not None
         )
         given = "".join(f", {name}={value!r}" for name, value in self.identify.items())

@@ -19,9 +19,14 @@ Stretch = tuple[float, float]
 
 _SHOWN = ("position", "velocity", "torque", "motor_torque", "current", "sensor")
 _POINTS = 1200  # of a line; more are not seen
-_TEXT = "#808080"  # readable on light and on dark ground
-_LINE, _SECOND, _CHOSEN, _OUT = "#3b7dd8", "#d9822b", "#d6336c", "rgba(128,128,128,.35)"
-_GRID = "rgba(128,128,128,.25)"
+# Variables of the style sheet: the drawings are SVG, and follow a change from light to dark.
+_TEXT, _MEASURED, _LINE, _SECOND = "var(--ink)", "var(--measured)", "var(--second)", "var(--fourth)"
+_CHOSEN, _OUT, _GRID = "var(--fitted)", "var(--measured)", "var(--grid)"
+_TOOLTIP = {
+    "backgroundColor": "var(--well)",
+    "borderColor": "var(--muted)",
+    "textStyle": {"color": _TEXT},
+}
 _HEIGHT = 120  # pixels of a signal's panel
 
 
@@ -48,14 +53,16 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
     limits = {"min": float(recording.time[0]), "max": float(recording.time[-1])}
     grey = {
         "silent": True,
-        "itemStyle": {"color": _OUT},
+        "itemStyle": {"color": _OUT, "opacity": 0.35},
         "data": [[{"xAxis": start}, {"xAxis": stop}] for start, stop in left_out],
     }
     last = len(names) - 1
+    even = float(f"{limits['max']:.3g}") == limits["max"]  # its label is short
     return {
         "animation": False,
         "textStyle": {"color": _TEXT},
-        "tooltip": {"trigger": "axis"},
+        "tooltip": {"trigger": "axis", **_TOOLTIP},
+        "toolbox": {"show": False},
         "axisPointer": {"link": [{"xAxisIndex": "all"}]},
         "brush": {
             "xAxisIndex": "all",
@@ -74,7 +81,7 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
                 "type": "value",
                 "gridIndex": k,
                 **limits,
-                "axisLabel": {"show": k == last, "color": _TEXT},
+                "axisLabel": {"show": k == last, "color": _TEXT, "showMaxLabel": even},
                 "splitLine": {"lineStyle": {"color": _GRID}},
                 **(
                     {"name": "time [s]", "nameLocation": "middle", "nameGap": 25}
@@ -114,66 +121,112 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
     }
 
 
-def estimate_options(estimate: Estimate, brushed: Stretch | None = None) -> dict[str, Any]:
-    """Friction map and residuals; windows inside the brushed stretch stand out in both."""
+def signals_text(recording: Recording) -> str:
+    """The picture of signals in words."""
+    spans = ", ".join(
+        f"{name} from {_span(getattr(recording, name))} {shown_unit(name, recording.kind)}"
+        for name in _signals(recording)
+    )
+    return f"Signals over {_span(recording.time)} s: {spans}"
+
+
+def friction_options(estimate: Estimate, brushed: Stretch | None = None) -> dict[str, Any]:
+    """Friction map; windows inside the brushed stretch stand out."""
     windows, kind = estimate.windows, str(estimate.settings["kind"])
     whole = whole_windows(windows)
-    centre = 0.5 * (windows.start + windows.stop)
-    inside = np.zeros(len(centre), dtype=bool)
-    if brushed is not None:
-        inside = (centre >= brushed[0]) & (centre <= brushed[1])
+    inside = _inside(_centre(estimate), brushed)
     curve = estimate.friction(map_velocities(float(np.abs(windows.velocity).max()), 100))
-    residual = windows.residual / windows.duration
-    unit = torque_unit(kind)
-    rate = shown_unit("velocity", kind)
     rest = len(curve.velocity) // 2  # friction takes any value there: two curves
-    curves = (slice(0, rest), slice(rest, None))
-    return {
-        "animation": False,
-        "textStyle": {"color": _TEXT},
-        "tooltip": {"trigger": "item"},
-        "grid": [
-            {"left": 70, "right": "55%", "top": 30, "bottom": 45},
-            {"left": "55%", "right": 20, "top": 30, "bottom": 45},
-        ],
-        "xAxis": [
-            _axis(0, f"velocity [{rate}]"),
-            _axis(1, "time [s]"),
-        ],
-        "yAxis": [
-            _upward(0, f"friction [{unit}]"),
-            _upward(1, f"residual [{fitted_signal(estimate)[1]}]"),
-        ],
-        "series": [
-            _points(
-                0,
-                "window",
-                windows.velocity[whole & ~inside],
-                windows.friction[whole & ~inside],
-                _TEXT,
-            ),
-            _points(
-                0,
-                "brushed",
-                windows.velocity[whole & inside],
-                windows.friction[whole & inside],
-                _CHOSEN,
+    return _picture(
+        f"velocity [{shown_unit('velocity', kind)}]",
+        f"friction [{torque_unit(kind)}]",
+        [
+            *(
+                _points(
+                    name, windows.velocity[whole & some], windows.friction[whole & some], colour
+                )
+                for name, some, colour in (
+                    ("window", ~inside, _MEASURED),
+                    ("chosen window", inside, _CHOSEN),
+                )
             ),
             *(
                 {
                     "type": "line",
                     "name": "identified",
-                    "xAxisIndex": 0,
-                    "yAxisIndex": 0,
                     "showSymbol": False,
                     "lineStyle": {"width": 2, "color": _LINE},
                     "data": _pairs(curve.velocity[part], curve.torque[part]),
                 }
-                for part in curves
+                for part in (slice(0, rest), slice(rest, None))
             ),
-            _points(1, "residual", centre[~inside], residual[~inside], _SECOND),
-            _points(1, "brushed", centre[inside], residual[inside], _CHOSEN),
         ],
+    )
+
+
+def friction_text(estimate: Estimate) -> str:
+    """The friction map in words."""
+    windows, kind = estimate.windows, str(estimate.settings["kind"])
+    curve = estimate.friction(map_velocities(float(np.abs(windows.velocity).max()), 100))
+    return (
+        f"Friction map: {len(windows.velocity)} windows and the identified line, "
+        f"{_span(curve.torque)} {torque_unit(kind)} at velocities of {_span(curve.velocity)} "
+        f"{shown_unit('velocity', kind)}"
+    )
+
+
+def residual_options(estimate: Estimate, brushed: Stretch | None = None) -> dict[str, Any]:
+    """Residuals over time; windows inside the brushed stretch stand out."""
+    centre, residual = _centre(estimate), _residual(estimate)
+    inside = _inside(centre, brushed)
+    return _picture(
+        "time [s]",
+        f"residual [{fitted_signal(estimate)[1]}]",
+        [
+            _points("residual", centre[~inside], residual[~inside], _SECOND),
+            _points("chosen window", centre[inside], residual[inside], _CHOSEN),
+        ],
+    )
+
+
+def residual_text(estimate: Estimate) -> str:
+    """The residuals in words."""
+    residual = _residual(estimate)
+    unit = fitted_signal(estimate)[1]
+    root_mean_square = float(np.sqrt(np.mean(residual**2)))
+    return (
+        f"Residuals over time: root mean square {root_mean_square:.3g} {unit}, "
+        f"{_span(residual)} {unit}"
+    )
+
+
+def _centre(estimate: Estimate) -> Array:
+    return np.asarray(0.5 * (estimate.windows.start + estimate.windows.stop))
+
+
+def _residual(estimate: Estimate) -> Array:
+    return np.asarray(estimate.windows.residual / estimate.windows.duration)
+
+
+def _inside(centre: Array, brushed: Stretch | None) -> NDArray[np.bool_]:
+    if brushed is None:
+        return np.zeros(len(centre), dtype=bool)
+    return (centre >= brushed[0]) & (centre <= brushed[1])
+
+
+def _span(values: Array) -> str:
+    return f"{float(np.min(values)):.4g} to {float(np.max(values)):.4g}"
+
+
+def _picture(across: str, up: str, series: list[dict[str, Any]]) -> dict[str, Any]:
+    return {
+        "animation": False,
+        "textStyle": {"color": _TEXT},
+        "tooltip": {"trigger": "item", **_TOOLTIP},
+        "grid": {"left": 70, "right": 20, "top": 30, "bottom": 45},
+        "xAxis": {**_axis(across), "nameLocation": "middle", "nameGap": 28},
+        "yAxis": {**_axis(up), "nameTextStyle": {"align": "left", "color": _TEXT}},
+        "series": series,
     }
 
 
@@ -181,37 +234,22 @@ def _signals(recording: Recording) -> list[str]:
     return [name for name in _SHOWN if getattr(recording, name) is not None]
 
 
-def _axis(grid: int, name: str) -> dict[str, Any]:
+def _axis(name: str) -> dict[str, Any]:
     return {
         "type": "value",
-        "gridIndex": grid,
         "scale": True,
         "name": name,
-        "nameLocation": "middle",
-        "nameGap": 28,
-        "axisLabel": {"color": _TEXT},
+        "nameTextStyle": {"color": _TEXT},
+        "axisLabel": {"color": _TEXT, "hideOverlap": True},
+        "axisLine": {"onZero": False, "lineStyle": {"color": _GRID}},
         "splitLine": {"lineStyle": {"color": _GRID}},
     }
 
 
-def _upward(grid: int, name: str) -> dict[str, Any]:
-    return {
-        "type": "value",
-        "gridIndex": grid,
-        "scale": True,
-        "name": name,
-        "nameTextStyle": {"align": "left", "color": _TEXT},
-        "axisLabel": {"color": _TEXT},
-        "splitLine": {"lineStyle": {"color": _GRID}},
-    }
-
-
-def _points(grid: int, name: str, across: Array, up: Array, colour: str) -> dict[str, Any]:
+def _points(name: str, across: Array, up: Array, colour: str) -> dict[str, Any]:
     return {
         "type": "scatter",
         "name": name,
-        "xAxisIndex": grid,
-        "yAxisIndex": grid,
         "symbolSize": 4,
         "itemStyle": {"color": colour},
         "data": _pairs(across, up),

@@ -9,7 +9,9 @@ from typing import Any
 from nicegui import ui
 
 from jointid import _core
-from jointid.app.desk import COUNTS, Desk
+from jointid.app.desk import COUNTS, READ_WITH, Desk
+from jointid.app.look import FIELD, focus, heading, note
+from jointid.app.wording import FIELDS, signal_text, unit_text
 from jointid.joint.model import AUTO
 from jointid.recording.plausibility import range_remark
 from jointid.recording.signals import dimensions, shown_unit
@@ -17,11 +19,10 @@ from jointid.recording.units import UNITS, unit_names
 
 _SIGNALS = ("time", "position", "velocity", "torque", "motor_torque", "current", "sensor")
 _NONE = -1
-_FACTS = (
-    ("gear_ratio", "gear ratio"),
-    ("torque_constant", "torque constant [N·m/A]"),
-    ("inertia", "drive's inertia at the output [kg·m²]"),
-)
+_MOVING = ("position", "velocity")  # they have a side of the gear
+_SIDES = {"": "by its header", "joint": "joint", "motor": "motor"}
+_FACTS = ("gear_ratio", "torque_constant", "inertia")
+_UNITS = {"gear_ratio": "", "torque_constant": " [N·m/A]", "inertia": " [kg·m²]"}
 _LABELS = {
     "auto": "chosen by the data",
     "coulomb_viscous": "Coulomb and viscous",
@@ -33,20 +34,25 @@ _MODELS = {name: _LABELS.get(name, name) for name in (AUTO, *_core.model_names()
 
 def columns_step(desk: Desk) -> dict[str, Callable[[], object]]:
     """Draw the step; returns what draws its parts anew."""
-    ui.label("2  Columns and units").classes("text-lg")
+    heading(2, "2  Columns and units")
     ranges: dict[str, ui.label] = {}
 
     @ui.refreshable
     def draw() -> None:
+        ranges.clear()
         if desk.call is None or desk.looked is None:
-            ui.label("Load a log first.")
+            ui.label("Load a log first.").classes("hint")
             return
         headers = {_NONE: "—"} | {k: each.header for k, each in enumerate(desk.looked.columns)}
-        with ui.grid(
-            columns="max-content minmax(9rem, 1fr) max-content minmax(12rem, 2fr)"
-        ).classes("items-center w-full"):
+        held = [signal for signal in _SIGNALS if desk.column_of(signal) is not None]
+        for signal in held:
+            with ui.element("div").classes("fields signal"):
+                _column(desk, signal, headers)
+                _measured(desk, signal, ranges)
+        with ui.element("div").classes("fields"):
             for signal in _SIGNALS:
-                ranges[signal] = _row(desk, signal, headers)
+                if signal not in held:
+                    _column(desk, signal, headers)
         _facts(desk)
 
     def show_ranges() -> None:
@@ -56,41 +62,64 @@ def columns_step(desk: Desk) -> dict[str, Callable[[], object]]:
     @ui.refreshable
     def remarks() -> None:
         if desk.problem:
-            ui.label(desk.problem).classes("text-negative").props("id=problem")
+            note(desk.problem, "blocking", spoken=True).props("id=problem")
         for remark in desk.remarks:
-            ui.label(remark)
+            ui.label(remark).classes("hint")
 
     draw()
     remarks()
     return {"columns": draw.refresh, "ranges": show_ranges, "remarks": remarks.refresh}
 
 
-def _row(desk: Desk, signal: str, headers: dict[int, str]) -> ui.label:
-    column = desk.looked_at(signal)
-    number = desk.column_of(signal)
-    ui.label(signal).classes("whitespace-nowrap")
+def _column(desk: Desk, signal: str, headers: dict[int, str]) -> None:
+    client, number = ui.context.client, desk.column_of(signal)
 
     async def assigned(event: Any) -> None:
         desk.assign(signal, None if event.value == _NONE else event.value)
+        focus(client, f"column-{signal}")
         await desk.read()
 
-    ui.select(headers, value=_NONE if number is None else number, on_change=assigned).props(
-        f"dense id=column-{signal}"
-    )
-    units = _units(signal)
-    unit = desk.unit_of(signal)
+    ui.select(
+        headers,
+        value=_NONE if number is None else number,
+        label=signal_text(signal),
+        on_change=assigned,
+    ).props(f"{FIELD} for=column-{signal}")
+
+
+def _measured(desk: Desk, signal: str, ranges: dict[str, ui.label]) -> None:
+    """Unit, side and range of a signal that has a column."""
+    client, units, unit = ui.context.client, _units(signal), desk.unit_of(signal)
 
     async def measured(event: Any) -> None:
         desk.measure(signal, event.value)
+        focus(client, COUNTS if event.value == COUNTS else f"unit-{signal}")
         await desk.read()
 
-    with ui.row().classes("items-center no-wrap"):
-        ui.select(units, value=unit if unit in units else "", on_change=measured).props(
-            f"dense id=unit-{signal}"
-        ).set_enabled(column is not None)
-        if unit == COUNTS:
-            _counts(desk)
-    return ui.label(_seen(desk, signal)).props(f"id=seen-{signal}").classes("text-caption")
+    ui.select(
+        units,
+        value=unit if unit in units else "",
+        label=f"unit of {signal_text(signal)}",
+        on_change=measured,
+    ).props(f"{FIELD} for=unit-{signal}")
+    if unit == COUNTS:
+        _counts(desk)
+    if signal in _MOVING:
+        _side(desk, signal)
+    ranges[signal] = ui.label(_seen(desk, signal)).props(f"id=seen-{signal}").classes("hint seen")
+
+
+def _side(desk: Desk, signal: str) -> None:
+    client = ui.context.client
+
+    async def placed(event: Any) -> None:
+        desk.put_on(signal, event.value)
+        focus(client, f"side-{signal}")
+        await desk.read()
+
+    ui.select(
+        _SIDES, value=desk.side_of(signal), label=f"side of {signal}", on_change=placed
+    ).props(f"{FIELD} for=side-{signal}")
 
 
 def _counts(desk: Desk) -> None:
@@ -99,15 +128,15 @@ def _counts(desk: Desk) -> None:
         value=desk.counts_per_turn,
         min=1,
         on_change=lambda event: desk.count(event.value),
-    ).props("dense autofocus for=counts").on("blur", desk.read).on("keydown.enter", desk.read)
+    ).props(f"{FIELD} for={COUNTS}").on("blur", desk.read).on("keydown.enter", desk.read)
 
 
 def _units(signal: str) -> dict[str, str]:
     known = unit_names(dimensions(signal, None))
     counted = {COUNTS: "counts"} if signal in ("position", "velocity") else {}
     return (
-        {"": f"{shown_unit(signal, 'revolute')}, not stated"}
-        | {name: name for name in known}
+        {"": f"{shown_unit(signal, 'revolute')}, assumed"}
+        | {name: unit_text(name) for name in known}
         | counted
     )
 
@@ -124,23 +153,45 @@ def _seen(desk: Desk, signal: str) -> str:
     kind = "prismatic" if desk.unit_of("position") in unit_names(("length",)) else "revolute"
     if not (math.isfinite(low) and math.isfinite(high)):
         return "no finite numbers"
-    remark = range_remark(signal, low, high, kind) if signal != "sensor" else ""
+    at_joint = signal != "sensor" and desk.side_of(signal) != "motor"
+    remark = range_remark(signal, low, high, kind) if at_joint else ""
     name = shown_unit(signal, kind) if signal != "sensor" else "of the reading"
     shown = f"{low:.4g} … {high:.4g} {name}"
     return f"{shown}; {remark}" if remark else shown
 
 
 def _facts(desk: Desk) -> None:
-    with ui.row().classes("items-center"):
-        for name, label in _FACTS:
-            ui.number(
-                label,
-                value=desk.facts.get(name),
-                on_change=lambda event, name=name: desk.facts.__setitem__(name, event.value),
-            ).props(f"dense for=fact-{name}")
+    """What is known of the joint; the fields that a motor's signals need say so."""
+    heading(3, "Joint and motor")
+    hints = {
+        "gear_ratio": "motor angle per joint angle; needed for signals of the motor",
+        "torque_constant": "of the motor; needed for a current",
+        "inertia": "of the drive alone, where it is known",
+    }
+    with ui.element("div").classes("fields facts"):
+        for name in _FACTS:
+            _number(desk, name, f"{FIELDS[name]}{_UNITS[name]}", hints[name])
         ui.select(
             _MODELS,
             value=desk.model,
-            label="friction model",
+            label=FIELDS["model"],
             on_change=lambda event: desk.choose(event.value),
-        ).props("dense id=model")
+        ).props(f"{FIELD} for=model")
+        if desk.column_of("time") is None:
+            _number(desk, "sample_period", "time between rows [s]", "where the log has no time")
+
+
+def _number(desk: Desk, name: str, label: str, hint: str) -> None:
+    """The field of a known number; what is read with it is read again when it has changed."""
+    seen = {"value": desk.facts.get(name)}
+
+    async def left() -> None:
+        if name in READ_WITH and desk.facts.get(name) != seen["value"]:
+            seen["value"] = desk.facts.get(name)
+            await desk.read()
+
+    ui.number(
+        label,
+        value=desk.facts.get(name),
+        on_change=lambda event: desk.facts.__setitem__(name, event.value),
+    ).props(f'{FIELD} for=fact-{name} hint="{hint}"').on("blur", left)

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.app import tasks
 from jointid.app.call import Call
+from jointid.app.wording import worded
+from jointid.app.work import Work
 from jointid.app.worker import CancelledWork, Worker
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
@@ -26,7 +28,11 @@ if TYPE_CHECKING:
 
 COUNTS = "counts"
 """The unit of an encoder: needs the counts of a turn."""
+READ_WITH = ("gear_ratio", "sample_period")
+"""Facts with which a log is read."""
 _TURN = 2.0 * math.pi
+_READ = ("columns", "units", "scale", "side")
+_JOINT_FACTS = ("gear_ratio", "torque_constant", "inertia")
 
 
 class Desk:
@@ -37,19 +43,23 @@ class Desk:
     changed : callable
         Called with the name of what is to be drawn anew: "columns", "ranges",
         "remarks", "signals", "result", "progress".
-    said : callable
-        Called with a sentence and whether it is an error.
+
+    Attributes
+    ----------
+    problem : str
+        Why the log cannot be read; "" where it can.
+    failure : str
+        Why there is no answer; "" where there is one, or none is computed.
     """
 
-    def __init__(
-        self, changed: Callable[[str], object], said: Callable[[str, bool], object]
-    ) -> None:
+    def __init__(self, changed: Callable[[str], object]) -> None:
         self.worker = Worker()
+        self.work = Work()
         self.call: Call | None = None
         self.looked: FirstLook | None = None
         self.recording: Recording | None = None
         self.remarks: tuple[str, ...] = ()
-        self.problem = ""
+        self.problem = self.failure = ""
         self.estimate: Estimate | None = None
         self.report = ""
         self.comparison: Comparison | None = None
@@ -57,10 +67,9 @@ class Desk:
         self.on_brush: Callable[[tuple[float, float] | None], object] = lambda _stretch: None
         self.counts_per_turn: float | None = None
         self.facts: dict[str, Any] = {}
-        self.busy = ""
-        self.share = 0.0
-        self.step = ""
-        self._changed, self._said = changed, said
+        self._known: Joint | None = None  # of the example
+        self._log: tuple[Path | None, str] = (None, "")  # where it is kept, and what it is called
+        self._changed = changed
         self._folder = Path(tempfile.mkdtemp(prefix="jointid-app-"))
 
     def close(self) -> None:
@@ -83,19 +92,12 @@ class Desk:
 
     async def open(self, path: Path, name: str) -> None:
         """Look at a file, and read it if its headers say enough."""
-        self.call = self.looked = self.recording = self.estimate = self.comparison = None
-        self.problem, self.remarks, self.brushed = "", (), None
+        await self._open(Call(file=path, name=Path(name).name))
 
-        async def work() -> None:
-            self.looked = await self.worker.run(tasks.look, path)
-            self.call = Call(file=path, name=Path(name).name)
-            if not self.looked.certain:
-                self._propose(self.looked)
-
-        await self._do("reading", work)
-        self._changed("columns")
-        if self.call is not None:
-            await self.read()
+    async def try_example(self, example: Call) -> None:
+        """Read an example with what is known of its joint, and identify it."""
+        await self._open(example)
+        await self.identify()
 
     async def read(self) -> None:
         """Read the recording as it is stated now."""
@@ -105,47 +107,33 @@ class Desk:
 
         async def work() -> None:
             assert self.call is not None
-            try:
-                self.call = replace(self.call, joint=self._joint())
-                found = await self.worker.run(tasks.read, self.call)
-            except InputError as error:
-                self.problem = str(error)
-                return
+            self.call = replace(self.call, load=self._how_to_read(), joint=self._joint())
+            found = await self.worker.run(tasks.read, self.call)
             self.recording, self.remarks = found.recording, found.remarks
 
-        await self._do("reading", work)
+        self.problem = await self._do("reading", work)
         for part in ("remarks", "signals", "result"):
             self._changed(part)
 
     async def identify(self) -> None:
         """Identify, with progress."""
-        await self.read()
-        if self.call is None or self.recording is None:
-            self._said(self.problem or "load a recording first", True)
-            return
 
         async def work() -> None:
             self.estimate, self.report = await self.worker.run(
                 tasks.identify, self.call, report=self._progress
             )
 
-        await self._do("identifying", work)
-        self._changed("result")
+        await self._answer("identifying", work)
 
     async def compare(self) -> None:
         """Compare the usual models."""
-        await self.read()
-        if self.call is None or self.recording is None:
-            self._said(self.problem or "load a recording first", True)
-            return
 
         async def work() -> None:
             self.comparison = await self.worker.run(
                 tasks.compare, self.call, (), report=self._progress
             )
 
-        await self._do("comparing", work)
-        self._changed("result")
+        await self._answer("comparing", work)
 
     def cancel(self) -> None:
         """End what is computed now."""
@@ -155,7 +143,8 @@ class Desk:
         """Do what a finding advises, and identify again."""
         again = None if self.call is None else self.call.obey(action)
         if again is None:
-            self._said("jointid cannot do this; do it by hand", True)
+            self.failure = "jointid cannot do this; do it by hand"
+            self._changed("result")
             return
         self.call = again
         if action.function == "Joint":
@@ -169,7 +158,7 @@ class Desk:
         assert self.looked is not None
         load: dict[str, Any] = {name: dict(self.call.load.get(name, {})) for name in _READ}
         load["columns"][signal] = None if column is None else column
-        for name in ("units", "scale"):
+        for name in ("units", "scale", "side"):
             load[name].pop(signal, None)
         self._load(load)
         self._changed("columns")
@@ -187,6 +176,16 @@ class Desk:
         self._load(load)
         self._changed("columns")
 
+    def put_on(self, signal: str, side: str) -> None:
+        """Say on which side of the gear a signal is measured; "" for what its header says."""
+        assert self.call is not None
+        load: dict[str, Any] = {name: dict(self.call.load.get(name, {})) for name in _READ}
+        load["side"].pop(signal, None)
+        if side:
+            load["side"][signal] = side
+        self._load(load)
+        self._changed("columns")
+
     def count(self, per_turn: float | None) -> None:
         """Say how many counts a turn of the joint has."""
         self.counts_per_turn = per_turn
@@ -198,15 +197,13 @@ class Desk:
     def choose(self, model: str) -> None:
         """Say which friction model is identified; "auto" lets the data choose."""
         if self.call is not None:
-            identify = {k: v for k, v in self.call.identify.items() if k != "model"}
-            self.call = replace(
-                self.call, identify=identify if model == "auto" else {**identify, "model": model}
-            )
+            self.call = replace(self.call, identify={**self.call.identify, "model": model})
 
     @property
     def model(self) -> str:
-        """The friction model that is stated; "auto" for none."""
-        stated = "auto" if self.call is None else self.call.identify.get("model", "auto")
+        """The friction model that is stated, or known of the example; "auto" for none."""
+        known = self._known.model.name if self._known is not None else None
+        stated = known if self.call is None else self.call.identify.get("model", known)
         return stated if isinstance(stated, str) and ":" not in stated else "auto"
 
     def brush(self, bounds: Sequence[float] | None) -> None:
@@ -254,6 +251,10 @@ class Desk:
         stated = str(self.call.load.get("units", {}).get(signal, ""))
         return stated or ("" if column is None else column.unit)
 
+    def side_of(self, signal: str) -> str:
+        """Side of the gear that is stated for a signal; "" for none."""
+        return "" if self.call is None else str(self.call.load.get("side", {}).get(signal, ""))
+
     def looked_at(self, signal: str) -> LookedColumn | None:
         """What was seen of a signal's column."""
         number = self.column_of(signal)
@@ -266,7 +267,7 @@ class Desk:
             else index
             for signal, index in looked.signals.items()
         }
-        self._load({"columns": columns, "units": dict(looked.units)})
+        self._load({"columns": columns, "units": dict(looked.units), "side": dict(looked.side)})
 
     def _load(self, load: Mapping[str, Mapping[str, Any]]) -> None:
         assert self.call is not None
@@ -274,35 +275,85 @@ class Desk:
         stated = {name: mapping for name, mapping in load.items() if mapping}
         self.call = replace(self.call, load={**kept, **stated})
 
+    def _how_to_read(self) -> dict[str, Any]:
+        """The arguments of `load`, those with the facts of the joint that it takes."""
+        assert self.call is not None
+        kept = {name: value for name, value in self.call.load.items() if name not in READ_WITH}
+        stated = {name: self.facts.get(name) for name in READ_WITH}
+        return kept | {name: value for name, value in stated.items() if value not in (None, "")}
+
     def _joint(self) -> Joint | None:
-        stated = {name: value for name, value in self.facts.items() if value not in (None, "")}
-        if not stated:
+        facts = {name: value for name, value in self.facts.items() if name != "sample_period"}
+        stated = {name: value for name, value in facts.items() if value not in (None, "")}
+        if not stated and self._known is None:
             return None
         if self.column_of("sensor") is not None:
             stated["sensor"] = True
-        return Joint(**stated)
+        known = self._known or Joint()
+        left_empty = {name: getattr(Joint(), name) for name in facts if name not in stated}
+        return known.replace(**left_empty, **stated)
+
+    async def _open(self, call: Call) -> None:
+        """Look at a call's file, and read it as the call says."""
+        self.call = self.looked = self.recording = self.estimate = self.comparison = None
+        self.problem, self.failure, self.remarks, self.brushed = "", "", (), None
+        if call.joint is not None or self._known is not None:  # facts of another joint
+            self.facts = _facts_of(call.joint)
+        self._known, self._log = call.joint, (call.file, call.name)
+
+        async def work() -> None:
+            self.looked = await self.worker.run(tasks.look, call.file)
+            self.call = call
+            if not self.looked.certain:
+                self._propose(self.looked)
+
+        self.problem = await self._do("reading", work)
+        for part in ("columns", "remarks", "signals", "result"):
+            self._changed(part)
+        if self.call is not None:
+            await self.read()
+
+    async def _answer(self, what: str, work: Callable[[], Awaitable[None]]) -> None:
+        """Compute an answer from what is read as it is stated now."""
+        self.failure = ""
+        await self.read()
+        if self.call is None or self.recording is None:
+            self.failure = self.problem or "load a log first"
+        else:
+            self.failure = await self._do(what, work, len(self.recording.time))
+        if self.failure and self.failure != f"{what} was cancelled":
+            self.estimate = self.comparison = None  # of what was stated before
+        self._changed("result")
+        self._changed("progress")
 
     def _progress(self, share: float, step: str) -> None:
-        self.share, self.step = share, step
-        self._changed("progress")
+        self.work.progress(share, step)
 
-    async def _do(self, what: str, work: Callable[[], Awaitable[None]]) -> None:
-        self.busy, self.share, self.step = what, 0.0, ""
+    async def _do(self, what: str, work: Callable[[], Awaitable[None]], samples: int = 0) -> str:
+        """Do some work; returns why it was not done, or "" where it was."""
+        self.work.begin(what, samples)
         self._changed("progress")
+        failure = "cancelled"
         try:
             await work()
+            failure = ""
         except CancelledWork:
-            self._said(f"{what}: cancelled", False)
+            failure = f"{what} was cancelled"
         except InputError as error:
-            self._said(str(error), True)
+            failure = worded(error, *self._log)
         except RuntimeError as error:
-            self._said(f"an error in jointid: {str(error).strip().splitlines()[-1]}", True)
+            failure = f"an error in jointid: {str(error).strip().splitlines()[-1]}"
         except asyncio.CancelledError:
             self.worker.cancel()
             raise
         finally:
-            self.busy = ""
+            self.work.end(done=not failure)
             self._changed("progress")
+        return failure
 
 
-_READ = ("columns", "units", "scale")
+def _facts_of(joint: Joint | None) -> dict[str, Any]:
+    """The known facts that the page has fields for."""
+    fields = {name: getattr(joint, name, None) for name in _JOINT_FACTS}
+    unknown = Joint()
+    return {n: v for n, v in fields.items() if v is not None and v != getattr(unknown, n)}

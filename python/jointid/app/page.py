@@ -6,21 +6,32 @@ from collections.abc import Callable
 
 from nicegui import ui
 
+from jointid.app.call import Call
 from jointid.app.columns import columns_step
 from jointid.app.desk import Desk
+from jointid.app.look import dress, heading, note
 from jointid.app.results import result_step
 from jointid.app.signals import signals_step
+from jointid.app.wording import worded
 from jointid.base.errors import InputError
-from jointid.report.style import STYLE
+
+# A button that was drawn anew has lost the keyboard's focus.
+_KEEP_FOCUS = """
+setTimeout(() => { if (document.activeElement === document.body)
+  document.getElementById("identify")?.focus({preventScroll: true}) }, 400)
+"""
+_TICK = 0.5  # [s] between two drawings of the progress
 
 
-def build(largest: int) -> None:
+def build(largest: int, example: Call) -> None:
     """Build the page of one browser tab.
 
     Parameters
     ----------
     largest : int
         Bytes of an upload.
+    example : Call
+        What "Try an example" identifies.
     """
     parts: dict[str, Callable[[], object]] = {}
     client = ui.context.client
@@ -30,75 +41,110 @@ def build(largest: int) -> None:
             with client:
                 parts[part]()
 
-    def said(text: str, wrong: bool) -> None:
-        if not client.is_deleted:
-            with client:
-                ui.notify(text, type="negative" if wrong else "info", multi_line=True, timeout=8000)
-
-    desk = Desk(changed, said)
+    desk = Desk(changed)
     client.on_delete(desk.close)
-    ui.dark_mode(None)
-    ui.add_css(f"@layer components {{ {STYLE} }} .step {{ width: 100%; max-width: 62rem; }}")
-    with ui.column().classes("w-full items-center"):
-        ui.label("jointid").classes("text-2xl step")
-        with ui.card().classes("step overflow-x-auto"):
-            _upload(desk, largest)
-        with ui.card().classes("step overflow-x-auto"):
-            parts |= columns_step(desk)
-        with ui.card().classes("step overflow-x-auto"):
-            parts["signals"] = signals_step(desk)
-        with ui.card().classes("step overflow-x-auto"):
-            parts["progress"] = _actions(desk)
-            parts["result"] = result_step(desk)
+    dress()
+    with ui.element("div").classes("w-full").style("max-width: 62rem"):
+        heading(1, "jointid")
+        ui.label("The friction of a robot joint from one ordinary log.").classes("hint")
+    with ui.card().classes("step"):
+        _upload(desk, largest, example)
+    with ui.card().classes("step"):
+        parts |= columns_step(desk)
+    with ui.card().classes("step"):
+        parts["signals"] = signals_step(desk)
+    with ui.card().classes("step"):
+        parts["progress"] = _actions(desk)
+        parts["result"] = result_step(desk)
 
 
-def _upload(desk: Desk, largest: int) -> None:
-    ui.label("1  Log").classes("text-lg")
-    ui.label(
-        "A text log (.csv, .csv.gz, .txt, .tsv, .log, .dat), .npz, .mat, .parquet, .h5, .mcap, .bag or .json. "
-        "It stays on this machine."
-    )
+def _upload(desk: Desk, largest: int, example: Call) -> None:
+    heading(2, "1  Log")
+
+    @ui.refreshable
+    def refusal(text: str = "") -> None:
+        if text:
+            note(text, "blocking", spoken=True).props("id=refusal")
 
     async def received(event: object) -> None:
         file = event.file  # type: ignore[attr-defined]
+        upload.reset()
         try:
             place = desk.place_for(file.name)
         except InputError as error:
-            ui.notify(str(error), type="negative", multi_line=True)
+            refusal.refresh(worded(error))
             return
+        refusal.refresh("")
         await file.save(place)
         await desk.open(place, file.name)
 
-    ui.upload(
-        label="drop a log here, or choose one",
+    async def tried() -> None:
+        refusal.refresh("")
+        await desk.try_example(example)
+
+    upload = ui.upload(
         auto_upload=True,
         max_file_size=largest,
         on_upload=received,
-        on_rejected=lambda: ui.notify(
-            f"one file of at most {largest / 1e6:.0f} MB is accepted", type="negative"
+        on_rejected=lambda: refusal.refresh(
+            f"one file of at most {largest / 1e6:.0f} MB is accepted"
         ),
-    ).classes("w-full").props("flat bordered")
+    ).props("flat")
+    with upload.add_slot("header"), ui.element("div").classes("buttons"):
+        # A click on the hidden input opens the browser's dialogue: the button is what a keyboard reaches.
+        with ui.element("div").style("display: none"):
+            ui.element("q-uploader-add-trigger")
+        ui.button("Choose a log").props("id=choose").on(
+            "click",
+            js_handler="(event) => event.currentTarget.closest('.q-uploader').querySelector('input').click()",
+        )
+        ui.label("or drop it here")
+        ui.button("Try an example", on_click=tried).props("outline id=example")
+    ui.label(
+        "A text log (.csv, .csv.gz, .txt, .tsv, .log, .dat), .npz, .mat, .parquet, .h5, .mcap, .bag or .json. "
+        "It stays on this machine. The example is joint 1 of a KUKA KR300."
+    ).classes("hint")
+    refusal()
 
 
 def _actions(desk: Desk) -> Callable[[], object]:
-    ui.label("4  Identify").classes("text-lg")
-    with ui.row().classes("items-center"):
+    """Draw the buttons and the progress; returns what draws them anew."""
+    heading(2, "4  Identify")
+    with ui.element("div").classes("buttons"):
         identify = (
             ui.button("Identify", on_click=desk.identify).mark("identify").props("id=identify")
         )
         compare = ui.button("Compare models", on_click=desk.compare).props("outline id=compare")
-        cancel = ui.button("Cancel", on_click=desk.cancel).props("flat id=cancel")
-    bar = ui.linear_progress(0.0, show_value=False)
-    step = ui.label()
+    with ui.element("div").classes("working") as working:
+        text = ui.label().classes("hint").props("id=progress")
+        bar = ui.linear_progress(0.0, show_value=False).props('aria-label="progress"')
+        ui.button("Cancel", on_click=desk.cancel).props("outline id=cancel")
+    # Spoken once when work begins and once when it ends, not with each tick.
+    status = ui.label().classes("spoken").props("role=status aria-live=polite id=status")
+
+    def tick() -> None:
+        bar.set_value(round(desk.work.shown_share, 3))
+        text.set_text(desk.work.text)
+
+    client = ui.context.client
+    timer = ui.timer(_TICK, tick, active=False)
+    spoken = {"name": ""}
 
     def draw() -> None:
-        busy = bool(desk.busy)
-        identify.set_enabled(desk.call is not None and not busy)
-        compare.set_enabled(desk.call is not None and not busy)
-        cancel.set_visibility(busy)
-        bar.set_visibility(busy)
-        bar.set_value(desk.share)
-        step.set_text(f"{desk.busy} … {desk.step}" if busy else "")
+        name = desk.work.name
+        ready = desk.call is not None and name in ("", "reading")
+        identify.set_enabled(ready)
+        compare.set_enabled(ready)
+        working.set_visibility(bool(name))
+        timer.active = bool(name)
+        tick()
+        if name:
+            status.set_text(desk.work.text)
+        elif spoken["name"]:
+            status.set_text("" if desk.failure or desk.problem else f"{spoken['name']}: done")
+            if spoken["name"] != "reading":
+                client.run_javascript(_KEEP_FOCUS)
+        spoken["name"] = name
 
     draw()
     return draw

@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from nicegui import ui
 
-from jointid.app.charts import estimate_options
+from jointid.app.charts import (
+    friction_options,
+    friction_text,
+    residual_options,
+    residual_text,
+)
 from jointid.app.desk import Desk
-from jointid.estimate.html_tables import html_table
-from jointid.report.answering import verdict_lines
+from jointid.app.look import chart, heading, note, of_page
+from jointid.app.wording import label_of
+from jointid.base.html import Html
+from jointid.report.page.extras import Extras
+from jointid.report.pages import parts_of
+from jointid.report.renderers.html_page import html_parts
 
 if TYPE_CHECKING:
-    from jointid.base.advice import Action
+    from jointid.base.result import Result
     from jointid.estimate.estimate import Estimate
 
-_COLOURS = {"blocking": "text-negative", "warning": "text-warning", "info": ""}
+# Parts of a report's page, by their names; the first one has none. The rest is drawn here, with buttons.
+_OF_ESTIMATE = ("", "parameters")
+_OF_COMPARISON = ("models", "held-out")
 
 
 def result_step(desk: Desk) -> Callable[[], object]:
@@ -25,68 +37,62 @@ def result_step(desk: Desk) -> Callable[[], object]:
 
     @ui.refreshable
     def draw() -> None:
+        if desk.failure:
+            spoken = desk.failure != desk.problem  # that was said
+            note(desk.failure, "blocking", spoken=spoken).props("id=failure")
         estimate = desk.estimate
         if estimate is not None:
-            for line in verdict_lines(estimate.verdict):
-                ui.html(str(line), sanitize=False)
-            ui.html(str(html_table(estimate)), sanitize=False).props("id=estimate")
+            of_page(_parts(estimate, _OF_ESTIMATE), "estimate")
             _findings(desk, estimate)
             _pictures(desk, estimate)
             _exports(desk, estimate)
         if desk.comparison is not None:
-            ui.label("Comparison").classes("text-lg")
-            ui.html(desk.comparison._repr_html_(), sanitize=False).props("id=comparison")
+            heading(3, "Comparison")
+            for sentence in desk.comparison.overview.answer:
+                ui.label(sentence)
+            of_page(_parts(desk.comparison, _OF_COMPARISON), "comparison")
 
     draw()
     return draw.refresh
 
 
+def _parts(result: Result, names: tuple[str, ...]) -> list[Html]:
+    """Some parts of a result's page, under the headings of this page."""
+    parts = parts_of(result, Extras(action=label_of))
+    return html_parts([replace(each, look="open") for each in parts if each.name in names], 3)
+
+
 def _findings(desk: Desk, estimate: Estimate) -> None:
+    heading(3, "Findings", "findings")
     if not estimate.findings:
-        ui.label("No findings.")
+        ui.label("No findings.").classes("hint")
     for finding in estimate.findings:
-        with ui.column().classes("gap-1"):
-            ui.label(f"{finding.code}: {finding.cause}").classes(_COLOURS[finding.severity])
-            with ui.row().classes("items-center"):
-                for action in finding.advice:
-                    if desk.call is not None and desk.call.obey(action) is not None:
-                        ui.button(label_of(action), on_click=partial(desk.obey, action)).props(
-                            "outline dense no-caps"
-                        )
-                    else:
-                        ui.label(f"{action.kind} {action.text}".strip()).classes("text-caption")
-
-
-def label_of(action: Action) -> str:
-    """What a button that does it is called.
-
-    Examples
-    --------
-    >>> from jointid.base.advice import Action
-    >>> label_of(Action("call", {"units": {"position": "deg"}}, function="load"))
-    'units: position = deg'
-    """
-    shown = "; ".join(f"{name}: {_value(value)}" for name, value in action.arguments.items())
-    return f"{shown} ({action.text})" if action.text else shown
-
-
-def _value(value: object) -> str:
-    if isinstance(value, Mapping):
-        return ", ".join(f"{key} = {_value(each)}" for key, each in value.items()) or "none"
-    return "none" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
+        with note(finding.cause, finding.severity):
+            for action in finding.advice:
+                if desk.call is not None and desk.call.obey(action) is not None:
+                    ui.button(label_of(action), on_click=partial(desk.obey, action)).props(
+                        "outline no-caps"
+                    )
+                else:
+                    ui.label(label_of(action)).classes("hint")
 
 
 def _pictures(desk: Desk, estimate: Estimate) -> None:
-    chart = (
-        ui.echart(estimate_options(estimate, desk.brushed))
-        .props("id=windows")
-        .style("height: 320px; width: 100%")
-    )
+    heading(3, "Friction and residuals")
+    with ui.element("div").classes("pictures"):
+        pictures = [
+            (chart(options(estimate, desk.brushed), name, text(estimate), 300), options)
+            for name, options, text in (
+                ("windows", friction_options, friction_text),
+                ("residuals", residual_options, residual_text),
+            )
+        ]
 
     def linked(stretch: tuple[float, float] | None) -> None:
-        chart.options.clear()
-        chart.options.update(estimate_options(estimate, stretch))
-        chart.update()
+        for picture, options in pictures:
+            picture.options.clear()
+            picture.options.update(options(estimate, stretch))
+            picture.update()
 
     desk.on_brush = linked
 
@@ -98,7 +104,8 @@ def _exports(desk: Desk, estimate: Estimate) -> None:
         if desk.call is not None and desk.recording is not None:
             ui.download.content(desk.call.script(desk.recording), "identify.py")
 
-    with ui.row():
+    heading(3, "Take away")
+    with ui.element("div").classes("buttons"):
         for name, text, file in (
             ("Joint (TOML)", lambda: joint_text(estimate.joint), "joint.toml"),
             ("Report (HTML)", lambda: desk.report, "report.html"),

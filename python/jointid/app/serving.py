@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from contextlib import closing
 
+from jointid.app.call import Call
 from jointid.base.errors import InputError
 
 LARGEST = 200_000_000
@@ -17,13 +18,17 @@ _STARTS = 60.0  # [s] within which the server listens, also on a loaded machine
 _POLL = 0.02  # [s]
 
 
-def serve(opened: Callable[[str], object], *, port: int = 0, largest: int = LARGEST) -> None:
+def serve(
+    opened: Callable[[str], object], *, example: Call, port: int = 0, largest: int = LARGEST
+) -> None:
     """Serve the page until Ctrl-C.
 
     Parameters
     ----------
     opened : callable
         Called with the page's address when it can be opened.
+    example : Call
+        What "Try an example" identifies.
     port : int
         0 (default): a free one.
     largest : int
@@ -53,7 +58,7 @@ def serve(opened: Callable[[str], object], *, port: int = 0, largest: int = LARG
     threading.Thread(target=_when_open, args=(port, lambda: opened(address)), daemon=True).start()
 
     def root() -> None:
-        build(largest)
+        build(largest, example)
 
     # The last one that is added is the first one that is asked.
     app.add_middleware(Guard, port=port, token=token, largest=largest + 1_000_000)
@@ -63,6 +68,7 @@ def serve(opened: Callable[[str], object], *, port: int = 0, largest: int = LARG
         port=port,
         title="jointid",
         dark=None,
+        language="en-US",
         reconnect_timeout=_GONE,
         gzip_middleware_factory=None,
         reload=False,

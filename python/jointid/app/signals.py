@@ -1,4 +1,4 @@
-"""Third step: the signals over time, of which stretches can be brushed and left out."""
+"""Third step: the signals over time; a stretch is chosen with the mouse or by numbers, and left out."""
 
 from __future__ import annotations
 
@@ -7,31 +7,34 @@ from typing import Any
 
 from nicegui import ui
 
-from jointid.app.charts import signals_height, signals_options
+from jointid.app.charts import signals_height, signals_options, signals_text
 from jointid.app.desk import Desk
+from jointid.app.look import FIELD, chart, focus, heading
 
 
 def signals_step(desk: Desk) -> Callable[[], object]:
     """Draw the step; returns what draws it anew."""
-    ui.label("3  Signals").classes("text-lg")
+    heading(2, "3  Signals")
 
     @ui.refreshable
     def draw() -> None:
         recording = desk.recording
         if recording is None or desk.call is None:
-            ui.label("They are shown when time and position are known.")
+            ui.label("They are shown when time and position are known.").classes("hint")
             return
         ui.label(
-            "Drag over a part of the recording to see its windows below, or to leave it out."
-        ).classes("text-caption")
-        chart = (
-            ui.echart(signals_options(recording, desk.call.left_out))
-            .props("id=signals")
-            .style(f"height: {signals_height(recording)}px; width: 100%")
+            "Drag over a part of the recording, or fill in its begin and end: its windows stand out below, "
+            "and it can be left out."
+        ).classes("hint")
+        picture = chart(
+            signals_options(recording, desk.call.left_out),
+            "signals",
+            signals_text(recording),
+            signals_height(recording),
         )
 
         def ready() -> None:
-            chart.run_chart_method(
+            picture.run_chart_method(
                 "dispatchAction",
                 {
                     "type": "takeGlobalCursor",
@@ -44,34 +47,46 @@ def signals_step(desk: Desk) -> Callable[[], object]:
             areas = event.args.get("areas") or []
             bounds = areas[0].get("coordRange") if areas else None
             desk.brush(bounds)
-            buttons.refresh()
+            shown()
 
-        chart.on("chart:brushEnd", brushed, ["areas"])
-        chart.on("chart:rendered", ready, [], throttle=1.0, trailing_events=False)
+        picture.on("chart:brushEnd", brushed, ["areas"])
+        picture.on("chart:rendered", ready, [], throttle=1.0, trailing_events=False)
         ui.timer(0.3, ready, once=True)
 
-        @ui.refreshable
-        def buttons() -> None:
-            with ui.row().classes("items-center"):
-                if desk.brushed is not None:
-                    start, stop = desk.brushed
-                    ui.button(f"Leave {start:.2f} to {stop:.2f} s out", on_click=leave_out).props(
-                        "outline id=leave-out"
-                    )
-                if desk.call is not None and desk.call.left_out:
-                    stretches = ", ".join(f"{a:.2f} to {b:.2f} s" for a, b in desk.call.left_out)
-                    ui.label(f"left out: {stretches}").props("id=left-out")
-                    ui.button("Keep all", on_click=keep_all).props("flat id=keep-all")
+        def stated() -> None:
+            if begin.value is not None and end.value is not None:
+                desk.brush((begin.value, end.value))
+                leave.set_enabled(desk.brushed is not None)
+
+        def shown() -> None:
+            """Show the stretch that the mouse has chosen in the fields."""
+            start, stop = desk.brushed or (None, None)
+            begin.set_value(None if start is None else round(start, 3))
+            end.set_value(None if stop is None else round(stop, 3))
+            leave.set_enabled(desk.brushed is not None)
+
+        client = ui.context.client
 
         def leave_out() -> None:
             desk.leave_out()
             draw.refresh()
+            focus(client, "keep-all")
 
         def keep_all() -> None:
             desk.keep_all()
             draw.refresh()
+            focus(client, "stretch-from")
 
-        buttons()
+        with ui.element("div").classes("buttons"):
+            begin = ui.number("from [s]", on_change=stated).props(f"{FIELD} for=stretch-from")
+            end = ui.number("to [s]", on_change=stated).props(f"{FIELD} for=stretch-to")
+            leave = ui.button("Leave this part out", on_click=leave_out)
+            leave.props("outline id=leave-out").set_enabled(False)
+        if desk.call.left_out:
+            stretches = ", ".join(f"{a:.2f} to {b:.2f} s" for a, b in desk.call.left_out)
+            with ui.element("div").classes("buttons"):
+                ui.label(f"left out: {stretches}").props("id=left-out")
+                ui.button("Keep all", on_click=keep_all).props("outline id=keep-all")
 
     draw()
     return draw.refresh

@@ -47,7 +47,7 @@ def identify(report: Report, call: Call) -> tuple[Estimate, str]:
     """The estimate, and its report as a page."""
     from jointid._core import GaOptions, Generation
     from jointid.identification.search.search import Search
-    from jointid.report.html import html_report
+    from jointid.report.saving import report_page
 
     total = GaOptions().generations
 
@@ -59,7 +59,7 @@ def identify(report: Report, call: Call) -> tuple[Estimate, str]:
         search = replace(search, callback=shown)
     recordings = call.recordings()
     estimate = call.run(recordings, search=search)
-    return estimate, html_report(estimate, recordings=recordings)
+    return estimate, report_page(estimate, recordings=recordings)
 
 
 def compare(report: Report, call: Call, models: Sequence[str]) -> Comparison:

@@ -32,7 +32,9 @@ def serve_page(arguments: argparse.Namespace) -> None:
     """Serve the page until Ctrl-C."""
     import webbrowser
 
+    from jointid.app.call import Call
     from jointid.app.serving import serve
+    from jointid.cli.demonstration import COLUMNS, known_joint, log_file
 
     if not 0 <= arguments.port <= _LARGEST_PORT:
         raise InputError(
@@ -50,8 +52,12 @@ def serve_page(arguments: argparse.Namespace) -> None:
         if not arguments.no_browser:
             webbrowser.open(address)
 
+    example = Call(
+        file=log_file(), name=log_file().name, load={"extra": COLUMNS}, joint=known_joint()
+    )
     serve(
         opened,
+        example=example,
         port=arguments.port,
         largest=int(1e6 * arguments.largest),
     )

@@ -63,10 +63,16 @@ def demo() -> Demonstration:
     >>> round(estimate["coulomb"].value), round(kuka.published["coulomb"])
     (366, 355)
     """
-    folder = data_folder()
-    recording = load(folder / "kr300_joint1.csv.gz", extra=COLUMNS)
-    joint = Joint.load(folder / "kr300_joint1.toml")
-    model = joint.model.replace(terms=TERMS)
-    return Demonstration(
-        recording=recording, joint=joint.replace(model=model), published=dict(PUBLISHED)
-    )
+    recording = load(log_file(), extra=COLUMNS)
+    return Demonstration(recording=recording, joint=known_joint(), published=dict(PUBLISHED))
+
+
+def log_file() -> Path:
+    """The demonstration's log."""
+    return data_folder() / "kr300_joint1.csv.gz"
+
+
+def known_joint() -> Joint:
+    """What is known of the demonstration's joint, and its model."""
+    joint = Joint.load(data_folder() / "kr300_joint1.toml")
+    return joint.replace(model=joint.model.replace(terms=TERMS))

@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self, TextIO
 
 from jointid._core import GaOptions, Generation
+from jointid.base.pace import Pace
 
 if TYPE_CHECKING:
     from jointid.comparison.fitter import ComparisonStep
@@ -25,7 +26,7 @@ class _Bar:
         self._stream = stream if stream is not None else sys.stderr
         self._enabled = enabled and self._stream.isatty()
         self._drawn = 0.0
-        self._began = time.monotonic()
+        self._pace = Pace()
 
     def _draw(self, share: float, text: str, resumed: float = 0.0) -> None:
         """Draw, at most ten times a second; `resumed` is the share that was done before."""
@@ -35,8 +36,8 @@ class _Bar:
         from jointid.cli.terminal import columns_of
 
         self._drawn = now
-        if share > resumed:
-            left = (now - self._began) * (1.0 - share) / (share - resumed)
+        left = self._pace.left(share, resumed)
+        if left is not None:
             text = f"about {left:.0f} s left, {text}"
         full = round(_WIDTH * min(1.0, share))
         line = f"{'█' * full}{'·' * (_WIDTH - full)} {text}"

@@ -51,6 +51,8 @@ class FirstLook:
         Signal → number of its column, as headers say or as their words make probable.
     units : mapping of str to str
         Signal → proposed unit, where the header states none.
+    side : mapping of str to str
+        Signal → proposed side of the gear, where its header is the motor's.
     certain : bool
         Whether the headers alone are enough to read the file.
     problem : str
@@ -60,6 +62,7 @@ class FirstLook:
     columns: tuple[LookedColumn, ...]
     signals: Mapping[str, int]
     units: Mapping[str, str] = field(default_factory=dict)
+    side: Mapping[str, str] = field(default_factory=dict)
     certain: bool = True
     problem: str = ""
 
@@ -97,6 +100,7 @@ def first_look(path: Path) -> FirstLook:
         signals={signal: column.index for signal, column in found.items()}
         or _proposed(table, arguments),
         units={str(k): str(v) for k, v in arguments.get("units", {}).items()},
+        side={str(k): str(v) for k, v in arguments.get("side", {}).items()},
         certain=certain,
         problem=problem,
     )
@@ -109,7 +113,7 @@ def _take(error: InputError, arguments: dict[str, dict[str, Any]]) -> bool:
             continue
         new = False
         for name, mapping in action.arguments.items():
-            if isinstance(mapping, Mapping) and name in ("columns", "units", "scale"):
+            if isinstance(mapping, Mapping) and name in ("columns", "units", "scale", "side"):
                 known = arguments.setdefault(name, {})
                 new = new or any(known.get(key, ...) != value for key, value in mapping.items())
                 known.update(mapping)
