@@ -11,11 +11,11 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from browser import browser, missing  # noqa: E402
-from report_pages import of_a_comparison, of_a_joint, of_a_session, page  # noqa: E402
+from report_pages import Shown, of_a_comparison, of_a_joint, of_a_session, page  # noqa: E402
 
 FOLDER = ROOT / "docs" / "pictures"
 # By the file's name: the page, its width and height in pixels, and the ground.
-SHOTS: dict[str, tuple[Callable[[], str], int, int, str]] = {
+SHOTS: dict[str, tuple[Callable[[], Shown], int, int, str]] = {
     "report_of_a_joint.png": (of_a_joint, 800, 1180, "light"),
     "report_of_a_comparison.png": (of_a_comparison, 390, 760, "dark"),
     "report_of_a_session.png": (of_a_session, 800, 1000, "dark"),

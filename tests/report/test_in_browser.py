@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from accessibility import violations
 from browser import REQUIRED, Browser, browser, require
-from report_pages import PAGES, of_a_joint, page
+from report_pages import PAGES, Shown, of_a_joint, page
 from test_palette import LEAST, TEXT, contrast
 
 pytestmark = pytest.mark.slow
@@ -52,7 +53,7 @@ def faults(seen: dict[str, Any], width: int, scheme: str) -> list[str]:
 
 @pytest.mark.parametrize("make", PAGES, ids=lambda each: each.__name__)
 def test_a_page_fits_stands_out_and_asks_for_nothing(
-    shown: Browser, make: Callable[[], str]
+    shown: Browser, make: Callable[[], Shown]
 ) -> None:
     found = []
     for scheme in ("light", "dark"):
@@ -64,6 +65,43 @@ def test_a_page_fits_stands_out_and_asks_for_nothing(
             assert requests == ["page.html"]
             found += [f"{width} {scheme}: {each}" for each in faults(seen, width, scheme)]
     assert found == []
+
+
+_UNFOLD = "document.querySelectorAll('details').forEach(each => { each.open = true })"
+
+
+def broken_rules(shown: Browser, markup: str, width: int, scheme: str) -> list[str]:
+    """What axe-core finds on a page, with all of its parts unfolded."""
+    shown.open(markup, width, scheme)
+    shown.driver.execute_script(_UNFOLD)
+    return [f"{width} {scheme}: {each}" for each in violations(shown.driver)]
+
+
+@pytest.mark.parametrize("make", PAGES, ids=lambda each: each.__name__)
+def test_a_page_breaks_no_rule_of_accessibility(shown: Browser, make: Callable[[], Shown]) -> None:
+    markup = page(make)
+    assert [
+        each
+        for width in (390, 1280)
+        for scheme in ("light", "dark")
+        for each in broken_rules(shown, markup, width, scheme)
+    ] == []
+
+
+@pytest.mark.parametrize(
+    ("defect", "rule"),
+    [
+        (("p.verdict {", "p.verdict b { color: #ccc } p.verdict {"), "color-contrast"),
+        (("</h1>", "</h1><button></button>"), "button-name"),
+        (("<main>", "<div>"), "landmark-one-main"),
+        (("</h1>", "</h1><h5>Deep</h5>"), "heading-order"),
+        (("</main>", "<input></main>"), "label"),
+    ],
+)
+def test_a_broken_rule_would_be_seen(shown: Browser, defect: tuple[str, str], rule: str) -> None:
+    assert defect[0] in page(of_a_joint)
+    found = broken_rules(shown, page(of_a_joint).replace(*defect), 390, "light")
+    assert any(each.startswith(f"390 light: {rule} (") for each in found)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Each result's page begins with its answer; pictures and tables have the result's numbers; nothing is unescaped."""
 
+import html
 import re
 import tomllib
 import xml.etree.ElementTree as ElementTree
@@ -12,7 +13,7 @@ import pytest
 import report_pages
 from designs import designed
 from drawn_pictures import Picture
-from report_pages import HOSTILE, PAGES, page
+from report_pages import HOSTILE, PAGES, Shown, page
 
 import jointid as jid
 from jointid.report.saving import report_page, save_report
@@ -30,13 +31,13 @@ def top(text: str) -> str:
 
 
 @pytest.mark.parametrize("make", PAGES, ids=lambda each: each.__name__)
-def test_every_page_is_whole_and_begins_with_its_answer(make: Callable[[], str]) -> None:
+def test_every_page_is_whole_and_begins_with_its_answer(make: Callable[[], Shown]) -> None:
     text = page(make)
     body = text[text.index("<body>") : text.index("</body>") + 7]
     ElementTree.fromstring(body.replace("<br>", "<br/>"))  # every element is closed
     strips = text.count('class="readout"')
     assert text.count("<title>") == text.count("<svg ") + strips + 1
-    assert re.search(r'</h1>(<ul class="uses">|<p class="verdict|<p>An emulated)', text)
+    assert '<p class="verdict' in top(text)
     assert "<script" not in text
     assert "<img" not in text
     targets = set(re.findall(r'href="#([^"]+)"', text))
@@ -53,7 +54,7 @@ def test_names_are_escaped_and_kept() -> None:
 def test_a_comparison_names_the_winner_and_draws_each_score() -> None:
     found = jid.compare_models(report_pages.good(), jid.thesis_joint(), folds=4)
     text = report_page(found)
-    assert f'<p class="verdict"><b>Use {found.winner}.</b></p>' in top(text)
+    assert f'<p class="verdict usable"><b>Use {found.winner}.</b></p>' in top(text)
     assert found.reason in top(text)
     drawn = pictures(text)[0]
     assert [row.model for row in found.rows] == [
@@ -66,7 +67,7 @@ def test_a_comparison_names_the_winner_and_draws_each_score() -> None:
     others = [100.0 * row.score for row in found.rows if row.model != found.winner]
     strokes = [piece[0, 0] for piece in drawn.points("second", 1)]
     assert axis.value(np.array(strokes)) == pytest.approx(others, abs=0.01)
-    assert "Usable." in text.partition('id="identified"')[2]
+    assert "Usable." in text.partition(f"Identified with {found.winner}")[2]
     left = replace(found, settings={**found.settings, "left_out": {"stribeck": "it cannot be"}})
     assert "<li>stribeck: it cannot be</li>" in report_page(left)
 
@@ -81,7 +82,7 @@ def test_a_study_says_how_often_the_truth_was_found() -> None:
     assert "least often with windows 50, model coulomb_viscous (0 %)" in top(text)
     lines = pictures(text)[0]
     assert {"model stribeck", "model coulomb_viscous", "largest error [%]"} <= set(lines.texts)
-    assert "<td>search</td><td>separable, default</td>" in text
+    assert '<th scope="row">search</th><td>separable, default</td>' in text
 
 
 def test_a_study_without_a_truth_says_what_moves() -> None:
@@ -96,7 +97,7 @@ def test_a_study_without_a_truth_says_what_moves() -> None:
     nothing = replace(study, rows=())
     assert "<b>No trial is done.</b>" in top(report_page(nothing))
     rows = pictures(page(report_pages.of_a_study_of_rows))[0]
-    assert "penalty" in rows.texts
+    assert any(each.startswith("penalty") for each in rows.texts)
     assert "1 trial is refused" in page(report_pages.of_a_study_of_rows)
 
 
@@ -104,8 +105,8 @@ def test_a_study_in_a_notebook_says_what_it_is_and_what_was_refused() -> None:
     study = report_pages.study()
     first = replace(study.rows[0], status="refused", message="it <cannot> be", values={})
     shown = replace(study, rows=(first, *study.rows[1:]))._repr_html_()
-    assert "<b>jointid study over windows, model: 8 cells, 24 trials</b>" in shown
-    assert "<p>windows 50, model stribeck: 1 refused: it &lt;cannot&gt; be</p>" in shown
+    assert "study over windows, model: 8 cells, 24 trials" in shown
+    assert "it &lt;cannot&gt; be" in shown
 
 
 def test_a_design_says_how_well_it_will_identify() -> None:
@@ -149,8 +150,8 @@ def test_a_robot_has_a_verdict_and_a_comparison_a_winner() -> None:
 
 def test_several_joints_begin_with_their_verdicts() -> None:
     text = page(report_pages.of_several_joints)
-    assert text.index("for compensation: usable with care") < text.index("<table")
-    assert '<li><a href="#joint-1">Joint 1</a>: ' in top(text)
+    assert "usable with care" in top(text)
+    assert top(text).index("usable with care") < text.index("<table")
 
 
 def test_a_page_is_written_whole(tmp_path: Path) -> None:
@@ -165,7 +166,7 @@ def test_a_page_is_written_whole(tmp_path: Path) -> None:
 def test_a_page_is_no_pdf(tmp_path: Path) -> None:
     design = designed()
     with pytest.raises(
-        jid.InputError, match=r"path is .*page\.pdf.: a report is an HTML page \(\.html\)"
+        jid.InputError, match=r"page\.pdf: a file name that ends in \.html, .* is expected"
     ):
         save_report(design, tmp_path / "page.pdf")
     assert not list(tmp_path.iterdir())
@@ -176,5 +177,6 @@ def test_names_of_own_terms_are_keys_of_toml() -> None:
     named = dict(estimate.parameters)
     named["term[a b]"] = replace(named["coulomb"], name="term[a b]")
     text = report_page(replace(estimate, parameters=named, findings=()))
-    copied = tomllib.loads(text.partition("<pre>")[2].partition("</pre>")[0].replace("&quot;", '"'))
+    code = re.findall("<pre[^>]*>(.*?)</pre>", text, re.DOTALL)[0]
+    copied = tomllib.loads(html.unescape(code))
     assert copied["parameters"]["term[a b]"]["value"] == named["coulomb"].value

@@ -11,9 +11,9 @@ import report_pages
 from drawn_pictures import Picture, corners
 
 import jointid as jid
-from jointid.report.recorded_signals import left_out
+from jointid.panels.recorded import left_out
 from jointid.report.saving import report_page, save_report
-from jointid.report.values_to_copy import program
+from jointid.report.sections.values_to_copy import program
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +52,7 @@ def test_each_signal_of_each_recording_is_drawn_as_recorded(
     pieces: list[jid.Recording], estimate: jid.Estimate
 ) -> None:
     page = report_page(estimate, recordings=pieces)
-    section = page.partition('id="signals"')[2].partition("<h2")[0]
+    section = page.partition('id="signals"')[2].partition("</details>")[0]
     drawn = [
         Picture(f"<svg {each.partition('</svg>')[0]}</svg>") for each in section.split("<svg ")[1:]
     ]
@@ -99,7 +99,7 @@ def test_the_copied_program_finds_the_same_values(
         ),
     ):
         page = report_page(found)
-        program = re.findall("<pre>(.*?)</pre>", page, re.DOTALL)[-1]
+        program = re.findall("<pre[^>]*>(.*?)</pre>", page, re.DOTALL)[-1]
         program = program.replace("&#x27;", "'").replace("&lt;", "<")
         scope: dict[str, object] = dict(names)
         exec(program, scope)
@@ -120,7 +120,7 @@ def test_no_name_becomes_a_line_of_the_program() -> None:
 
 def test_values_are_a_table_for_spreadsheets(estimate: jid.Estimate) -> None:
     page = report_page(estimate)
-    table = re.findall("<pre>(.*?)</pre>", page, re.DOTALL)[-2].splitlines()
+    table = re.findall("<pre[^>]*>(.*?)</pre>", page, re.DOTALL)[-2].splitlines()
     assert table[0] == "name,value,stderr,lower,upper,unit"
     rows = {line.split(",")[0]: line.split(",")[1:] for line in table[1:]}
     assert set(rows) == set(estimate.parameters)

@@ -13,9 +13,9 @@ from jointid.cli import main
 from jointid.cli.session import STOPPED
 from jointid.commissioning import Commissioning, commission
 from jointid.hardware.bench.bench import Bench
-from jointid.report.limit_margins import margin_rows
-from jointid.report.saving import save_report
-from jointid.report.session_page import next_step, session_report
+from jointid.report.saving import report_page, save_report
+from jointid.report.sections.limit_margins import margin_rows
+from jointid.report.sections.outcome import next_step
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 BENCH = EXAMPLE.read_text(encoding="utf-8")
@@ -35,7 +35,7 @@ def _svg(page: str) -> list[str]:
 
 
 def test_the_errors_of_the_runs_are_drawn(ring: Commissioning) -> None:
-    page = session_report(ring)
+    page = report_page(ring)
     tracking = pictures(page)[0]
     first, last = ring.runs
     for number, run in enumerate((first, last)):
@@ -67,10 +67,10 @@ def _ticks(picture: Picture) -> int:
 
 
 def test_the_page_says_what_a_session_is_asked(ring: Commissioning) -> None:
-    page = session_report(ring)
+    page = report_page(ring)
     assert "An emulated joint on an emulated drive: no hardware moved." in page
     assert f"The tracking error fell by a factor of {ring.improvement:.1f}" in page
-    for name in ("tracking", "limits", "timing", "drive", "identified", "friction-map"):
+    for name in ("tracking", "limits", "timing", "drive", "identified", "of-cycle-1-friction-map"):
         assert f'id="{name}"' in page
     assert "No run was stopped by a limit." in page
     assert "The drive confirmed that the motor is off." in page
@@ -94,24 +94,24 @@ def test_margins_are_shares_of_the_limits(ring: Commissioning) -> None:
 
 def test_the_next_step_follows_from_the_outcome(ring: Commissioning) -> None:
     (found,) = ring.estimates[-1].warnings
-    assert next_step(ring, lambda action: f"<{action.kind}>") == [
+    assert next_step(ring, lambda action: f"<{action.kind}>") == (
         f"Next: <{found.advice[0].kind}> (finding {found.code})."
-    ]
-    assert f"Next: {found.advice[0]}" in session_report(ring)
+    )
+    assert f"Next: {found.advice[0]}" in report_page(ring)
     plain = replace(ring.estimates[-1], findings=())
-    (said,) = next_step(replace(ring, estimates=(plain,)))
+    said = next_step(replace(ring, estimates=(plain,)))
     assert said == "Next: save these values to the joint file; no finding warns of them."
     worse = replace(ring, runs=ring.runs[::-1])
-    assert "do not use these values" in next_step(worse)[0]
+    assert "do not use these values" in next_step(worse)
     only = replace(ring, runs=ring.runs[:1], estimates=())
-    assert "identify the joint" in next_step(only)[0]
-    assert 'id="timing"' in session_report(only)
-    assert 'id="identified"' not in session_report(only)
+    assert "identify the joint" in next_step(only)
+    assert 'id="timing"' in report_page(only)
+    assert 'id="identified"' not in report_page(only)
 
 
 def test_it_is_written_whole(ring: Commissioning, tmp_path: Path) -> None:
     path = save_report(ring, tmp_path / "session.html")
-    assert path.read_text(encoding="utf-8") == session_report(ring)
+    assert path.read_text(encoding="utf-8") == report_page(ring)
 
 
 def test_a_stopped_session_has_a_page_that_says_why(
@@ -131,5 +131,8 @@ def test_a_stopped_session_has_a_page_that_says_why(
     assert "Next: find out why the limit was reached" in top
     assert "The drive confirmed that the motor is off." in page
     limits = page.partition('id="limits"')[2].partition("</table>")[0]
-    assert "<th>tracking error</th><td>0.002006 rad</td><td>0.002 rad</td><td>100 %</td>" in limits
+    assert (
+        '<th scope="row">tracking error</th><td>0.002006 rad</td><td>0.002 rad</td><td>100 %</td>'
+        in limits
+    )
     assert 'id="timing"' in page

@@ -11,10 +11,12 @@ import re
 _TAGS = frozenset(
     (
         *("html", "head", "meta", "title", "style", "body", "section", "footer", "div", "span"),
+        *("main", "details", "summary"),
         *(
             "h1",
             "h2",
             "h3",
+            "h4",
             "p",
             "br",
             "b",
@@ -35,7 +37,7 @@ _EMPTY = frozenset(("br", "img", "meta"))
 _ATTRIBUTES = frozenset(
     (
         *("alt", "charset", "class", "colspan", "content", "href", "id", "lang", "name", "src"),
-        *("d", "role", "viewBox", "x", "y"),
+        *("d", "role", "viewBox", "x", "y", "scope", "tabindex", "aria-label", "aria-hidden"),
     )
 )
 # A page of ours needs no other file: pictures are inside, links stay on the page.
@@ -73,8 +75,8 @@ def element(tag: str, *children: Html | str, **attributes: str) -> Html:
     *children : Html or str
         What stands inside; texts are escaped.
     **attributes : str
-        Values are escaped; an underscore at the end of a name is dropped (`class_`). `src` takes a
-        picture as data, `href` a place on the same page.
+        Values are escaped; an underscore at the end of a name is dropped (`class_`), another one is a hyphen. `src`
+        takes a picture as data, `href` a place on the same page.
 
     Returns
     -------
@@ -89,7 +91,7 @@ def element(tag: str, *children: Html | str, **attributes: str) -> Html:
         raise ValueError(f"no element '{tag}' in a report")
     opened = tag
     for key, value in attributes.items():
-        name = key.removesuffix("_")
+        name = key.removesuffix("_").replace("_", "-")
         if name not in _ATTRIBUTES or (name in _SAFE and not _SAFE[name].fullmatch(value)):
             raise ValueError(f"no attribute {name}='{value[:40]}' in a report")
         opened += f' {name}="{_escaped(value)}"'

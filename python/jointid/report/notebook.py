@@ -1,24 +1,17 @@
-"""The friction map for a notebook: a picture with its own style, which no style of the notebook touches."""
+"""What a notebook shows of a result: the first parts of its page, in a style of its own."""
 
 from __future__ import annotations
 
-import base64
-import re
+from jointid.base.html import element
+from jointid.base.result import Result
+from jointid.report.page.content import Part
+from jointid.report.pages import first_parts
+from jointid.report.renderers.html_page import html_parts
+from jointid.report.renderers.style import NOTEBOOK
 
-from jointid.estimate.estimate import Estimate
-from jointid.report.drawing.palette import STYLE
-from jointid.report.estimate_pictures import friction_picture
 
-
-def friction_image(estimate: Estimate) -> str:
-    """Return the friction map as an image of HTML."""
-    picture = str(friction_picture(estimate))
-    svg = re.search(r"<svg.*</svg>", picture, re.DOTALL)
-    assert svg is not None
-    text = svg[0].replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"', 1)
-    text = text.replace(">", f"><style>{STYLE}</style>", 1)
-    data = base64.b64encode(text.encode()).decode()
-    return (
-        '<img alt="friction map" style="max-width: 46rem; width: 100%" '
-        f'src="data:image/svg+xml;base64,{data}">'
-    )
+def notebook_view(result: Result) -> str:
+    """Return the answer, the values, the main picture and the findings, as HTML."""
+    title, parts = first_parts(result)
+    shown = [Part(title, ()), *(part for part in parts if part.look != "folded")]
+    return str(element("div", element("style", NOTEBOOK), *html_parts(shown, 3), class_="jointid"))

@@ -5,65 +5,39 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_page
-from jointid.base.errors import InputError
+from jointid.base.argument_checks import require_path
+from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
 from jointid.problem.recordings import listed
+from jointid.report.page.extras import Extras
+from jointid.report.pages import page_of
+from jointid.report.renderers import RENDERERS
 
 if TYPE_CHECKING:
-    from jointid.commissioning.result import Commissioning
-    from jointid.comparison.result import Comparison
-    from jointid.excitation.design import Design
-    from jointid.estimate.estimate import Estimate
-    from jointid.joints.result import JointEstimates
+    from jointid.base.result import Result
     from jointid.recording.recording import Recording
-    from jointid.robot.result.comparison_result import RobotComparison
-    from jointid.robot.result.result import RobotEstimate
-    from jointid.servo.estimate import ServoEstimate
-    from jointid.study.study_result import Study
-
-    Result: TypeAlias = (
-        Estimate
-        | JointEstimates
-        | RobotEstimate
-        | RobotComparison
-        | ServoEstimate
-        | Comparison
-        | Study
-        | Design
-        | Commissioning
-    )
-
-# By name, so that only the page that is asked for is imported.
-_PAGES = {
-    "Estimate": "html:html_report",
-    "JointEstimates": "joints_page:joints_report",
-    "RobotEstimate": "robot_page:robot_report",
-    "RobotComparison": "robot_page:robot_comparison_report",
-    "Comparison": "comparison_page:comparison_report",
-    "ServoEstimate": "servo_page:servo_report",
-    "Commissioning": "session_page:session_report",
-}
-_WITHOUT_FINDINGS = {"Study": "study_page:study_report", "Design": "design_page:design_report"}
+    from jointid.servo.rolling_out import Rollout
 
 
 def report_page(
     result: Result,
     action: Callable[[Action], str] = str,
     recordings: Recording | Sequence[Recording] | None = None,
+    rollout: Rollout | None = None,
+    ending: str = ".html",
 ) -> str:
-    """Return the report of a result as one HTML page that needs no other file.
+    """Return the report of a result as one page that needs no other file.
 
     Parameters
     ----------
-    result : Estimate, JointEstimates, RobotEstimate, ServoEstimate, Comparison, RobotComparison, Study, Design, ...
-    action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
-    recordings : Recording or sequence of Recording, optional
+    result : Result
+    action, recordings, rollout
         See `save_report`.
+    ending : {".html", ".md", ".txt"}
+        The format. Default HTML.
 
     Returns
     -------
@@ -72,27 +46,11 @@ def report_page(
     Raises
     ------
     InputError
-        Anything else, of which there is no report; recordings that the result was not made from.
+        No result; recordings that the result was not made from.
     """
-    kind: Any = type(result)
-    pages = {**_PAGES, **_WITHOUT_FINDINGS}
-    if kind.__name__ not in pages or not kind.__module__.startswith("jointid."):
-        raise InputError(
-            f"this has no report; reports are made of {', '.join(pages)}",
-            argument="result",
-            value=kind.__name__,
-        )
-    module, _, function = pages[kind.__name__].partition(":")
-    maker = getattr(import_module(f"jointid.report.{module}"), function)
-    if recordings is not None:
-        if kind.__name__ != "Estimate":
-            raise InputError(
-                "only the report of one joint's estimate shows its recordings",
-                argument="recordings",
-            )
-        return str(maker(result, action, listed(recordings)))
-    made: str = maker(result) if kind.__name__ in _WITHOUT_FINDINGS else maker(result, action)
-    return made
+    extras = Extras(action, () if recordings is None else tuple(listed(recordings)), rollout)
+    renderer = import_module(f"jointid.report.renderers.{RENDERERS[ending]}")
+    return str(renderer.render(page_of(result, extras)))
 
 
 def save_report(
@@ -100,23 +58,25 @@ def save_report(
     path: str | Path,
     action: Callable[[Action], str] = str,
     recordings: Recording | Sequence[Recording] | None = None,
+    rollout: Rollout | None = None,
 ) -> Path:
-    """Write the report of a result as one HTML page that needs no other file, whole or not at all.
+    """Write the report of a result as one page that needs no other file, whole or not at all.
 
     The page begins with the verdict or the answer; pictures are inside; a phone shows it, and a dark screen.
 
     Parameters
     ----------
-    result : Estimate, JointEstimates, RobotEstimate, ServoEstimate, Comparison, RobotComparison, Study, Design, ...
-        What `identify`, `identify_joints`, `identify_robot`, `identify_servo`, `compare_models`,
-        `compare_robot_models`, `sweep`, `design_excitation` and `commission` return.
+    result : Result
+        Of any kind: what `identify`, `compare`, `design`, `simulate`, `sweep` and `commission` return.
     path : path
-        Ends in .html; replaced when it exists.
+        Ends in .html; or in .md or .txt, whose pictures are their captions. Replaced when it exists.
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
     recordings : Recording or sequence of Recording, optional
         That an `Estimate` was made from, in this order: the page then shows their signals, with what was left out
         shaded, and the residual over the position. Default: a page without these.
+    rollout : Rollout, optional
+        Of a servo's runs: the page then shows each run as logged and as simulated. Default: a page without these.
 
     Returns
     -------
@@ -125,8 +85,8 @@ def save_report(
     Raises
     ------
     InputError
-        Of this there is no report; the estimate was made from other recordings; the path is no name of a page, or its
-        folder does not exist.
+        No result; the estimate was made from other recordings; the path does not end as above, or its folder does not
+        exist.
     OSError
         The file cannot be written; an existing one is untouched.
 
@@ -135,6 +95,7 @@ def save_report(
     >>> jid.save_report(jid.identify(recording, joint), "report.html", recordings=recording).name
     'report.html'
     """
-    target = require_page("path", path)
-    write_whole(target, report_page(result, action, recordings).encode())
+    target = require_path("path", path)
+    ending = ".html" if target.is_dir() else ending_of(target, tuple(RENDERERS))
+    write_whole(target, report_page(result, action, recordings, rollout, ending).encode())
     return target

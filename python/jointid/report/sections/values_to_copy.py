@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, cast
 
 from jointid._core import GaOptions
-from jointid.base.html import Html, element
 from jointid.base.options import options_of
+from jointid.base.result import Result
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_of
 from jointid.problem.settings import ProblemOptions
+from jointid.report.page.content import Code, Part, paragraph
+from jointid.report.page.extras import Extras
 
 
-def values_sections(estimate: Estimate) -> list[Html]:
-    """The blocks with their headings."""
-    return [
-        element("h2", "Values to copy", id="values"),
-        element("p", "As a joint file has them, with all digits:"),
-        element("pre", joint_file_lines(estimate)),
-        element("p", "As a table, for spreadsheets:"),
-        element("pre", table_lines(estimate)),
-        element("p", "The same values again, with what was chosen by itself:"),
-        element("pre", program(estimate)),
-    ]
+def content(result: Result, extras: Extras) -> list[Part]:
+    """The blocks, folded."""
+    estimate = cast("Estimate", result)
+    blocks = (
+        paragraph("As a joint file has them, with all digits:"),
+        Code(joint_file_lines(estimate)),
+        paragraph("As a table, for spreadsheets:"),
+        Code(table_lines(estimate)),
+        paragraph("The call that finds the same values again, with the settings that it chose:"),
+        Code(program(estimate)),
+    )
+    return [Part("Values to copy", blocks, f"{extras.prefix}values", "folded")]
 
 
 def joint_file_lines(estimate: Estimate) -> str:

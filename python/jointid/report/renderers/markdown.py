@@ -1,0 +1,95 @@
+"""A page as Markdown, for a notebook's cell, an issue or a wiki; pictures are their captions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+from jointid.report.page.content import (
+    Answer,
+    Block,
+    Bold,
+    Code,
+    Figure,
+    Items,
+    Link,
+    Multiples,
+    Page,
+    Paragraph,
+    Part,
+    Run,
+    Table,
+)
+
+_SYNTAX = re.compile(r"([\\`*_\[\]<>|#])")
+
+
+def render(shown: Page) -> str:
+    """Return a page as Markdown."""
+    lines = [f"# {_plain(shown.title)}", "", *_parts(shown.parts, 2)]
+    if shown.footer:
+        lines += [_plain(shown.footer), ""]
+    return "\n".join(lines)
+
+
+def _parts(parts: Sequence[Part], level: int) -> list[str]:
+    lines: list[str] = []
+    for part in parts:
+        if part.heading:
+            lines += [f"{'#' * level} {_plain(part.heading)}", ""]
+        for block in part.blocks:
+            lines += [*_block(block), ""]
+        lines += _parts(part.inner, min(level + 1, 4))
+    return lines
+
+
+def _block(block: Block) -> list[str]:
+    match block:
+        case Answer(sentence):
+            return [f"**{_plain(sentence)}**"]
+        case Paragraph(runs):
+            return [_runs(runs)]
+        case Items(lines):
+            return [
+                line
+                for item in lines
+                for line in (
+                    f"- {_runs(item.runs)}",
+                    *(f"  <br>{_runs(runs)}" for runs in item.below),
+                )
+            ]
+        case Table():
+            return _table(block)
+        case Figure(picture):
+            return [f"*{_plain(picture.caption)}*"]
+        case Code(text):
+            return ["```", text, "```"]
+        case Multiples(pictures):
+            return [f"*{_plain(picture.title)}: {_plain(picture.caption)}*" for picture in pictures]
+
+
+def _table(table: Table) -> list[str]:
+    width = max((len(row) for row in (*table.rows, table.head)), default=0)
+    head = table.head or ("",) * width
+    rule = ["---:" if table.numbers and column else "---" for column in range(width)]
+    rows = [[_run(cell) for cell in row] for row in table.rows]
+    return [_line(map(_plain, head)), _line(rule), *map(_line, rows)]
+
+
+def _line(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _runs(runs: Iterable[Run]) -> str:
+    return "".join(map(_run, runs))
+
+
+def _run(run: Run) -> str:
+    if isinstance(run, Bold):
+        return f"**{_plain(run.text)}**"
+    return _plain(run.text if isinstance(run, Link) else run)
+
+
+def _plain(text: str) -> str:
+    """A text on one line in which nothing is Markdown's."""
+    return _SYNTAX.sub(r"\\\1", " ".join(text.split()))

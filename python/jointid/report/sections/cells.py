@@ -1,0 +1,32 @@
+"""A study: what its trials found, as pictures, and each cell in a row."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from jointid.base.result import Result
+from jointid.panels.study import study_pictures
+from jointid.report.page.content import Figure, Part, Table, paragraph
+from jointid.report.page.extras import Extras
+from jointid.study.study_result import Study
+from jointid.study.summary import Summary, summary_texts
+
+
+def content(result: Result, extras: Extras) -> list[Part]:
+    """The pictures, then the table."""
+    study = cast("Study", result)
+    summary = study.summary()
+    head, rows = summary_texts(summary)
+    figures = tuple(map(Figure, study_pictures(study)))
+    table = Table(tuple(map(tuple, rows)), tuple(head))
+    return [
+        Part("", figures),
+        Part("Each cell", (table, paragraph(_meaning(summary))), f"{extras.prefix}cells"),
+    ]
+
+
+def _meaning(summary: Summary) -> str:
+    """What the table's numbers are."""
+    if any(cell.bias for cell in summary.cells):
+        return "Parameters: mean error ± standard deviation over the trials [% of the truth]."
+    return "Parameters: mean ± standard deviation over the trials."

@@ -1,0 +1,32 @@
+"""The joints of a robot: one row each, value and error in one cell."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from jointid.base.result import Result, kind_of
+from jointid.joints import tables as joints_tables
+from jointid.joints.result import JointEstimates
+from jointid.report.page.content import Link, Part, Run, Table
+from jointid.report.page.extras import Extras
+from jointid.report.sections.inner import slug
+from jointid.robot.result import tables as robot_tables
+from jointid.robot.result.result import RobotEstimate
+
+
+def content(result: Result, extras: Extras) -> list[Part]:
+    """The table."""
+    if kind_of(result) == "robot":
+        robot = cast("RobotEstimate", result)
+        head, rows = robot_tables.head(robot), robot_tables.rows(robot)
+    else:
+        joints = cast("JointEstimates", result)
+        head, rows = joints_tables.head(joints), joints_tables.rows(joints)
+    links = extras.overview.inner
+    prefix = extras.prefix
+    cells: tuple[tuple[Run, ...], ...] = tuple(
+        (Link(name, f"{prefix}{slug(name)}") if name in links else name, *others)
+        for name, *others in rows
+    )
+    table = Table(cells, tuple(head))
+    return [Part("Joints", (table,), f"{extras.prefix}joints")]

@@ -1,0 +1,64 @@
+"""Folded: intervals, systematic parts, what other windows change, and which values resemble each other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from jointid.base.result import Result, kind_of
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.tables import shown_name
+from jointid.estimate.wording import two_digits
+from jointid.report.page.content import Block, Part, Run, Table, paragraph
+from jointid.report.page.extras import Extras
+
+if TYPE_CHECKING:
+    from jointid.servo.estimate import ServoEstimate
+
+
+def content(result: Result, extras: Extras) -> list[Part]:
+    """The tables."""
+    parameters = cast("Estimate | ServoEstimate", result).parameters
+    blocks: list[Block] = [
+        _intervals([p for p in parameters.values() if p.vary]),
+        paragraph(
+            "Halved, doubled: change of each value with windows of half and twice the length; about one standard "
+            "error is usual.",
+            muted=True,
+        ),
+    ]
+    if kind_of(result) == "estimate":
+        blocks += [
+            _correlation(cast("Estimate", result)),
+            paragraph(
+                "Correlation of the estimates, offsets at the mean reading. Near ±1, two parameters look the same in "
+                "the data.",
+                muted=True,
+            ),
+        ]
+    return [Part("Uncertainty", tuple(blocks), f"{extras.prefix}uncertainty", "folded")]
+
+
+def _intervals(parameters: list[ParameterEstimate]) -> Table:
+    rows: list[tuple[Run, ...]] = []
+    for p in parameters:
+        interval = "–" if p.interval is None else f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
+        parts = (
+            f"{two_digits(size)} {name.replace('_', ' ')}" for name, size in p.systematic.items()
+        )
+        shifts = ("–" if s is None else f"{s:+.3g}" for s in (p.shift_halved, p.shift_doubled))
+        texts = (interval, ", ".join(parts) or "–", *shifts, p.unit, p.meaning)
+        rows.append((shown_name(p.name), *texts))
+    head = (
+        *("parameter", "95 % interval", "systematic parts", "halved", "doubled"),
+        *("unit", "meaning"),
+    )
+    return Table(tuple(rows), head)
+
+
+def _correlation(estimate: Estimate) -> Table:
+    rows = tuple(
+        (shown_name(name), *(f"{x:.2f}" for x in row))
+        for name, row in zip(estimate.free, estimate.correlation, strict=True)
+    )
+    return Table(rows, ("correlation", *map(shown_name, estimate.free)), numbers=True)

@@ -1,0 +1,47 @@
+"""The values of a result: value, error and unit in one cell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from jointid.base.result import Result
+from jointid.report.page.content import Block, Part, Run, Table, paragraph
+from jointid.report.page.extras import Extras
+from jointid.report.page.wording import value_cell
+
+
+def content(_result: Result, extras: Extras) -> list[Part]:
+    """The table of the values; columns that no value fills are left out."""
+    quantities = extras.overview.parameters
+    if not quantities:
+        return []
+    columns = {
+        "value ± std. error": [value_cell(each) for each in quantities],
+        "± systematic": [each.systematic for each in quantities],
+        "remark": [each.remark for each in quantities],
+    }
+    shown = {name: cells for name, cells in columns.items() if any(cells)}
+    rows: list[tuple[Run, ...]] = [
+        (each.name, *cells) for each, *cells in zip(quantities, *shown.values(), strict=True)
+    ]
+    return [
+        Part(
+            "Parameters",
+            (Table(tuple(rows), ("parameter", *shown)), *_note(shown)),
+            name=f"{extras.prefix}parameters",
+            look="half",
+        )
+    ]
+
+
+def _note(shown: Mapping[str, list[str]]) -> list[Block]:
+    """What the two errors cover, where both are shown."""
+    if "± systematic" not in shown:
+        return []
+    return [
+        paragraph(
+            "± std. error covers random noise. ± systematic covers what more data does not reduce, with its main "
+            "source.",
+            muted=True,
+        )
+    ]
