@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from jointid import _core
-from jointid.base.json_layout import json_text
+from jointid.base.json_layout import json_text, json_types
 
 _EDGES = [
     0.0,
@@ -67,3 +67,22 @@ def test_what_is_not_finite_is_refused(value: float) -> None:
     assert _core.number_list([1.0, value]) is None
     with pytest.raises(ValueError, match="not JSON compliant"):
         json_text([1.0, value])
+
+
+def test_whatever_a_result_holds_becomes_a_type_of_json() -> None:
+    held = {
+        "tuple": (1, (2.5, math.inf)),
+        "array": np.array([[1.0, -math.inf], [math.nan, 0.5]]),
+        "number": np.float64(0.25),
+        "flag": np.bool_(True),
+        7: None,
+    }
+    plain = json_types(held)
+    assert plain == {
+        "tuple": [1, [2.5, "inf"]],
+        "array": [[1.0, "-inf"], ["nan", 0.5]],
+        "number": 0.25,
+        "flag": True,
+        "7": None,
+    }
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain

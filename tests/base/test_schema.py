@@ -16,6 +16,8 @@ from jointid.base.schema import (
     Record,
     TableOf,
     Text,
+    Unchecked,
+    read_document,
     read_json,
     read_text,
 )
@@ -124,3 +126,28 @@ def test_a_device_without_a_size_is_not_read_without_limit(monkeypatch: pytest.M
     monkeypatch.setattr("jointid.base.schema.LARGEST", 10)
     with pytest.raises(InputError, match="too large: 10 bytes are allowed"):
         read_text(Path("/dev/zero"))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[]", "this JSON is not a list of shoes: its field 'kind' is not 'shoes'"),
+        ('{"kind": "hats", "schema": 1}', "is not a list of shoes"),
+        ('{"kind": "shoes"}', "schema"),
+        ('{"kind": "shoes", "schema": 0}', "schema: this is 0"),
+        (
+            '{"kind": "shoes", "schema": 3}',
+            "schema: this is 3: this jointid reads schemas up to 2; update",
+        ),
+    ],
+)
+def test_a_document_of_another_kind_or_a_newer_schema_is_refused(text: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        read_document(text, "shoes", 2, "a list of shoes")
+
+
+def test_a_document_of_the_kind_is_returned_unchecked() -> None:
+    text = '{"kind": "shoes", "schema": 1, "left": [1, "a"]}'
+    document = read_document(text, "shoes", 2, "a list of shoes")
+    kept = Record({"left": Unchecked()}, other=Plain()).read(document, "")
+    assert kept == {"kind": "shoes", "schema": 1, "left": [1, "a"]}

@@ -67,6 +67,7 @@ _counted: dict[str, int] = {}
 
 # Which scenario shows a module that writes files.
 _SHOWN = {
+    "base.result": "robot",
     "cli.commands": "command demo",
     "cli.designs": "command design drawn",
     "cli.new_joint": "command new",
@@ -74,20 +75,17 @@ _SHOWN = {
     "cli.session": "command run",
     "cli.study": "command sweep drawn",
     "commissioning.ring": "command run",
-    "design.design_document": "design",
     "estimate.estimate": "estimate",
+    "excitation.design": "design",
     "exports.exporting": "model",
     "hardware.proof.certificate": "certificate",
     "hardware.session.recorder": "run",
     "identification.search.run": "command long identify",
     "joint.joint_file": "joint",
-    "joints.document": "joints",
     "recording.saving": "recording",
     "recording.wide.robot_saving": "robot recording",
     "report.saving": "report",
-    "report.servo_page": "servo report",
-    "robot.result.document": "robot",
-    "servo.document": "servo",
+    "servo.estimate": "servo",
     "study.study_file": "sweep",
     "study.tables": "study table",
 }

@@ -17,7 +17,7 @@ from jointid.cli.progress import ComparisonProgress
 from jointid.comparison.comparison import judge
 from jointid.comparison.fitter import ComparisonStep
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
-from jointid.comparison.result import ComparedModel
+from jointid.comparison.row import ComparedModel
 from jointid.estimate.causes import Causes
 from jointid.identification import identification
 from jointid.identification.causes import causes
@@ -325,7 +325,7 @@ def test_report_json_and_html(comparison: jid.Comparison) -> None:
     assert estimate.parameters["static"].value == comparison.estimate.parameters["static"].value
     page = comparison._repr_html_()
     assert page.count("<tr>") == 3
-    assert "<th>stribeck</th>" in page
+    assert "<b>Use stribeck.</b>" in page
     assert "winner stribeck" in repr(comparison)
 
 
@@ -472,4 +472,4 @@ def test_a_comparison_of_useless_values_says_so(well_excited: jid.Recording) -> 
         assert f"not usable ({found.code}): {found.cause}" in lines
     first = f"Use none: {blocking[0].cause}."
     assert first in html.unescape(report_page(comparison)).partition("<h2")[0]
-    assert "not usable (implausible_units)" in comparison._repr_html_()
+    assert '<p class="verdict not-usable"><b>Use none: ' in comparison._repr_html_()

@@ -13,7 +13,7 @@ import jointid as jid
 from jointid.cli.demonstration import data_folder
 from jointid.estimate.derived import DerivedValue
 from jointid.estimate.wording import number, rounded
-from jointid.report.html import html_report
+from jointid.report.saving import report_page
 
 
 @pytest.fixture(scope="module")
@@ -132,14 +132,14 @@ def test_a_parameter_at_a_bound_leaves_no_error(estimate: jid.Estimate) -> None:
 def test_every_table_shows_them(estimate: jid.Estimate) -> None:
     found = estimate.derived
     shown = {"breakaway": "= coulomb + static", "Stribeck velocity": "= 1/√stribeck"}
-    for text in (estimate.report(verbose=True), estimate._repr_html_(), html_report(estimate)):
+    for text in (estimate.report(verbose=True), estimate._repr_html_(), report_page(estimate)):
         assert "static (above Coulomb)" in text
         for name, formula in shown.items():
             assert name in text
             assert formula in text
         value, stderr = found["breakaway"].value, found["breakaway"].stderr
         assert stderr is not None
-        assert f"<td>{rounded(value, stderr)}</td>" in text or number(value) in text
+        assert f"<td>{rounded(value, stderr)} ± " in text or number(value) in text
     saved = json.loads(estimate.to_json())["derived"]["breakaway"]
     assert saved["value"] == found["breakaway"].value
     assert saved["stderr"] == found["breakaway"].stderr

@@ -17,7 +17,8 @@ from jointid.base import html
 from jointid.base.advice import Action
 from jointid.cli.demonstration import data_folder
 from jointid.estimate.findings import Finding
-from jointid.report import html as report
+from jointid.report.renderers import html_page
+from jointid.report.saving import report_page
 
 FOLDER = Path(__file__).parent
 SAVED = FOLDER / "estimate_schema_1.json"
@@ -104,13 +105,13 @@ def read(text: str) -> jid.Estimate | None:
 
 def pages(estimate: jid.Estimate) -> list[str]:
     estimate.report(verbose=True)
-    return [report.html_report(estimate), estimate._repr_html_()]
+    return [report_page(estimate), estimate._repr_html_()]
 
 
 @pytest.fixture
 def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pictures have tests of their own below, and take most of the time."""
-    monkeypatch.setattr(report, "picture_sections", lambda *_: [])
+    monkeypatch.setattr(html_page, "drawn", lambda *_: html.element("p"))
 
 
 @pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.slow)])

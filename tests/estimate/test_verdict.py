@@ -18,7 +18,7 @@ from jointid.estimate.self_test import SelfTest, SelfTestRow
 from jointid.estimate.verdict import LEVELS, judged
 from jointid.estimate.wording import percent
 from jointid.joint.model import ModelName
-from jointid.report.html import html_report
+from jointid.report.saving import report_page
 
 
 @cache
@@ -331,13 +331,13 @@ def test_a_tolerance_that_is_larger_than_all_else() -> None:
 
 
 def test_the_page_begins_with_it() -> None:
-    page = html_report(estimate())
-    assert '</h1><p class="verdict usable"><b>Usable.</b></p>' in page
+    page = report_page(estimate())
+    assert '<p class="verdict usable"><b>Usable.</b></p>' in page[: page.index("<h2")]
     found = [Finding(code=f"c{n}", title=f"reason {n}", parameters=("static",)) for n in range(5)]
-    page = html_report(with_findings(*found))
+    page = report_page(with_findings(*found))
     assert '<p class="verdict usable-with-care"><b>Usable with care.</b></p>' in page
     assert re.search(r"<b>compensation: usable with care, to ± [\d.]+ %</b>: static \(above", page)
-    assert "<li>reason 2</li><li>and 2 more, below</li>" in page
+    assert '<b>Because </b>reason 0. <a href="#findings">All 5 reasons</a>.' in page
 
 
 def test_text_and_numbers_have_it() -> None:

@@ -85,9 +85,9 @@ def test_a_failed_write_changes_nothing(path: Path, monkeypatch: pytest.MonkeyPa
 
 def test_another_ending_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
-        jid.InputError, match=r"path is 'motion\.json': a design is saved as \.toml"
+        jid.InputError, match=r"path is 'motion\.yaml': a design is saved as \.toml or \.json"
     ):
-        DESIGN.save(tmp_path / "motion.json")
+        DESIGN.save(tmp_path / "motion.yaml")
 
 
 def test_a_motion_alone_is_no_design(tmp_path: Path) -> None:

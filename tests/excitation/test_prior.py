@@ -18,7 +18,7 @@ def test_all_parameters_without_a_range_are_named_at_once() -> None:
         ranges_of(JOINT, ("coulomb", "static", "viscous", "stribeck"), None)
     assert str(refused.value) == (
         "joint: viscous, stribeck: nothing says how large they may be; give their min and max in the joint or "
-        "design_excitation with prior={'viscous': ..., 'stribeck': ...}"
+        "design with prior={'viscous': ..., 'stribeck': ...}"
     )
 
 

@@ -227,9 +227,9 @@ def test_no_recording_of_a_robot() -> None:
         jid.identify_joints("arm.csv")  # type: ignore[arg-type]
 
 
-def test_identify_says_what_to_do_with_several_joints(robot: jid.RobotRecording) -> None:
-    with pytest.raises(jid.InputError, match="call identify_joints"):
-        jid.identify(robot)  # type: ignore[arg-type]
+def test_a_search_says_what_to_do_with_several_joints(robot: jid.RobotRecording) -> None:
+    with pytest.raises(jid.InputError, match="name a joint"):
+        jid.sweep(robot, grid={"windows": [100]})  # type: ignore[arg-type]
 
 
 def test_a_failed_joint_says_nothing_of_others() -> None:

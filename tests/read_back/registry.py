@@ -13,6 +13,7 @@ import numpy as np
 from designs import designed
 
 import jointid as jid
+from jointid.base.result import KeptResult
 from jointid.cli.demonstration import data_folder
 from jointid.hardware import Bench, EmulatedBus, Session, emulated_devices
 from jointid.hardware.elmo import ElmoDrive
@@ -27,6 +28,7 @@ from jointid.study import study_file
 from jointid.study.row import Row
 from read_back.example import Example
 
+SAVED = Path(__file__).resolve().parents[1] / "data" / "saved_results"
 _BENCH = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 _CELL = {"windows": 50}
 _HEADER: dict[str, Any] = {
@@ -175,6 +177,85 @@ def _several() -> Example:
     )
 
 
+def _saved(
+    name: str, kind: type[jid.Result], modules: list[str], elsewhere: tuple[str, ...] = ()
+) -> Example:
+    """A result as it was saved once; its estimate has an example of its own."""
+    return Example(
+        name=name,
+        documents=[_document(name)],
+        use=lambda path: _shown(kind, path),
+        modules=[*modules, "base.result", "base.schema"],
+        elsewhere=elsewhere,
+    )
+
+
+def _document(name: str) -> dict[str, Any]:
+    return dict(json.loads((SAVED / name).read_text(encoding="utf-8")))
+
+
+def _shown(kind: type[jid.Result], path: Path) -> None:
+    found = kind.load(path)
+    assert isinstance(found, KeptResult)
+    found.report()
+    found.report(verbose=True)
+    found.overview.title.encode()
+    found.to_json()
+
+
+def _servo_comparison() -> Example:
+    from jointid.servo.comparison_reading import KIND, SCHEMA
+
+    document = {
+        "schema": SCHEMA,
+        "kind": KIND,
+        "best": "b",
+        "models": ["a", "b"],
+        "runs": ["one", "two"],
+        "groups": ["10", "20"],
+        "errors": [[0.1, 0.2], [0.01, 0.02]],
+        "bistable": [[False, True], [False, False]],
+        "estimate": _document("servo.json"),
+    }
+    return Example(
+        name="servo_comparison.json",
+        documents=[document],
+        use=lambda path: _shown(jid.ServoComparison, path),
+        modules=["servo.comparison_result", "servo.comparison_reading"],
+        elsewhere=("estimate",),
+    )
+
+
+def _design_as_json() -> Example:
+    return Example(
+        name="design.json",
+        documents=[designed(believed={"coulomb": (20.0, 30.0)}).to_dict()],
+        use=lambda path: _shown(jid.Design, path),
+        modules=["excitation.design", "excitation.design_file"],
+        elsewhere=("joint",),
+    )
+
+
+def _study_as_json() -> Example:
+    return Example(
+        name="study.json",
+        documents=[jid.Study.load(SAVED / "study.jsonl").to_dict()],
+        use=lambda path: _shown(jid.Study, path),
+        modules=["study.study_result", "study.reading_back", "study.row"],
+    )
+
+
+def _any_kind() -> Example:
+    """A file of which nobody says what it holds."""
+    return Example(
+        name="any.json",
+        documents=[_document("servo.json")],
+        use=jid.Result.load,
+        modules=["verbs.kept_kinds", "servo.reading_back"],
+        elsewhere=("joint",),
+    )
+
+
 def _robot() -> Example:
     from small_arm import recording, urdf
 
@@ -317,12 +398,31 @@ def _has_pinocchio() -> bool:
 EXAMPLES: dict[str, Callable[[], Example]] = {
     "joint": _joint,
     "bench": _bench,
-    "design": lambda: _motion("design.toml", jid.load_design, "design.design_file"),
+    "design": lambda: _motion("design.toml", jid.load_design, "excitation.design_file"),
     "motion": lambda: _motion("motion.toml", load_motion, "simulation.motion_file"),
     "certificate": _certificate,
     "facts": _facts,
     "estimate": _saved_estimate,
     "joints": _several,
+    "all joints": lambda: _saved(
+        "joints.json", jid.JointEstimates, ["joints.result", "joints.reading_back"]
+    ),
+    "comparison": lambda: _saved(
+        "comparison.json",
+        jid.Comparison,
+        ["comparison.result", "comparison.reading_back"],
+        ("estimate",),
+    ),
+    "robot comparison": lambda: _saved(
+        "robot_comparison.json",
+        jid.RobotComparison,
+        ["robot.result.comparison_result", "robot.result.comparison_reading"],
+        ("estimate",),
+    ),
+    "servo comparison": _servo_comparison,
+    "design as JSON": _design_as_json,
+    "study as JSON": _study_as_json,
+    "any kind": _any_kind,
     "servo": _servo,
     "study": lambda: _study(_read_study, "study.jsonl"),
     "resumed study": lambda: _study(_resumed, "resumed.jsonl"),
@@ -339,13 +439,11 @@ OTHERS: dict[str, str] = {
     "cli.facts_advice": "lines of a facts file that was read before; tests/cli/test_facts_advice.py",
     "cli.robot": "only which kind of file it is; tests/cli/test_cli_robot.py",
     "cli.session": "a copy of the joint file, which was read before",
-    "comparison.result": "an estimate of this run",
     "exports.exporting": "an XML file to edit; tests/exports",
     "hardware.can.blf_file": "tests/hardware/test_frame_log.py",
     "hardware.can.bus": "of the kernel",
     "hardware.session.realtime": "of the kernel",
     "identification.search.run": "a checkpoint, of bytes: tests/base/test_read_back_bytes.py",
-    "joints.document": "an estimate of this run",
     "recording.attributes": "metadata of this run",
     "recording.hierarchies.hdf5_file": "tests/recording/test_hdf5_collection.py",
     "recording.messages.json_messages": "tests/recording/test_message_faults.py",

@@ -16,7 +16,6 @@ import jointid as jid
 from jointid.hardware.proof.certificate import Certificate
 from jointid.hardware.session.recorder import COLUMNS, Recorder
 from jointid.report.saving import save_report
-from jointid.report.servo_page import save_servo_report
 from jointid.study.row import Row
 from jointid.study.study_file import StudyFile
 from write_faults.scenario import Acknowledge, Scenario
@@ -236,7 +235,6 @@ SAVERS = {
     "study table": _whole("table.csv", lambda: _saver("study")),
     "study": _whole("study.jsonl", lambda: _saver("study")),
     "report": _whole("report.html", lambda: partial(save_report, _read("estimate"))),
-    "servo report": _whole("servo.html", lambda: partial(save_servo_report, _read("servo"))),
     "model": _whole("joint.xml", _exported),
     "header": _whole("joint.h", _exported),
     "run": Scenario(_nothing, _ran, _judged_run),

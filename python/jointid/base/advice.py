@@ -44,7 +44,7 @@ class Action:
     >>> str(Action("record", text="slow motion through zero speed"))
     'record slow motion through zero speed'
     >>> str(Action("record", {"duration": 6.0}, "slow motion", "next_motion"))
-    'record slow motion, designed by estimate.next_motion(duration=6.0)'
+    'record slow motion, designed by jid.design(estimate, duration=6.0)'
     """
 
     kind: Kind
@@ -68,7 +68,8 @@ class Action:
         """The action as a person at a Python prompt would write it."""
         shown = ", ".join(f"{name}={_written(value)}" for name, value in self.arguments.items())
         if self.kind != "call":
-            by = f", designed by estimate.next_motion({shown})" * self.designs
+            stated = f"estimate, {shown}" if shown else "estimate"
+            by = f", designed by jid.design({stated})" * self.designs
             return f"{self.kind} {self.text}{by}".rstrip()
         purpose = f" ({self.text})" if self.text else ""
         return f"{_VERB.get(self.function, self.function)} with {shown}{purpose}"
@@ -78,7 +79,17 @@ class Action:
         return type(self), (self.kind, dict(self.arguments), self.text, self.function)
 
 
-_VERB = {"compare_models": "compare", "Joint": "set the joint"}
+_VERB = {
+    "compare_models": "compare",
+    "compare_robot_models": "compare",
+    "compare_servo_models": "compare",
+    "design_excitation": "design",
+    "identify_joints": "identify",
+    "identify_robot": "identify",
+    "load_robot": "load",
+    "load_runs": "load",
+    "Joint": "set the joint",
+}
 
 
 def _written(value: object) -> str:

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def data_frame(
-    table: Mapping[str, Any] | Sequence[Mapping[str, Any]], *, index: str | None = None
+    table: Mapping[str, Any] | Sequence[Mapping[str, Any]], *, index: str | list[str] | None = None
 ) -> pd.DataFrame:
-    """Return a data frame of columns or records, with one of the columns as its index if that is named.
+    """Return a data frame of columns or records, with columns as its index if these are named.
 
     Raises
     ------

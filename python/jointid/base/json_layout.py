@@ -1,11 +1,26 @@
 """JSON as text that people can read and that is written quickly: a line for each entry, a list of numbers on one."""
 
+import math
+from collections.abc import Mapping
 from json import JSONEncoder
 from typing import Any
 
 from jointid import _core
 
 _plain = JSONEncoder(ensure_ascii=False, allow_nan=False).encode
+
+
+def json_types(value: Any) -> Any:
+    """Return a value in JSON's types: a tuple is a list, a number that is not finite a text such as "inf"."""
+    if hasattr(value, "tolist"):  # of NumPy
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(name): json_types(each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [json_types(each) for each in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value
 
 
 def json_text(value: Any, indent: str = "") -> str:

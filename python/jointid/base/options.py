@@ -76,7 +76,7 @@ def takes(options: type) -> Callable[[Taker], Taker]:
     def decorate(taker: Taker) -> Taker:
         if isinstance(taker, type):
             setattr(taker, "__init__", decorate(vars(taker)["__init__"]))  # noqa: B010 (of a class, to the type checker)
-            taker.__doc__ = _documented(taker.__doc__, entries)
+            taker.__doc__ = documented(taker.__doc__, entries)
             return taker
         signature = inspect.signature(taker)
         own = [each for each in signature.parameters.values() if each.kind != each.VAR_KEYWORD]
@@ -102,21 +102,23 @@ def takes(options: type) -> Callable[[Taker], Taker]:
         ]
         described: Any = call
         described.__signature__ = signature.replace(parameters=[*own, *shown])
-        described.__doc__ = _documented(taker.__doc__, entries)
+        described.__doc__ = documented(taker.__doc__, entries)
         return described  # type: ignore[no-any-return]
 
     return decorate
 
 
-def _documented(text: str | None, entries: Mapping[str, Option]) -> str | None:
-    """A docstring with the options in the place of its line ``**options``."""
-    before, mark, behind = (text or "").partition("**options\n")
+def documented(
+    text: str | None, entries: Mapping[str, Option], line: str = "**options", lead: str = ""
+) -> str | None:
+    """A docstring with the options in the place of its line ``**options``; `lead` begins what is said of each."""
+    before, mark, behind = (text or "").partition(f"{line}\n")
     if not mark:
         return text
     indent = before[before.rfind("\n") + 1 :]
     lines = []
     for name, option in entries.items():
-        lines += [f"{name} : {option.kind}", *_wrapped(option.help, f"{indent}    ")]
+        lines += [f"{name} : {option.kind}", *_wrapped(lead + option.help, f"{indent}    ")]
     return f"{before}{f'{chr(10)}{indent}'.join(lines)}\n{behind}"
 
 

@@ -98,6 +98,34 @@ def read_json(text: str) -> Any:
     return value
 
 
+def read_document(text: str, kind: str, schema: int, what: str) -> dict[str, Any]:
+    """Return the document that a JSON text holds, of a kind of file and of a schema up to the present one.
+
+    Parameters
+    ----------
+    text : str
+    kind : str
+        The document's field of that name.
+    schema : int
+        The newest one that is known.
+    what : str
+        What is expected, for a message, e.g. "a comparison of models".
+
+    Raises
+    ------
+    InputError
+        Not JSON, another kind, or a newer schema.
+    """
+    document = read_json(text)
+    if not isinstance(document, dict) or document.get("kind") != kind:
+        raise InputError(f"this JSON is not {what}: its field 'kind' is not '{kind}'")
+    number = Number(low=1, whole=True).read(document.get("schema"), "schema")
+    if number > schema:
+        reason = f"this jointid reads schemas up to {schema}"
+        raise InputError(reason, value=number, place="schema", remedy="update jointid")
+    return document
+
+
 def check_depth(value: Any, what: str) -> None:
     """Check that lists and tables are not deeper inside each other than in any file of ours.
 
@@ -271,6 +299,16 @@ class Record:
                 _refuse(_inside(place, key), NOT_GIVEN, f"unknown; known are {', '.join(known)}")
             result[key] = kind.read(entry, _inside(place, key))
         return result
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unchecked:
+    """Any value: another reader checks it."""
+
+    def read(self, value: Any, place: str) -> Any:
+        """Return the value."""
+        del place
+        return value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

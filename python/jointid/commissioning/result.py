@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from jointid.base.advice import Action
-from jointid.base.notebook import Shown
+from jointid.base.json_layout import json_types
+from jointid.base.result import Overview, Result
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
 from jointid.recording.recording import Recording
@@ -38,7 +39,7 @@ class BenchRun:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Commissioning(Shown):
+class Commissioning(Result):
     """Result of a commissioning.
 
     Attributes
@@ -61,6 +62,29 @@ class Commissioning(Shown):
     true_run: BenchRun | None = None
     without_ripple: Estimate | None = None
 
+    _KIND = "commissioning"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the commissioning."""
+        from jointid.estimate.overview import made_by, quantity_of
+
+        estimate = self.estimates[-1] if self.estimates else None
+        level, *said = outcome(self)
+        name, runs = self.runs[0].recording.name or "joint", len(self.runs)
+        if estimate is not None:
+            name = estimate.joint.name or name
+        return Overview(
+            title=f"{name}: session of {runs} run{'s' * (runs > 1)}",
+            footer="" if estimate is None else made_by(estimate.settings),
+            answer=tuple(said),
+            level=level,
+            parameters=tuple(map(quantity_of, estimate.parameters.values())) if estimate else (),
+            facts=(("motion", self.motion_warning),) if self.motion_warning else (),
+            findings=estimate.findings if estimate else (),
+            inner={f"cycle {len(self.estimates)}": estimate} if estimate else {},
+        )
+
     @property
     def blocked(self) -> Finding | None:
         """The blocking finding of the last estimate, with which the joint was not moved; None without one."""
@@ -82,13 +106,13 @@ class Commissioning(Shown):
         return {run.name: run.recording for run in (*self.runs, *last)}
 
     def to_dict(self) -> dict[str, Any]:
-        """The numbers, of JSON's types."""
+        """Return the numbers in JSON's types."""
         estimates = [
             {name: found.value for name, found in estimate.parameters.items()}
             for estimate in self.estimates
         ]
         last = () if self.true_run is None else (self.true_run,)
-        return {
+        document = {
             "runs": [
                 {"name": r.name, "tracking_error": r.tracking_error, "peak_error": r.peak_error}
                 for r in (*self.runs, *last)
@@ -101,15 +125,19 @@ class Commissioning(Shown):
             if self.without_ripple is None
             else {name: found.value for name, found in self.without_ripple.parameters.items()},
         }
+        return dict(json_types(document))
 
-    def report(self, action: Callable[[Action], str] = str) -> str:
+    def report(self, action: Callable[[Action], str] = str, *, verbose: bool = False) -> str:
         """Return tables of tracking errors and parameters.
 
         Parameters
         ----------
         action : callable
             Words the advice of a finding. Default: as at a Python prompt.
+        verbose : bool
+            Changes nothing: the answer is everything.
         """
+        del verbose
         return text_report(self, action)
 
 
@@ -177,6 +205,22 @@ def summary(result: Commissioning) -> list[str]:
         ratio = result.runs[-1].tracking_error / result.true_run.tracking_error
         sentence += f"; it ended at {ratio:.3f} times that with the true parameters"
     return [sentence + "."]
+
+
+def outcome(result: Commissioning) -> tuple[str, ...]:
+    """Return the level of the answer, and the answer in sentences: before all why it was stopped, if it was."""
+    emulated = "An emulated joint on an emulated drive: no hardware moved."
+    lines = [emulated] if result.truth else []
+    stopped = [each for each in result.runs if each.recording.metadata.get("stop")]
+    if stopped:
+        reasons = [f"{run.name}: {run.recording.metadata['stop']}." for run in stopped]
+        return "not usable", *reasons, *lines
+    if not result.estimates:
+        return "", "The joint was recorded, and nothing was identified.", *lines
+    level, said = result.estimates[-1].verdict.level, summary(result)
+    if result.blocked is None:
+        said = [f"{' '.join(said)} The identified values are {level}.".strip()]
+    return level, *said, *lines
 
 
 def _runs(result: Commissioning) -> list[str]:

@@ -16,7 +16,8 @@ from jointid.comparison.fitter import ComparisonStep, Fitter, with_causes
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
 from jointid.comparison.judging import Entrant, judged
 from jointid.comparison.load_evidence import load_refusal
-from jointid.comparison.result import ComparedModel, Comparison
+from jointid.comparison.result import Comparison
+from jointid.comparison.row import ComparedModel
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_of
 from jointid.identification.options import CompareOptions
@@ -31,7 +32,7 @@ from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
-    from jointid.servo.comparing import ServoComparison
+    from jointid.servo.comparison_result import ServoComparison
 
 
 @overload
@@ -86,7 +87,7 @@ def compare_models(
         As in `identify`, except that its model's name and `asymmetric` are not used.
     score : str
         "windows" (default): the balance of held-out windows. "rollout": the closed loop of held-out runs, simulated, of
-        a servo without a torque signal, with `models` as the only option; see `compare_servo_models`.
+        a servo without a torque signal, with `models` as the only option; see `compare`.
     models : sequence of Model, str or mapping, optional
         Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, all with the gravity
         that `identify` would choose, without those that cannot be used with these data; they are listed in
@@ -111,7 +112,7 @@ def compare_models(
 
     Examples
     --------
-    >>> found = jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
+    >>> found = jid.compare(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
     >>> found.winner, found.estimate.settings["model"]
     ('stribeck', 'stribeck')
     """
@@ -119,7 +120,7 @@ def compare_models(
         usual = {name: option.default for name, option in options_of(CompareOptions).items()}
         if folds != 5 or callback is not None or options != usual:
             raise InputError(
-                "a servo takes no option but models here; compare_servo_models has more",
+                "a servo takes no option but models here; compare(recordings, servo) has more",
                 argument="score",
                 value=score,
             )

@@ -5,23 +5,22 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.base.frames import data_frame
+from jointid.base.json_layout import json_types
+from jointid.base.result import KeptResult, Overview, Quantity, require_text
 from jointid.base.values import dataclass
+from jointid.comparison.row import ComparedModel
 from jointid.estimate.answers import COLUMNS, findings, purposes
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import residual_text
 from jointid.estimate.wording import percent_with_error
-from jointid.joint.model import Model
 
 if TYPE_CHECKING:
     import pandas as pd
-
-SCHEMA = 1
-"""Increased when a reader of the earlier format would misread the new one."""
 
 _PLAIN = (
     *("model", "parameters", "score", "stderr", "fold_scores", "penalty", "eligible", "reason"),
@@ -30,44 +29,9 @@ _SHOWN = 6  # models in an answer
 HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", "remark")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ComparedModel:
-    """One row of a comparison.
-
-    Attributes
-    ----------
-    model : str
-        The model's text, e.g. "coulomb_viscous:asymmetric".
-    spec : Model
-    parameters : int
-        Free parameters, shape parameters included.
-    score : float
-        Relative residual of held-out windows, mean over the folds.
-    stderr : float
-        Its standard error over the folds.
-    fold_scores : tuple of float
-    penalty : float
-        Of the fit to all data [unit of a window integral, squared].
-    eligible : bool
-        Whether the data support the model; otherwise it cannot win.
-    reason : str
-        Why it wins or does not win.
-    """
-
-    model: str
-    spec: Model
-    parameters: int
-    score: float
-    stderr: float
-    fold_scores: tuple[float, ...]
-    penalty: float
-    eligible: bool
-    reason: str
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Comparison:
-    """The result of `compare_models`.
+class Comparison(KeptResult):
+    """What `compare` returns of a joint.
 
     Attributes
     ----------
@@ -85,7 +49,7 @@ class Comparison:
 
     Examples
     --------
-    >>> comparison = jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
+    >>> comparison = jid.compare(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
     >>> comparison.winner
     'stribeck'
     """
@@ -95,6 +59,39 @@ class Comparison:
     reason: str
     estimate: Estimate
     settings: Mapping[str, Any]
+
+    _KIND = "comparison"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the comparison."""
+        from jointid.estimate.overview import made_by, settings_of
+
+        left_out = self.settings["left_out"].items()
+        return Overview(
+            title=f"{self._title()}: {len(self.rows)} friction models compared",
+            footer=made_by(self.estimate.settings),
+            answer=(self._advice(), self.reason),
+            level=self.estimate.verdict.level,
+            parameters=tuple(
+                Quantity(
+                    name=row.model,
+                    value=100.0 * row.score,
+                    error=100.0 * row.stderr,
+                    unit="%",
+                    meaning="held-out residual",
+                    remark=row.reason,
+                )
+                for row in self.rows
+            ),
+            facts=(
+                ("held out", self.setting()),
+                *((f"not compared: {model}", reason) for model, reason in left_out),
+            ),
+            findings=self.estimate.findings,
+            settings=settings_of(self.settings, without=("left_out",)),
+            inner={self.winner: self.estimate},
+        )
 
     def __repr__(self) -> str:
         scores = ", ".join(f"{row.model} {100.0 * row.score:.3g} %" for row in self.rows)
@@ -150,22 +147,6 @@ class Comparison:
         ]
         return printable("\n".join([*lines, f"winner: {self.winner}", self.reason, *self._said()]))
 
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        head = "".join(f"<th>{escape(cell)}</th>" for cell in HEAD)
-        body = ""
-        for row, cells in zip(self.rows, self.cells(), strict=True):
-            tag = "th" if row.model == self.winner else "td"
-            body += f"<tr><{tag}>{escape(cells[0])}</{tag}>"
-            body += "".join(f"<td>{escape(cell)}</td>" for cell in cells[1:]) + "</tr>"
-        table = (
-            f"<table class='jointid'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-        )
-        said = (self.setting(), self.reason, *self._said())
-        text = "".join(f"<p>{escape(each)}</p>" for each in said)
-        return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{text}</div>"
-
     def to_pandas(self) -> pd.DataFrame:
         """Return a row for each model, in the order of the call, as a data frame; needs pandas.
 
@@ -187,18 +168,46 @@ class Comparison:
         rows = [{name: getattr(row, name) for name in _PLAIN} for row in self.rows]
         return data_frame(rows, index="model")
 
-    def to_json(self) -> str:
-        """Return everything as JSON with a schema version; the winner's estimate as in `Estimate.to_json`."""
-        document = {
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything in JSON's types; the winner's estimate as in `Estimate.to_dict`."""
+        from jointid.comparison.reading_back import KIND, SCHEMA
+
+        return {
             "schema": SCHEMA,
-            "kind": "jointid comparison",
+            "kind": KIND,
             "winner": self.winner,
             "reason": self.reason,
             "rows": [_row(row) for row in self.rows],
-            "settings": dict(self.settings),
-            "estimate": json.loads(self.estimate.to_json()),
+            "settings": json_types(self.settings),
+            "estimate": self.estimate.to_dict(),
         }
-        return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+
+    def to_json(self) -> str:
+        """Return `to_dict` as JSON text; `from_json` reads it."""
+        return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the comparison that a JSON text holds; what needs the recordings is refused by its estimate.
+
+        Parameters
+        ----------
+        text : str
+            From `to_json`.
+
+        Raises
+        ------
+        InputError
+            Not JSON, not a comparison, another schema, or a value that cannot be used; names the place in it.
+        """
+        from jointid.comparison.reading_back import comparison_fields
+
+        return cls(**comparison_fields(require_text(text), Estimate))
+
+    def _advice(self) -> str:
+        """Which model to use, in a sentence."""
+        blocking = [each for each in self.estimate.findings if each.severity == "blocking"]
+        return f"Use none: {blocking[0].cause}." if blocking else f"Use {self.winner}."
 
     def _said(self) -> list[str]:
         """What to know of the winner's values, a line each: whether they are usable, and its warnings."""
@@ -241,4 +250,5 @@ class Comparison:
 
 def _row(row: ComparedModel) -> dict[str, Any]:
     """Return a row in JSON types; the model as its fields."""
-    return {name: getattr(row, name) for name in _PLAIN} | {"spec": row.spec.stated()}
+    document = {name: getattr(row, name) for name in _PLAIN} | {"spec": row.spec.stated()}
+    return dict(json_types(document))

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.error_text import printable
-from jointid.base.notebook import Shown
+from jointid.base.json_layout import json_types
+from jointid.base.result import Overview, Quantity, Result
 from jointid.base.text_table import aligned
 from jointid.base.values import dataclass
 from jointid.estimate.wording import number, percent, two_digits
@@ -50,7 +51,7 @@ class BootstrapParameter:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Bootstrap(Shown):
+class Bootstrap(Result):
     """A block bootstrap of an estimate.
 
     Attributes
@@ -78,25 +79,55 @@ class Bootstrap(Shown):
     blocks: int
     seed: int
 
+    _KIND = "bootstrap"
+
     def __repr__(self) -> str:
         errors = ", ".join(f"{name}=±{p.stderr:.2g}" for name, p in self.parameters.items())
         return f"Bootstrap({errors}; {len(self.samples)} draws of {self.blocks} blocks)"
 
-    def document(self) -> dict[str, Any]:
-        """Return what `report` shows, in JSON's types; without the samples."""
-        return {
-            "parameters": {
-                name: asdict(p) | {"interval": list(p.interval)}
-                for name, p in self.parameters.items()
-            },
-            "draws": len(self.samples),
-            "blocks": self.blocks,
-            "block": self.block,
-            "seed": self.seed,
-        }
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the bootstrap."""
+        return Overview(
+            title="block bootstrap: errors of the values",
+            answer=(self._drawn,),
+            parameters=tuple(
+                Quantity(
+                    name=p.name,
+                    value=p.value,
+                    error=p.stderr,
+                    unit=p.unit,
+                    remark="" if p.ratio is None else f"{p.ratio:.2f} of the reported error",
+                )
+                for p in self.parameters.values()
+            ),
+            settings=(("draws", str(len(self.samples))), ("seed", str(self.seed))),
+        )
 
-    def report(self) -> str:
-        """Return the bootstrap as text: errors, intervals and the ratio to the estimate's errors."""
+    def to_dict(self) -> dict[str, Any]:
+        """Return what `report` shows, in JSON's types; without the samples."""
+        document: dict[str, Any] = json_types(
+            {
+                "parameters": {name: asdict(p) for name, p in self.parameters.items()},
+                "draws": len(self.samples),
+                "blocks": self.blocks,
+                "block": self.block,
+                "seed": self.seed,
+            }
+        )
+        return document
+
+    document = to_dict
+
+    def report(self, *, verbose: bool = False) -> str:
+        """Return the bootstrap as text: errors, intervals and the ratio to the estimate's errors.
+
+        Parameters
+        ----------
+        verbose : bool
+            Changes nothing: the answer is everything.
+        """
+        del verbose
         table = [("parameter", "value", "± bootstrap", "95 % interval", "unit", "of reported")]
         for p in self.parameters.values():
             share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
@@ -106,11 +137,11 @@ class Bootstrap(Shown):
             error = f"{two_digits(p.stderr)}{share}"
             table.append((_short(p.name), number(p.value), error, interval, p.unit, remark))
         lines = aligned(table)
-        lines += [
-            "",
-            f"{len(self.samples)} draws of {self.blocks} blocks of {self.block:.2g} s, seed {self.seed}",
-        ]
-        return printable("\n".join(lines))
+        return printable("\n".join([*lines, "", f"{self._drawn}, seed {self.seed}"]))
+
+    @property
+    def _drawn(self) -> str:
+        return f"{len(self.samples)} draws of {self.blocks} blocks of {self.block:.2g} s"
 
 
 def _short(name: str) -> str:

@@ -8,12 +8,14 @@ from types import MappingProxyType
 from typing import Any
 
 from jointid.base.advice import Action
-from jointid.base.notebook import Shown
+from jointid.base.json_layout import json_types
+from jointid.base.result import Overview, Quantity, Result
 from jointid.base.values import dataclass
 from jointid.estimate.findings import TITLE, Measured
 from jointid.estimate.wording import percent, signed_percent
 
 _SHOWN = 3  # changes in a sentence
+_NOTHING = "no cause of a misfit was found"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -182,7 +184,7 @@ class Cause:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Causes(Shown):
+class Causes(Result):
     """What an attribution found.
 
     Attributes
@@ -199,27 +201,52 @@ class Causes(Shown):
     harmless: tuple[Cause, ...] = ()
     tried: tuple[str, ...] = ()
 
+    _KIND = "causes"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the causes."""
+        tried = self.excluded
+        return Overview(
+            title="causes of the misfit",
+            answer=tuple(str(cause) for cause in self.found) or (_NOTHING,),
+            parameters=tuple(
+                Quantity(
+                    name=cause.name,
+                    value=100.0 * cause.share,
+                    unit="% of the misfit",
+                    meaning=cause.meaning,
+                    remark="" if cause in self.found else "harmless",
+                )
+                for cause in (*self.found, *self.harmless)
+            ),
+            facts=(("looked for and not found", ", ".join(tried)),) if tried else (),
+        )
+
     @property
     def excluded(self) -> tuple[str, ...]:
         """Causes that were looked for and not found."""
         named = {cause.name for cause in (*self.found, *self.harmless)}
         return tuple(name for name in self.tried if name not in named)
 
-    def report(self, action: Callable[[Action], str] = str) -> str:
+    def report(self, action: Callable[[Action], str] = str, *, verbose: bool = False) -> str:
         """Return the causes as text, one a line, with their advice.
 
         Parameters
         ----------
         action : callable
             Words one action. Default: as at a Python prompt.
+        verbose : bool
+            Changes nothing: the answer is everything.
         """
+        del verbose
         lines = [
             f"{cause.name}: {cause}" + "".join(f"\n    {action(each)}" for each in cause.advice)
             for cause in self.found
         ]
         lines += [f"{cause.name} (harmless): {cause}" for cause in self.harmless]
         if not lines:
-            lines = ["no cause of a misfit was found"]
+            lines = [_NOTHING]
         if self.excluded:
             lines.append(f"looked for and not found: {', '.join(self.excluded)}")
         return "\n".join(lines)
@@ -227,13 +254,18 @@ class Causes(Shown):
     def __str__(self) -> str:
         return self.report()
 
-    def document(self) -> dict[str, Any]:
-        """Return the causes as values for JSON."""
-        return {
-            "found": [_document(cause) for cause in self.found],
-            "harmless": [_document(cause) for cause in self.harmless],
-            "tried": list(self.tried),
-        }
+    def to_dict(self) -> dict[str, Any]:
+        """Return the causes in JSON's types."""
+        document: dict[str, Any] = json_types(
+            {
+                "found": [_document(cause) for cause in self.found],
+                "harmless": [_document(cause) for cause in self.harmless],
+                "tried": self.tried,
+            }
+        )
+        return document
+
+    document = to_dict
 
 
 def _document(cause: Cause) -> dict[str, Any]:
@@ -243,9 +275,9 @@ def _document(cause: Cause) -> dict[str, Any]:
         "share": cause.share,
         "scale": cause.scale,
         "size": cause.size,
-        "shifts": dict(cause.shifts),
-        "relative": dict(cause.relative),
-        "alike": list(cause.alike),
+        "shifts": cause.shifts,
+        "relative": cause.relative,
+        "alike": cause.alike,
         "advice": [str(each) for each in cause.advice],
     }
 

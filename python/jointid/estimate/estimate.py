@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointid.base.argument_checks import require_kind, require_path
+from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.base.joining import joined
+from jointid.base.result import KeptResult, Overview, require_text
 from jointid.estimate.questions import Questions
 from jointid.estimate.statistics import FrictionCurve, ParameterEstimate
 from jointid.problem.window_table import Prediction
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
 
-class Estimate(Questions):
+class Estimate(Questions, KeptResult):
     """The result of `identify`: values, their uncertainty, and findings.
 
     Attributes
@@ -95,6 +95,7 @@ class Estimate(Questions):
     """
 
     __slots__ = ()
+    _KIND = "estimate"
 
     def __repr__(self) -> str:
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
@@ -142,6 +143,13 @@ class Estimate(Questions):
         from jointid.estimate.verdict import judged
 
         return judged(self)
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the estimate."""
+        from jointid.estimate.overview import overview_of
+
+        return overview_of(self)
 
     def friction(self, velocity: ArrayLike, *, load: float = 0.0) -> FrictionCurve:
         """Friction at given velocities, with a pointwise 95 % band.
@@ -214,12 +222,6 @@ class Estimate(Questions):
 
         return answer(self)
 
-    def _repr_html_(self) -> str:
-        from jointid.estimate.html_tables import html_summary
-
-        picture = joined("friction_image")(self) if self.windows.start.size else ""
-        return f"{html_summary(self)}{picture}"
-
     def to_pandas(self) -> pd.DataFrame:
         """Return the parameters and derived quantities as a data frame, one row each.
 
@@ -244,14 +246,20 @@ class Estimate(Questions):
 
         return parameter_frame(self)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return the whole estimate in JSON's types, as `to_json` writes it."""
+        from jointid.estimate.json import estimate_document
+
+        return estimate_document(self)
+
     def to_json(self) -> str:
         """Return the whole estimate as JSON with a schema version; `Estimate.from_json` reads it."""
-        from jointid.estimate.json import write_estimate
+        from jointid.base.json_layout import json_text
 
-        return write_estimate(self)
+        return json_text(self.to_dict())
 
     @classmethod
-    def from_json(cls, text: str) -> Estimate:
+    def from_json(cls, text: str) -> Self:
         """Return the estimate that a JSON text holds.
 
         Parameters
@@ -265,13 +273,13 @@ class Estimate(Questions):
             Not JSON, not an estimate, a newer schema, or a value that cannot be used; its place is the
             JSON path, e.g. "parameters.coulomb.value".
         """
-        from jointid.estimate.json import read_estimate
+        from jointid.base.schema import read_json
+        from jointid.estimate.json import estimate_of
 
-        require_kind("text", text, str)
-        return read_estimate(text, cls)
+        return estimate_of(read_json(require_text(text)), cls)
 
     @classmethod
-    def load(cls, path: str | Path) -> Estimate:
+    def load(cls, path: str | Path) -> Self:
         """Return the estimate that a .json file holds.
 
         Parameters
@@ -299,10 +307,10 @@ class Estimate(Questions):
         except InputError as error:
             raise error.at(str(path)) from error
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | Path) -> Path:
         """Save to a joint file (.toml: values go into its parameter table, comments stay) or to .json.
 
-        The file is written completely or not at all.
+        The file is written completely or not at all; its path is returned.
 
         Parameters
         ----------
@@ -329,3 +337,4 @@ class Estimate(Questions):
                 argument="path",
                 value=path.name,
             )
+        return path

@@ -1,7 +1,8 @@
-"""An estimate's parameters as a data frame."""
+"""Parameters as a data frame."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.frames import data_frame
@@ -15,9 +16,19 @@ if TYPE_CHECKING:
 
 def parameter_frame(estimate: EstimateRecord) -> pd.DataFrame:
     """Return one row for each parameter and derived quantity: see `Estimate.to_pandas`."""
-    rows = [_row(p) for p in estimate.parameters.values()]
-    rows += [_row(each) for each in derived_values(estimate).values()]
-    return data_frame(rows, index="name")
+    return data_frame(estimate_rows(estimate), index="name")
+
+
+def estimate_rows(estimate: EstimateRecord) -> list[dict[str, Any]]:
+    """Return a record for each parameter and derived quantity."""
+    return parameter_rows((*estimate.parameters.values(), *derived_values(estimate).values()))
+
+
+def parameter_rows(
+    parameters: Iterable[ParameterEstimate | DerivedValue],
+) -> list[dict[str, Any]]:
+    """Return a record for each, with the columns of `Estimate.to_pandas`."""
+    return [_row(p) for p in parameters]
 
 
 def _row(p: ParameterEstimate | DerivedValue) -> dict[str, Any]:

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.base.json_layout import json_text
-from jointid.base.schema import Number, read_json
+from jointid.base.schema import Number
 from jointid.estimate.cross_check import CrossCheck, SecondValue
 from jointid.estimate.delays import Delay
 from jointid.estimate.derived import derived_values
@@ -40,11 +39,12 @@ _OTHERS = {
     "jointid joints": "the estimates of several joints",
     "jointid comparison": "a comparison of models",
     "jointid robot comparison": "a comparison of a robot's models",
+    "jointid servo comparison": "a comparison of a servo's models",
 }
 
 
-def write_estimate(estimate: EstimateRecord) -> str:
-    """The estimate as JSON text; an infinite number is the string "inf"."""
+def estimate_document(estimate: EstimateRecord) -> dict[str, Any]:
+    """The estimate in JSON types; an infinite number is the string "inf"."""
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
     for item in fields(EstimateRecord):
         if item.name != "follow_up":  # it holds the recordings, which have files of their own
@@ -52,19 +52,18 @@ def write_estimate(estimate: EstimateRecord) -> str:
     document["derived"] = plain(derived_values(estimate))
     document["verdict"] = judged(estimate).document()
     document["findings"] = documents_of(estimate.findings)
-    return json_text(document)
+    return document
 
 
-def read_estimate(text: str, cls: type[Saved]) -> Saved:
-    """An estimate of this class from its JSON text.
+def estimate_of(document: Any, cls: type[Saved]) -> Saved:
+    """An estimate of this class from its document.
 
     Raises
     ------
     InputError
-        Not JSON, not an estimate, a newer schema, or a field that cannot be used; its place is the
-        JSON path, e.g. "parameters.coulomb.value".
+        Not an estimate, a newer schema, or a field that cannot be used; its place is the JSON path, e.g.
+        "parameters.coulomb.value".
     """
-    document = read_json(text)
     if not isinstance(document, dict) or document.get("kind") != _KIND:
         kind = document.get("kind") if isinstance(document, dict) else None
         if isinstance(kind, str) and kind in _OTHERS:

@@ -234,7 +234,7 @@ def _explained(estimate: EstimateRecord) -> tuple[float, str]:
     if estimate.selection is not None and not _missed(estimate):
         chosen = estimate.selection[estimate.selection.model]
         if math.isfinite(chosen.score):
-            return 1.0 - chosen.score**2, "the held-out torque"
+            return 1.0 - chosen.score * chosen.score, "the held-out torque"
     return left.r_squared, "the windows"
 
 

@@ -145,12 +145,12 @@ class Questions(EstimateRecord):
         Parameters
         ----------
         limits : MotionLimits or mapping, optional
-            As in `design_excitation`. Default: the joint's.
+            As in `design`. Default: the joint's.
         duration : float
             [s]. Default 12.
         **options
             `joint` gives facts that the joint of the identification lacked, e.g. a link; others as in
-            `design_excitation`. By default `parameters` are the free ones, `sensors` have the noise
+            `design`. By default `parameters` are the free ones, `sensors` have the noise
             that the residuals show.
 
         Returns
@@ -161,7 +161,7 @@ class Questions(EstimateRecord):
         Raises
         ------
         InputError
-            As `design_excitation`; or nothing is free, or another joint.
+            As `design`; or nothing is free, or another joint.
 
         Examples
         --------

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from typing import Any
 
 from jointid.base.error_text import printable
-from jointid.base.html import Html, element, table
+from jointid.base.json_layout import json_types
+from jointid.base.result import Overview, Quantity, Result
 from jointid.base.values import dataclass
 from jointid.estimate.wording import number, percent, two_digits
 
@@ -14,6 +16,7 @@ SCHEMA = 1
 """Raised when a reader of the old form would misread the new one."""
 
 _LARGE = 20.0  # an error that is so many times the truth is no share of it
+_REMARKS = {"yes": "comes back", "no": "does not come back"}
 _HEAD = ("parameter", "truth", "identified", "error", "95 % interval", "unit", "comes back")
 
 
@@ -64,7 +67,7 @@ class SelfTestRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class SelfTest:
+class SelfTest(Result):
     """The result of `Estimate.selftest`.
 
     Attributes
@@ -86,6 +89,27 @@ class SelfTest:
     trials: int
     seed: int
     failed: str = ""
+
+    _KIND = "self-test"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the self-test."""
+        return Overview(
+            title=f"self-test: {self.trials} trials",
+            answer=(self.verdict,),
+            parameters=tuple(
+                Quantity(
+                    name=row.parameter,
+                    value=row.value,
+                    unit=row.unit,
+                    meaning=f"identified in trial {row.trial + 1}, the truth is {number(row.truth)}",
+                    remark=_REMARKS.get(_comes_back(row), _comes_back(row)),
+                )
+                for row in self.rows
+            ),
+            settings=(("trials", str(self.trials)), ("seed", str(self.seed))),
+        )
 
     def __repr__(self) -> str:
         return f"<SelfTest of {self.trials} trials: {self.verdict}>"
@@ -134,8 +158,15 @@ class SelfTest:
         mine = [row for row in self.rows if row.parameter == parameter]
         return f"off by up to {max(mine, key=lambda row: abs(row.error)).shown_error.lstrip('+-')}"
 
-    def report(self) -> str:
-        """Return the result as text: a table for each trial, then the verdict."""
+    def report(self, *, verbose: bool = False) -> str:
+        """Return the result as text: a table for each trial, then the verdict.
+
+        Parameters
+        ----------
+        verbose : bool
+            Changes nothing: the answer is everything.
+        """
+        del verbose
         lines = [f"jointid self-test — {self.trials} trials, seed {self.seed}", ""]
         rows = [_HEAD, *map(_cells, self.rows)]
         widths = [max(len(row[column]) for row in rows) for column in range(len(_HEAD))]
@@ -151,34 +182,28 @@ class SelfTest:
             lines.append("  ".join(shown).rstrip())
         return printable("\n".join([*lines, "", self.verdict]))
 
-    def _repr_html_(self) -> str:
-        body: list[list[Html | str]] = [[str(row.trial + 1), *_cells(row)] for row in self.rows]
-        shown = table(body, head=["trial", *_HEAD])
-        return str(
-            element("div", element("b", "jointid self-test"), shown, element("p", self.verdict))
-        )
-
     def to_json(self) -> str:
         """Return everything as JSON with a schema version."""
-        return json.dumps(self.document(), indent=1, ensure_ascii=False, allow_nan=False)
+        return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
-    def document(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, Any]:
         """Return everything in JSON's own types; a number that is not finite is a text."""
-        rows = [
-            {name: _plain(value) for name, value in (asdict(row) | {"error": row.error}).items()}
-            for row in self.rows
-        ]
-        return {
-            "schema": SCHEMA,
-            "kind": "jointid self-test",
-            "passed": self.passed,
-            "lost": list(self.lost),
-            "verdict": self.verdict,
-            "trials": self.trials,
-            "seed": self.seed,
-            "failed": self.failed,
-            "rows": rows,
-        }
+        document: dict[str, Any] = json_types(
+            {
+                "schema": SCHEMA,
+                "kind": "jointid self-test",
+                "passed": self.passed,
+                "lost": self.lost,
+                "verdict": self.verdict,
+                "trials": self.trials,
+                "seed": self.seed,
+                "failed": self.failed,
+                "rows": [asdict(row) | {"error": row.error} for row in self.rows],
+            }
+        )
+        return document
+
+    document = to_dict
 
 
 def _title(trial: int) -> str:
@@ -191,18 +216,13 @@ def _cells(row: SelfTestRow) -> tuple[str, ...]:
     interval = "on a bound"
     if row.interval is not None:
         interval = f"{row.interval[0]:.5g} … {row.interval[1]:.5g}"
-    answer = "yes" if row.covered and row.close else "no"
-    if row.close and not row.covered:
-        answer = "outside its interval"
     return (
         *(row.parameter, number(row.truth), number(row.value), row.shown_error),
-        *(interval, row.unit, answer),
+        *(interval, row.unit, _comes_back(row)),
     )
 
 
-def _plain(value: object) -> object:
-    if isinstance(value, tuple | list):
-        return [_plain(each) for each in value]
-    if isinstance(value, float) and not -1e308 < value < 1e308:
-        return str(value)
-    return value
+def _comes_back(row: SelfTestRow) -> str:
+    if row.close and not row.covered:
+        return "outside its interval"
+    return "yes" if row.covered and row.close else "no"

@@ -22,7 +22,7 @@ def check_arguments(
     parameters: Sequence[str] | None = None,
     callback: object = None,
 ) -> None:
-    """Check arguments of `design_excitation`, each as it is described there."""
+    """Check arguments of `design`, each as it is described there."""
     if isinstance(controller, _core.OpenLoop):
         raise InputError(
             "a motion is designed for a controller that follows it",

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.result import KeptResult, Overview, require_text
 from jointid.excitation.design_fields import DesignFields
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Design(DesignFields):
-    """What `design_excitation` found; `load_design` reads it from a file.
+class Design(DesignFields, KeptResult):
+    """What `design` found; `load_design` reads it from a file.
 
     Attributes
     ----------
@@ -64,11 +70,31 @@ class Design(DesignFields):
     4.0
     """
 
-    def summary(self) -> str:
-        """Return the design as text: expected errors, limits, what limits the weakest."""
-        from jointid.excitation.tables import summary
+    _KIND = "design"
 
-        return summary(self)
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the design."""
+        from jointid.excitation.overview import overview_of
+
+        return overview_of(self)
+
+    def report(self, *, verbose: bool = False) -> str:
+        """Return which errors to expect, and what limits them, as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to return everything: the table of errors, each limit, and how the motion was judged. Default
+            False.
+        """
+        from jointid.excitation.tables import answer, summary
+
+        return summary(self) if verbose else answer(self)
+
+    def summary(self) -> str:
+        """Return everything as text, as `report` with `verbose`."""
+        return self.report(verbose=True)
 
     def plot(self) -> tuple[Axes, Axes, Axes]:
         """Draw position and velocity over time with their limits, and where friction is sampled.
@@ -88,24 +114,119 @@ class Design(DesignFields):
 
         return document_of(self)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a file (.toml) that a session, `simulate` and `load_design` read; a failed write changes none.
+    document = to_dict
+
+    def to_json(self) -> str:
+        """Return `to_dict` as JSON text; `from_json` reads it."""
+        return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the design that a JSON text holds.
+
+        Parameters
+        ----------
+        text : str
+            From `to_json`.
 
         Raises
         ------
         InputError
-            Another ending than ``.toml``, or a folder that does not exist.
+            Not JSON, no design, a newer schema, or a value that cannot be used; names the place in it.
+        """
+        from jointid.base.schema import Plain, TableOf, read_json
+        from jointid.excitation.design_file import read_design
+
+        return read_design(TableOf(Plain()).read(read_json(require_text(text)), ""), cls)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file (.toml) that a session, `simulate` and `load_design` read, or .json; return its path.
+
+        A failed write changes no file.
+
+        Raises
+        ------
+        InputError
+            Another ending, or a folder that does not exist.
         OSError
             The file cannot be written; an existing one is untouched.
         """
-        from jointid.excitation.design_document import save_design
+        from jointid.base.files import write_whole
+        from jointid.excitation.design_document import design_text
 
-        save_design(self, path)
+        place = require_path("path", path)
+        ending = place.suffix.lower()
+        if ending not in (".toml", ".json") and not place.is_dir():
+            raise InputError(
+                "a design is saved as .toml or .json", argument="path", value=place.name
+            )
+        text = self.to_json() if ending == ".json" else design_text(self)
+        write_whole(place, text.encode())
+        return place
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Return the design that `save` wrote; see `load_design`.
+
+        Parameters
+        ----------
+        path : path-like
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, or is no design; names file and key.
+        """
+        from jointid.base.toml_file import read_toml
+        from jointid.excitation.design_file import read_design
+
+        place = require_path("path", path)
+        if place.suffix.lower() == ".json":
+            return super(Design, cls).load(place)
+        document = read_toml(place)
+        try:
+            return read_design(document, cls, str(place))
+        except InputError as error:
+            raise (error if error.place.startswith(str(place)) else error.at(str(place))) from None
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the expected errors as a data frame, one row for each parameter.
+
+        Returns
+        -------
+        DataFrame
+            Indexed by name, with the attributes of `ExpectedError`.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        from jointid.base.frames import data_frame
+
+        return data_frame([asdict(each) for each in self.parameters.values()], index="name")
 
     def __str__(self) -> str:
         return self.summary()
 
-    def _repr_html_(self) -> str:
-        from jointid.excitation.tables import html_summary
 
-        return str(html_summary(self))
+def load_design(path: str | os.PathLike[str]) -> Design:
+    """Return the design that `Design.save` wrote.
+
+    Parameters
+    ----------
+    path : path
+        A motion written by hand, without what a design knows of it, is read by a session and by
+        `jointid simulate --trajectory`, not here.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is no design; names file and key.
+
+    Examples
+    --------
+    >>> design = jid.load_design("motion.toml")
+    >>> recording = jid.simulate(design.joint, design.controller, design.trajectory)
+    """
+    return Design.load(path)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import asdict, fields
 from typing import Any
 
 from jointid import _core
-from jointid.base.argument_checks import require_path
-from jointid.base.errors import InputError
-from jointid.base.files import write_whole
 from jointid.base.toml_text import toml_of
 from jointid.excitation.design_fields import DesignFields
 from jointid.excitation.expected_error import ExpectedError
@@ -78,9 +74,6 @@ def document_of(design: DesignFields) -> dict[str, Any]:
     }
 
 
-def save_design(design: DesignFields, path: str | os.PathLike[str]) -> None:
-    """Write a design: see `Design.save`."""
-    place = require_path("path", path)
-    if place.suffix.lower() != ".toml" and not place.is_dir():
-        raise InputError("a design is saved as .toml", argument="path", value=place.name)
-    write_whole(place, toml_of(document_of(design), _SAYS).encode())
+def design_text(design: DesignFields) -> str:
+    """Return the text of a design's .toml file."""
+    return toml_of(document_of(design), _SAYS)

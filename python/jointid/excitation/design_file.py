@@ -1,18 +1,13 @@
-"""Reading a design's file: its motion, what it was designed for, and what to expect of it."""
+"""Reading a design's tables: its motion, what it was designed for, and what to expect of it."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.schema import ListOf, Number, Plain, Record, TableOf, Text
-from jointid.base.toml_file import read_toml
-from jointid.excitation.design import Design
-from jointid.excitation.design_fields import CRITERIA
+from jointid.excitation.design_fields import CRITERIA, DesignFields
 from jointid.excitation.expected_error import ExpectedError
 from jointid.excitation.motion_limits import MotionLimits
 from jointid.joint.joint import Joint
@@ -26,6 +21,8 @@ from jointid.simulation.setting_tables import (
     read_controller,
     read_sensors,
 )
+
+Saved = TypeVar("Saved", bound=DesignFields)
 
 _SIZE, _ERROR = Number(low=0.0), Number(low=0.0, infinite=True)
 _COUNT = Number(low=0, high=2**63 - 1, whole=True)  # as TOML's whole numbers
@@ -71,34 +68,14 @@ _FILE = Record(
 )
 
 
-def load_design(path: str | os.PathLike[str]) -> Design:
-    """Return the design that `Design.save` wrote.
-
-    Parameters
-    ----------
-    path : path
-        A motion written by hand, without what a design knows of it, is read by a session and by
-        `jointid simulate --trajectory`, not here.
+def read_design(document: Mapping[str, Any], cls: type[Saved], place: str = "") -> Saved:
+    """Return the design of this class that the tables of a file hold; `place` is the file.
 
     Raises
     ------
     InputError
-        The file cannot be read, or is no design; names file and key.
-
-    Examples
-    --------
-    >>> design = jid.load_design("motion.toml")
-    >>> recording = jid.simulate(design.joint, design.controller, design.trajectory)
+        It is no design; names the key.
     """
-    place = require_path("path", path)
-    document = read_toml(place)
-    try:
-        return _design(document, place)
-    except InputError as error:
-        raise (error if error.place.startswith(str(place)) else error.at(str(place))) from None
-
-
-def _design(document: Mapping[str, Any], place: Path) -> Design:
     if "design" not in document and "trajectory" in document:
         raise InputError(
             "this is a motion without a table [design], which says what to expect of it"
@@ -116,12 +93,14 @@ def _design(document: Mapping[str, Any], place: Path) -> Design:
             value=about["weakest"],
             place="design.weakest",
         )
-    return Design(
+    return cls(
         **about,
         trajectory=motion.trajectory,
         duration=motion.trajectory.duration,
         joint=joint_from_document(
-            TableOf(Plain()).read(tables["joint"], "joint"), f"{place}: [joint]", Joint
+            TableOf(Plain()).read(tables["joint"], "joint"),
+            f"{place}: [joint]" if place else "joint",
+            Joint,
         ),
         controller=read_controller(tables["controller"], "controller"),
         sensors=read_sensors(tables["sensors"], "sensors"),

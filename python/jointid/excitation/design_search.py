@@ -76,7 +76,7 @@ class DesignProgress:
     --------
     >>> said = []
     >>> search = jid.DesignSearch(evaluations=64, joints=2, rehearsals=10)
-    >>> design = jid.design_excitation(known, {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}, duration=4.0,
+    >>> design = jid.design(known, {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}, duration=4.0,
     ...     search=search, callback=said.append)
     >>> isinstance(said[-1], jid.DesignProgress)
     True

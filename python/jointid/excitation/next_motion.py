@@ -10,13 +10,13 @@ from typing import Any
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.estimate.estimate import Estimate
 from jointid.excitation.design import Design
 from jointid.excitation.design_search import DesignSearch
 from jointid.excitation.designing import design_excitation
 from jointid.excitation.motion_limits import MotionLimits
 from jointid.excitation.posterior import joint_of, posterior_of, sensors_of
 from jointid.excitation.prior import Prior
-from jointid.estimate.estimate import Estimate
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
-from jointid.excitation.information import Known
-from jointid.excitation.unseen import unseen_friction
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import NORMAL, half_widths
+from jointid.excitation.information import Known
+from jointid.excitation.unseen import unseen_friction
 from jointid.joint.joint import Joint
 from jointid.joint.own_terms import INERTIA
 from jointid.joint.parameters import Parameter

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 from jointid.base.error_text import printable
-from jointid.base.html import Html, element, table
+from jointid.estimate.wording import rounded
 from jointid.excitation.assumptions import assumed
 from jointid.excitation.design_fields import COMPLETE, DesignFields
-from jointid.estimate.wording import rounded
 
 _LIMITS = {
     "position": ("rad", "m"),
@@ -111,17 +110,6 @@ def answer(design: DesignFields) -> str:
                 *([f"uses {shares}"] if shares else []),
             ]
         )
-    )
-
-
-def html_summary(design: DesignFields) -> Html:
-    """What a notebook shows for a design."""
-    return element(
-        "div",
-        element("b", _title(design)),
-        *(element("p", line) for line in _status(design)),
-        table([list(line) for line in rows(design)], head=head(design)),
-        element("ul", *(element("li", line) for line in _remarks(design))),
     )
 
 

@@ -38,20 +38,35 @@ def answer(
         The file that has the estimates. Default: there is none.
     """
     joints = list(result.results.values())
-    worst = max(map(_level, joints), key=_ORDER.index)
-    if worst not in LEVELS[:2]:
+    if _worst(result) not in LEVELS[:2]:
         joints.sort(key=lambda each: -_ORDER.index(_level(each)))
-    at_motor = any(each.side == "motor" for each in joints)
-    side = " (at the motor, as no gear ratio is known)" if at_motor else ""
-    lines = [f"{result.name or 'robot'}, {len(joints)} joints: {worst}{side}"]
+    lines = [headline(result)]
     lines += joint_lines([_row(each) for each in joints])
     lines += _failures(result, error) or _coupled(result)
-    found = _findings(result)
+    found = ordered_findings(result)
     name, first = found[0] if found else ("", None)
     told = findings([each for _, each in found], lambda each: action(each, name), _FINDINGS, saved)
     if first is not None and first.severity != "info":  # its joint's line says how severe it is
         told[0] = cut(f"joint {name}: {first.title}")
     return printable("\n".join([*lines, *told]))
+
+
+def headline(result: JointEstimatesRecord) -> str:
+    """Return the level of the worst joint, in a line."""
+    joints = result.results.values()
+    at_motor = any(each.side == "motor" for each in joints)
+    side = " (at the motor, as no gear ratio is known)" if at_motor else ""
+    return f"{result.name or 'robot'}, {len(joints)} joints: {_worst(result)}{side}"
+
+
+def worst_level(result: JointEstimatesRecord) -> str:
+    """Return the level of the worst joint; one that failed is not usable."""
+    worst = _worst(result)
+    return LEVELS[-1] if worst == FAILED else worst
+
+
+def _worst(result: JointEstimatesRecord) -> str:
+    return max(map(_level, result.results.values()), key=_ORDER.index)
 
 
 def _level(result: JointResult) -> str:
@@ -69,8 +84,8 @@ def _row(result: JointResult) -> list[str]:
     return [result.name, _level(result), *cells, *[""] * (_SHOWN - len(cells))]
 
 
-def _findings(result: JointEstimatesRecord) -> list[tuple[str, Finding]]:
-    """All joints' findings with the joint's name, the most severe first; what is said of all in the first line not."""
+def ordered_findings(result: JointEstimatesRecord) -> list[tuple[str, Finding]]:
+    """Return all findings with the joint's name, the most severe first, but for what the first line says of all."""
     found = [
         (name, each)
         for name, estimate in result.items()

@@ -1,16 +1,12 @@
-"""Several joints' estimates as JSON."""
+"""Several joints' estimates in JSON's types."""
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
-from jointid.base.argument_checks import require_path
-from jointid.base.errors import InputError
-from jointid.base.files import write_whole
-from jointid.estimate.json import write_estimate
+from jointid.base.json_layout import json_types
+from jointid.estimate.json import estimate_document
 from jointid.joints.record import JointEstimatesRecord, JointResult
 
 SCHEMA = 1
@@ -35,23 +31,7 @@ def _of_joint(result: JointResult) -> dict[str, Any]:
         "error": None if result.error is None else str(result.error),
         "side": result.side,
         "explained_by_others": result.explained,
-        "others": [asdict(share) for share in result.others],
+        "others": [json_types(asdict(share)) for share in result.others],
         "sentences": list(result.sentences()),
-        "estimate": None if estimate is None else json.loads(write_estimate(estimate)),
+        "estimate": None if estimate is None else estimate_document(estimate),
     }
-
-
-def json_of(result: JointEstimatesRecord) -> str:
-    """Return the result as JSON text."""
-    return json.dumps(document_of(result), indent=1, ensure_ascii=False, allow_nan=False)
-
-
-def save_json(result: JointEstimatesRecord, path: str | Path) -> Path:
-    """Write the result as JSON: see `JointEstimates.save`."""
-    target = require_path("path", path)
-    if target.suffix != ".json":
-        raise InputError(
-            "the estimates of several joints are saved as .json", argument="path", value=target.name
-        )
-    write_whole(target, json_of(result).encode())
-    return target

@@ -70,8 +70,8 @@ def identify_joints(
 
     Examples
     --------
-    >>> robot = jid.load_robot("arm.csv", gear_ratio=[32, 32, 45, -48, 45, 32])
-    >>> found = jid.identify_joints(robot, joints=[1, 2, 3])
+    >>> robot = jid.load("arm.csv", joints="all", gear_ratio=[32, 32, 45, -48, 45, 32])
+    >>> found = jid.identify(robot, joints=[1, 2, 3])
     >>> print(found.report())
     """
     started = time.perf_counter()

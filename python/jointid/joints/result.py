@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+import json
+from typing import TYPE_CHECKING, Any, Self
 
+from jointid.base.result import KeptResult, Overview, require_text
 from jointid.joints.record import JointEstimatesRecord
 
+if TYPE_CHECKING:
+    import pandas as pd
 
-class JointEstimates(JointEstimatesRecord):
+
+class JointEstimates(JointEstimatesRecord, KeptResult):
     """Several joints identified from one recording, each for itself; a mapping from names to estimates.
 
     A joint that failed is not in the mapping; `results` has it with its reason.
@@ -24,12 +28,20 @@ class JointEstimates(JointEstimatesRecord):
 
     Examples
     --------
-    >>> found = jid.identify_joints(jid.load_robot("arm.csv", [1, 2]))
+    >>> found = jid.identify(jid.load("arm.csv", joints=[1, 2]))
     >>> sorted(found), found["1"].joint.name
     (['1', '2'], 'joint 1')
     """
 
     __slots__ = ()
+    _KIND = "joints"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the joints."""
+        from jointid.joints.overview import overview_of
+
+        return overview_of(self)
 
     def report(self, verbose: bool = False) -> str:
         """Return the verdict, a line for each joint, and the first finding, as text.
@@ -44,36 +56,59 @@ class JointEstimates(JointEstimatesRecord):
 
         return text_report(self) if verbose else answer(self)
 
-    def document(self) -> dict[str, Any]:
-        """Return the result in JSON types."""
+    def to_dict(self) -> dict[str, Any]:
+        """Return the result in JSON's types: each joint's estimate as `Estimate.to_dict` has it, and the couplings."""
         from jointid.joints.document import document_of
 
         return document_of(self)
 
+    document = to_dict
+
     def to_json(self) -> str:
-        """Return the result as JSON: each joint's estimate as `Estimate.to_json` has it, and the couplings."""
-        from jointid.joints.document import json_of
+        """Return `to_dict` as JSON text; `from_json` reads it."""
+        return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
-        return json_of(self)
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the estimates that a JSON text holds; what needs the recordings is refused by each of them.
 
-    def save(self, path: str | Path) -> Path:
-        """Write the result as JSON, whole or not at all.
+        Parameters
+        ----------
+        text : str
+            From `to_json`.
 
         Raises
         ------
         InputError
-            The path does not end in ``.json``, or its folder does not exist.
-        OSError
-            The file cannot be written; an existing one is untouched.
+            Not JSON, not the estimates of several joints, another schema, or a value that cannot be used; names the
+            place in it.
         """
-        from jointid.joints.document import save_json
+        from jointid.joints.reading_back import read_joints
 
-        return save_json(self, path)
+        return read_joints(require_text(text), cls)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the parameters and derived quantities of all joints as a data frame, one row each.
+
+        Returns
+        -------
+        DataFrame
+            Indexed by joint and name, with the columns of `Estimate.to_pandas`. A joint that failed has no row.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        from jointid.base.frames import data_frame
+        from jointid.estimate.frame import estimate_rows
+
+        rows = [
+            {"joint": name, **row}
+            for name, estimate in self.items()
+            for row in estimate_rows(estimate)
+        ]
+        return data_frame(rows, index=["joint", "name"])
 
     def __str__(self) -> str:
         return self.report()
-
-    def _repr_html_(self) -> str:
-        from jointid.joints.html_tables import html_summary
-
-        return str(html_summary(self))

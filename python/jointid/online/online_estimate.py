@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
+from jointid.base.json_layout import json_types
+from jointid.base.result import Overview, Result
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.joint.joint import Joint
 
+_PLAIN = (
+    *("undetermined", "at_bound", "begin", "end", "windows", "penalty", "update", "seconds"),
+    "dropped",
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OnlineEstimate:
+class OnlineEstimate(Result):
     """An estimate from the last seconds of a motion that continues.
 
     Its intervals contain random errors only. `identify` on a recording also checks the signals, and
@@ -62,6 +70,57 @@ class OnlineEstimate:
     update: int
     seconds: float
     dropped: int
+
+    _KIND = "online"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the estimate."""
+        from jointid.estimate.overview import quantity_of
+
+        unknown = ", ".join(self.undetermined)
+        does = f"do not determine {unknown}" if unknown else "determine all free parameters"
+        return Overview(
+            title=f"{self.joint.name or 'joint'}: friction, on line",
+            answer=(f"the last seconds {does}",),
+            parameters=tuple(map(quantity_of, self.parameters.values())),
+            fit=(("penalty", f"{self.penalty:.4g}"),),
+            facts=(
+                ("time", f"{self.begin:.2f} to {self.end:.2f} s"),
+                ("windows", str(self.windows)),
+                ("update", f"{self.update}, in {1e3 * self.seconds:.2g} ms"),
+                ("samples left out", str(self.dropped)),
+            ),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything but the joint in JSON's types; a number that is not finite is a text."""
+        return dict(
+            json_types(
+                {
+                    "parameters": {name: asdict(p) for name, p in self.parameters.items()},
+                    **{name: getattr(self, name) for name in _PLAIN},
+                }
+            )
+        )
+
+    def report(self, *, verbose: bool = False) -> str:
+        """Return the values of the free parameters as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to add the fixed parameters, and what the last seconds do not determine. Default False.
+        """
+        lines = [str(self)]
+        if verbose:
+            lines += [
+                f"  {p.name:<16} {p.value:12.5g} {p.unit} (fixed)"
+                for p in self.parameters.values()
+                if not p.vary
+            ]
+            lines += [f"  not determined: {name}" for name in self.undetermined]
+        return "\n".join(lines)
 
     def __str__(self) -> str:
         lines = [f"{self.begin:.2f} to {self.end:.2f} s, {self.windows} windows"]

@@ -1,22 +1,24 @@
-"""The result of `identify_servo`."""
+"""What `identify` returns of a servo."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.base.notebook import Shown
-from jointid.base.schema import read_text
+from jointid.base.result import KeptResult, Overview, require_text
 from jointid.joint.joint import Joint
 from jointid.servo.record import ServoEstimateRecord
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from jointid.estimate.verdict import Verdict
 
 
-class ServoEstimate(ServoEstimateRecord, Shown):
+class ServoEstimate(ServoEstimateRecord, KeptResult):
     """A servo as identified.
 
     Attributes
@@ -62,6 +64,14 @@ class ServoEstimate(ServoEstimateRecord, Shown):
     """
 
     __slots__ = ()
+    _KIND = "servo"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the servo."""
+        from jointid.servo.overview import overview_of
+
+        return overview_of(self)
 
     @property
     def verdict(self) -> Verdict:
@@ -90,20 +100,20 @@ class ServoEstimate(ServoEstimateRecord, Shown):
 
         return text_report(self) if verbose else answer(self)
 
-    def document(self) -> dict[str, Any]:
-        """Return the estimate in JSON types."""
+    def to_dict(self) -> dict[str, Any]:
+        """Return the estimate in JSON's types; all but `draws` is in it."""
         from jointid.servo.document import document_of
 
         return document_of(self)
 
-    def to_json(self) -> str:
-        """Return the estimate as JSON."""
-        from jointid.servo.document import json_of
+    document = to_dict
 
-        return json_of(self)
+    def to_json(self) -> str:
+        """Return `to_dict` as JSON text; `from_json` reads it."""
+        return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     def save(self, path: str | Path) -> Path:
-        """Write the estimate as JSON, or the joint as identified into a joint file (.toml).
+        """Write the estimate as JSON, or the joint as identified into a joint file (.toml); return its path.
 
         Raises
         ------
@@ -111,49 +121,57 @@ class ServoEstimate(ServoEstimateRecord, Shown):
             Another ending, or a folder that does not exist.
         OSError
             The file cannot be written; an existing one is untouched.
-        """
-        from jointid.servo.document import save
 
-        return save(self, path)
+        Examples
+        --------
+        >>> path = jid.identify(servo_runs, servo).save("servo.json")
+        >>> jid.ServoEstimate.load(path)["inertia"] > 0.0
+        True
+        """
+        from jointid.base.files import write_whole
+
+        target = require_path("path", path)
+        if target.suffix == ".toml":
+            self.identified.save(target)
+        elif target.suffix == ".json":
+            write_whole(target, self.to_json().encode())
+        else:
+            raise InputError(
+                "a servo's estimate is saved as .json or .toml", argument="path", value=target.name
+            )
+        return target
 
     @classmethod
-    def from_json(cls, text: str) -> ServoEstimate:
-        """Return the estimate that a JSON text holds.
+    def from_json(cls, text: str) -> Self:
+        """Return the estimate that a JSON text holds; all but `draws` is in it.
 
         Raises
         ------
         InputError
             Not JSON, not a servo's estimate, another schema, or a field that cannot be used; names the place in it.
         """
-        from jointid.servo.reading_back import read_servo_estimate
+        from jointid.base.schema import read_json
+        from jointid.servo.reading_back import servo_estimate_of
 
-        return read_servo_estimate(text, cls)
+        return servo_estimate_of(read_json(require_text(text)), cls)
 
-    @classmethod
-    def load(cls, path: str | Path) -> ServoEstimate:
-        """Return the estimate that a .json file holds; all but `draws` is in it.
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the parameters as a data frame, one row each.
 
-        Parameters
-        ----------
-        path : path-like
+        Returns
+        -------
+        DataFrame
+            Indexed by name, with the columns of `Estimate.to_pandas`.
 
         Raises
         ------
         InputError
-            No such file, or as `from_json`; names the file and the place in it.
-
-        Examples
-        --------
-        >>> path = jid.identify_servo(servo_runs, servo).save("servo.json")
-        >>> jid.ServoEstimate.load(path)["inertia"] > 0.0
-        True
+            pandas is not installed.
         """
-        file = require_path("path", path)
-        text = read_text(file)
-        try:
-            return cls.from_json(text)
-        except InputError as error:
-            raise error.at(str(file)) from error
+        from jointid.base.frames import data_frame
+        from jointid.estimate.frame import parameter_rows
+
+        return data_frame(parameter_rows(self.parameters.values()), index="name")
 
     def __repr__(self) -> str:
         shown = ", ".join(f"{name}={p.value:.4g}" for name, p in self.parameters.items())

@@ -17,7 +17,6 @@ from jointid.base.schema import (
     Record,
     TableOf,
     Text,
-    read_json,
 )
 from jointid.estimate.json import empty_calls, finding_of, parameter_of
 from jointid.estimate.json_schema import FINDING, PARAMETER
@@ -79,13 +78,12 @@ _ESTIMATE = Record(
 )
 
 
-def read_servo_estimate(text: str, cls: type[Saved]) -> Saved:
-    """Return the estimate of this class that a JSON text holds; see `ServoEstimate.load`."""
-    document = read_json(text)
+def servo_estimate_of(document: Any, cls: type[Saved]) -> Saved:
+    """Return the estimate of this class that a document holds; see `ServoEstimate.from_json`."""
     if not isinstance(document, dict) or document.get("kind") != KIND:
         raise InputError(
             f"this JSON is not a servo's estimate: its field 'kind' is not '{KIND}'",
-            remedy="save one with identify_servo",
+            remedy="identify a servo and save its estimate",
         )
     d = _ESTIMATE.read(document, "")
     d["settings"].setdefault("model", DEFAULT_MODEL)  # older files do not have it

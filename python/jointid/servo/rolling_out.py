@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.base.notebook import Shown
+from jointid.base.json_layout import json_types
+from jointid.base.result import Overview, Quantity, Result
 from jointid.base.text_table import aligned
 from jointid.base.values import dataclass
 from jointid.joint.checks import positive_number
@@ -67,9 +68,14 @@ class RunRollout:
         """Whether two motions far apart belong to nearly the same servo, so that its error says little."""
         return self.spread > BISTABLE
 
+    @property
+    def remark(self) -> str:
+        """What a reader must know of the error, in a few words; empty where there is nothing."""
+        return ", ".join(["bistable"] * self.bistable + ["duty as logged"] * (not self.closed))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Rollout(Shown):
+class Rollout(Result):
     """All runs, simulated.
 
     Attributes
@@ -78,6 +84,8 @@ class Rollout(Shown):
     """
 
     runs: tuple[RunRollout, ...]
+
+    _KIND = "rollout"
 
     @property
     def errors(self) -> Array:
@@ -94,37 +102,55 @@ class Rollout(Shown):
         """Names of the bistable runs."""
         return tuple(run.name for run in self.runs if run.bistable)
 
-    def report(self) -> str:
-        """Return the errors as text."""
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the rollout."""
+        runs = len(self.runs)
+        return Overview(
+            title=f"rollout of {runs} run{'s' * (runs != 1)}",
+            answer=(f"median error of the position {math.degrees(self.median):.2f}°",),
+            parameters=tuple(
+                Quantity(
+                    name=run.name,
+                    value=math.degrees(run.error),
+                    unit="°",
+                    meaning="mean absolute error of the position",
+                    remark=run.remark,
+                )
+                for run in self.runs
+            ),
+        )
+
+    def report(self, *, verbose: bool = False) -> str:
+        """Return the errors as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Changes nothing: the answer is everything.
+        """
+        del verbose
         table = [["run", "error [deg]", "moved by 1 % of torque [deg]", ""]]
-        for run in self.runs:
-            notes = ["bistable"] * run.bistable + ["duty as logged"] * (not run.closed)
-            table.append(
-                [
-                    run.name,
-                    f"{math.degrees(run.error):.2f}",
-                    f"{math.degrees(run.spread):.2f}",
-                    ", ".join(notes),
-                ]
-            )
+        table += [
+            [
+                run.name,
+                f"{math.degrees(run.error):.2f}",
+                f"{math.degrees(run.spread):.2f}",
+                run.remark,
+            ]
+            for run in self.runs
+        ]
         table.append(["median", f"{math.degrees(self.median):.2f}", "", ""])
         return "\n".join(aligned(table))
 
-    def document(self) -> dict[str, Any]:
-        """Return the errors in JSON types."""
-        return {
-            "median": self.median,
-            "runs": [
-                {
-                    "name": run.name,
-                    "error": run.error,
-                    "spread": run.spread,
-                    "bistable": run.bistable,
-                    "closed": run.closed,
-                }
-                for run in self.runs
-            ],
-        }
+    def to_dict(self) -> dict[str, Any]:
+        """Return the errors in JSON's types."""
+        names = ("name", "error", "spread", "bistable", "closed")
+        runs = [{name: getattr(run, name) for name in names} for run in self.runs]
+        document: dict[str, Any] = json_types({"median": self.median, "runs": runs})
+        return document
+
+    document = to_dict
 
 
 def rollout(
@@ -145,7 +171,7 @@ def rollout(
     estimate : ServoEstimate or Joint
         A joint needs values of torque constant, resistance, inertia and friction.
     recordings : Recording or sequence of Recording
-        As for `identify_servo`.
+        As for `identify`.
     step : float
         Longest integration step [s]. Default 1 ms.
     threads : int
@@ -162,8 +188,8 @@ def rollout(
 
     Examples
     --------
-    >>> found: jid.ServoEstimate = jid.identify_servo(servo_runs[1:], servo)
-    >>> predicted: jid.Rollout = jid.rollout(found, servo_runs[:1])
+    >>> found: jid.ServoEstimate = jid.identify(servo_runs[1:], servo)
+    >>> predicted: jid.Rollout = jid.simulate(found, recordings=servo_runs[:1])
     >>> len(predicted.runs)
     1
     """

@@ -22,6 +22,7 @@ from jointid.servo.verdict import judged_servo
 
 Array = NDArray[np.float64]
 
+_LABEL = 8  # letters of a label
 _MEANING = {
     "torque_per_voltage": ("torque of the motor per voltage, k_t / R", "N·m/V"),
     "back_emf": ("braking by back-EMF while driven, k_t² / R", "N·m·s/rad"),
@@ -141,26 +142,43 @@ def _interval(p: ParameterEstimate) -> str:
 def text_report(estimate: ServoEstimateRecord, action: Callable[[Action], str] = str) -> str:
     """Return the report that `ServoEstimate.report` shows; `action` words an advice."""
     name = estimate.joint.name or "servo"
-    used = float(np.mean(estimate.moving))
     lines = [
-        f"{name}: {len(estimate.runs)} run{'s' * (len(estimate.runs) != 1)}, "
-        f"{estimate.windows} windows of {1e3 * estimate.window:g} ms, "
-        f"{100.0 * used:.0f} % of the time used",
+        f"{name}: {', '.join(text for _, text in recorded(estimate))}",
         "",
         *judged_servo(estimate).lines(),
         "",
         *aligned([head(), *rows(estimate)]),
         "",
-        f"fit       {1e3 * estimate.rms:.3g} mN·m left, "
-        f"{100.0 * estimate.relative_residual:.1f} % of the load's torque",
-        f"rows      {_lead(estimate)}",
-        *_command(estimate),
-        f"time      {1e3 * estimate.seconds:.0f} ms",
+        *(f"{label.ljust(_LABEL)}  {text}" for label, text in quality(estimate)),
     ]
     if estimate.findings:
         lines += ["", "Findings"]
         lines += [f"- {each.code}: {each.worded(action)}" for each in estimate.findings]
     return printable("\n".join(lines))
+
+
+def recorded(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
+    """What the estimate was made from, as label and text."""
+    runs, used = len(estimate.runs), float(np.mean(estimate.moving))
+    return [
+        ("runs", f"{runs} run{'s' * (runs != 1)}"),
+        ("windows", f"{estimate.windows} windows of {1e3 * estimate.window:g} ms"),
+        ("used", f"{100.0 * used:.0f} % of the time used"),
+    ]
+
+
+def quality(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
+    """How good the fit is and what it rests on, as label and text."""
+    left = (
+        f"{1e3 * estimate.rms:.3g} mN·m left, "
+        f"{100.0 * estimate.relative_residual:.1f} % of the load's torque"
+    )
+    return [
+        ("fit", left),
+        ("rows", _lead(estimate)),
+        *_command(estimate),
+        ("time", f"{1e3 * estimate.seconds:.0f} ms"),
+    ]
 
 
 def _lead(estimate: ServoEstimateRecord) -> str:
@@ -170,12 +188,12 @@ def _lead(estimate: ServoEstimateRecord) -> str:
     return f"{shown} (given)" if estimate.lead else "position and duty are taken as simultaneous"
 
 
-def _command(estimate: ServoEstimateRecord) -> list[str]:
+def _command(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
     if estimate.command_lag is None:
         return []
     if estimate.command_lag == 0.0:
-        return [
-            "command   nothing shows that it is held between rows: it is taken as moving evenly"
-        ]
+        text = "nothing shows that it is held between rows: it is taken as moving evenly"
+        return [("command", text)]
     late = f"{1e3 * estimate.command_lag:.1f} ms"
-    return [f"command   held between rows: it acts {late} later than its row on average (found)"]
+    text = f"held between rows: it acts {late} later than its row on average (found)"
+    return [("command", text)]

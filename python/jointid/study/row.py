@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
@@ -11,15 +12,18 @@ from jointid.base.schema import Number, Plain, Record, TableOf, Text
 REFUSED = "refused"
 
 
+_LEAST = -sys.float_info.max
+
+
 @dataclass(frozen=True, slots=True)
 class _Measured:
-    """A number that may be infinite or undefined, in JSON as Python writes it: Infinity, NaN."""
+    """A number that may be infinite or undefined: Infinity and NaN in a study's lines, "inf" and "nan" in its JSON."""
 
     def read(self, value: Any, place: str) -> float:
         """Return a float."""
         if isinstance(value, float) and (math.isnan(value) or value == math.inf):
             return value
-        return float(Number().read(value, place))
+        return float(Number(low=_LEAST, infinite=True, undefined=True).read(value, place))
 
 
 _COUNT = Number(low=0, high=2**63 - 1, whole=True)

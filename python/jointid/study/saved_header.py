@@ -9,6 +9,7 @@ from jointid.base.errors import InputError
 from jointid.base.schema import Json, ListOf, Number, Plain, Record, TableOf, Text
 
 FORMAT = "jointid-study"
+KIND = "jointid study"  # in its JSON
 SCHEMA = 1
 EXPECTED = "a file that a sweep wrote is expected"
 

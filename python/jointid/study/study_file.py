@@ -155,7 +155,7 @@ def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
                 header = read_header(record, header)
             else:
                 row = Row.of(record)
-                _check_row(row, header, first)
+                check_row(row, header, first)
                 rows.setdefault(row.place, row)
         except InputError as error:
             raise error.at(f"{path}, line {number}") from None
@@ -171,7 +171,7 @@ def _text(line: bytes) -> str:
         raise InputError(f"this is not text in UTF-8; {EXPECTED}") from None
 
 
-def _check_row(row: Row, header: dict[str, Any], first: dict[int, Row]) -> None:
+def check_row(row: Row, header: dict[str, Any], first: dict[int, Row]) -> None:
     """Refuse a row of no cell of the study, or with other columns than the first row of its cell."""
     if row.cell >= len(header["cells"]):
         raise InputError(

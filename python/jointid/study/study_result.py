@@ -5,27 +5,30 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
+from jointid.base.error_text import printable
 from jointid.base.errors import InputError
 from jointid.base.frames import data_frame
-from jointid.base.html import element
+from jointid.base.json_layout import json_text, json_types
+from jointid.base.result import KeptResult, Overview, require_text
 from jointid.joint.checks import suggestion
 from jointid.study import study_file, tables
 from jointid.study.row import Row
-from jointid.study.saved_header import FORMAT, SCHEMA
-from jointid.study.summary import Summary, html_summary, summarise
+from jointid.study.saved_header import FORMAT, KIND, SCHEMA
+from jointid.study.summary import Summary, summarise
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Study:
+class Study(KeptResult):
     """Many identifications, one row each.
 
     Attributes
@@ -65,6 +68,8 @@ class Study:
     rows: tuple[Row, ...]
     settings: dict[str, Any]
     seconds: float = 0.0
+
+    _KIND = "study"
 
     @property
     def complete(self) -> bool:
@@ -140,27 +145,89 @@ class Study:
         """
         return data_frame(self._table())
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the table to .csv or .parquet, or the study itself to .jsonl; a failed write changes no file.
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the study."""
+        from jointid.study.overview import overview_of
+
+        seeds = range(self.seed, self.seed + max(self.trials, 1))
+        missing = len(self.cells) * self.trials - len(self.rows)
+        return overview_of(self.title, self.summary(), self.settings, seeds, missing)
+
+    def report(self, *, verbose: bool = False) -> str:
+        """Return the title and the summary of the cells as text.
+
+        Parameters
+        ----------
+        verbose : bool
+            Whether to return all cells. Default False: the best ten.
+        """
+        summary = self.summary()
+        text = summary.text(len(self.cells)) if verbose else str(summary)
+        return printable(f"{self.title}\n\n{text}")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return header and rows of the study's file in JSON's types; a number that is not finite is a text."""
+        rows = [row.asdict() for row in self.rows]
+        document: dict[str, Any] = json_types({"kind": KIND, **header_of(self), "rows": rows})
+        return document
+
+    document = to_dict
+
+    def to_json(self) -> str:
+        """Return `to_dict` as JSON text; `from_json` reads it."""
+        return json_text(self.to_dict())
+
+    @classmethod
+    def from_json(cls, text: str) -> Study:
+        """Return the study that a JSON text holds.
+
+        Parameters
+        ----------
+        text : str
+            From `to_json`.
+
+        Raises
+        ------
+        InputError
+            Not JSON, no study, another schema, or a value that cannot be used; names the place in it.
+        """
+        from jointid.study.reading_back import read_study
+
+        header, rows = read_study(require_text(text))
+        return study_of(header, rows)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the table to .csv or .parquet, or the study itself to .jsonl or .json; a failed write changes no file.
+
+        Returns
+        -------
+        Path
+            Of the file.
 
         Raises
         ------
         InputError
             Another extension, or the folder does not exist.
         """
+        file = require_path("path", path)
         records = [header_of(self), *(row.asdict() for row in self.rows)]
-        tables.save(self._table(), records, require_path("path", path))
+        tables.save(self._table(), records, self.to_json, file)
+        return file
 
-    @staticmethod
-    def load(path: str | os.PathLike[str]) -> Study:
-        """Return the study of a .jsonl file, finished or not.
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Study:
+        """Return the study of a .jsonl or .json file, finished or not.
 
         Raises
         ------
         InputError
             The file cannot be read, or is not a study.
         """
-        header, rows, _ = study_file.read(require_path("path", path))
+        file = require_path("path", path)
+        if file.suffix == ".json":
+            return super(Study, cls).load(file)
+        header, rows, _ = study_file.read(file)
         return study_of(header, rows)
 
     def _table(self) -> dict[str, list[Any]]:
@@ -174,11 +241,6 @@ class Study:
 
     def __repr__(self) -> str:
         return f"<Study{self.title.removeprefix('study')}>"
-
-    def _repr_html_(self) -> str:
-        return str(
-            element("div", element("b", f"jointid {self.title}"), html_summary(self.summary()))
-        )
 
 
 def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -> Study:

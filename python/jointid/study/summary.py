@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-_SHOWN = 10  # cells in a text
+SHOWN = 10  # cells in a text
 _ALIKE = 1e-4  # of a value: so much do searches differ that found the same minimum
 
 
@@ -103,16 +103,18 @@ class Summary:
         return data_frame([_record(cell) for cell in self.cells])
 
     def __str__(self) -> str:
-        header, body = summary_texts(self.best(_SHOWN))
+        return self.text(SHOWN)
+
+    def text(self, most: int) -> str:
+        """Return the table of so many cells at most, the best ones, as text."""
+        header, body = summary_texts(self.best(most))
         widths = [max(len(line[i]) for line in [header, *body]) for i in range(len(header))]
         lines = [
             "  ".join(text.rjust(width) for text, width in zip(line, widths, strict=True))
             for line in [header, *body]
         ]
-        if len(self.cells) > _SHOWN:
-            lines.append(
-                f"the best {_SHOWN} of {len(self.cells)}; to_pandas() and --table have all"
-            )
+        if len(self.cells) > most:
+            lines.append(f"the best {most} of {len(self.cells)}; to_pandas() and --table have all")
         lines += summary_notes(self)
         return printable("\n".join(line.rstrip() for line in lines))
 
@@ -229,7 +231,7 @@ def summary_texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
     """Return header and lines; a parameter as bias ± scatter [%] of a known truth, or as value ± error."""
     cells = summary.cells
     swept = list(cells[0].labels) if cells else []
-    names = _varying(cells)
+    names = varying(cells)
     success = any(cell.success is not None for cell in cells)
     tracking = list(dict.fromkeys(name for cell in cells for name in cell.tracking))
     header = [*swept, "trials", "converged", "penalty"]
@@ -251,7 +253,7 @@ def _names(cells: Sequence[CellSummary]) -> list[str]:
     return list(dict.fromkeys(name for cell in cells for name in cell.mean))
 
 
-def _varying(cells: Sequence[CellSummary]) -> list[str]:
+def varying(cells: Sequence[CellSummary]) -> list[str]:
     """Return the parameters that the table shows: all, if none varies."""
     names = _names(cells)
     return [name for name in names if not _fixed(cells, name)] or names
@@ -274,8 +276,8 @@ def cell_name(labels: Mapping[str, Any]) -> str:
 
 def _left_out(summary: Summary) -> str:
     """Return a line with the parameters that the table does not show."""
-    varying = _varying(summary.cells)
-    left_out = [name for name in _names(summary.cells) if name not in varying]
+    shown = varying(summary.cells)
+    left_out = [name for name in _names(summary.cells) if name not in shown]
     return f"not shown: {', '.join(left_out)} (same in all cells)" if left_out else ""
 
 
@@ -291,16 +293,23 @@ def _parameter(cell: CellSummary, name: str) -> str:
         return f"{100.0 * cell.bias[name]:+.2f}" + _after(100.0 * cell.scatter[name], ".2f")
     if name not in cell.mean:
         return ""
-    # The spread of trials that end in one minimum is rounding, and no error.
-    error = max(cell.stderr.get(name, 0.0), cell.spread.get(name, 0.0) if cell.differ else 0.0)
-    if not 0.0 < error < math.inf:
+    error = error_of(cell, name)
+    if error is None:
         return f"{cell.mean[name]:.4g}"
     return f"{rounded(cell.mean[name], error)} ± {two_digits(error)}"
 
 
+def error_of(cell: CellSummary, name: str) -> float | None:
+    """Return the error of a parameter's mean; None where there is none."""
+    # The spread of trials that end in one minimum is rounding, and no error.
+    error = max(cell.stderr.get(name, 0.0), cell.spread.get(name, 0.0) if cell.differ else 0.0)
+    return error if 0.0 < error < math.inf else None
+
+
 def _after(spread: float, form: str) -> str:
-    """Return the spread behind a value; nothing if it is not known, with one trial."""
-    return "" if math.isnan(spread) else f" ± {spread:{form}}"
+    """Return the spread behind a value; nothing if it is not known, with one trial, or rounds to zero."""
+    text = f"{spread:{form}}"
+    return f" ± {text}" if float(text) > 0.0 else ""
 
 
 def _percent(share: float | None) -> str:

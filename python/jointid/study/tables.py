@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -41,8 +41,10 @@ def parameters_of(rows: Sequence[Row]) -> tuple[str, ...]:
     return tuple({name: None for row in rows for name in row.values})
 
 
-def save(table: Mapping[str, list[Any]], records: Sequence[Any], path: Path) -> None:
-    """Write a study's table, or its records, by the path's extension.
+def save(
+    table: Mapping[str, list[Any]], records: Sequence[Any], document: Callable[[], str], path: Path
+) -> None:
+    """Write a study's table, its records, or its JSON, by the path's extension.
 
     Raises
     ------
@@ -60,6 +62,7 @@ def save(table: Mapping[str, list[Any]], records: Sequence[Any], path: Path) -> 
         ".csv": lambda: _csv(table),
         ".parquet": lambda: _parquet(table),
         ".jsonl": lambda: _lines(records),
+        ".json": lambda: document().encode(),
     }
     if path.suffix not in writers:
         raise InputError(

@@ -1,68 +1,30 @@
-"""The result of `compare_robot_models`: a row for each candidate, the winner, and each joint's model."""
+"""What `compare` returns of a robot: a row for each candidate, the winner, and each joint's model."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
-from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any, Self
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
+from jointid.base.json_layout import json_types
+from jointid.base.result import KeptResult, Overview, Quantity, require_text
 from jointid.base.text_table import aligned
 from jointid.estimate.answers import cut, findings
 from jointid.estimate.wording import rounded, two_digits
-from jointid.robot.links.inertia_modes import Inertia
 from jointid.robot.result.answers import FINDINGS, lines_of_joints
+from jointid.robot.result.comparison_row import ComparedRobotModel
 from jointid.robot.result.result import RobotEstimate
 
-SCHEMA = 1
-KIND = "jointid robot comparison"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ComparedRobotModel:
-    """One row of a comparison.
-
-    Attributes
-    ----------
-    inertia : str
-        "urdf", "scaled" or "free".
-    model : str
-        Of all joints.
-    parameters : int
-        Free parameters of the fit to all recordings.
-    score : float
-        Relative residual of held-out torque: mean over joints and blocks.
-    stderr : float
-        Its standard error over the blocks.
-    fold_scores : tuple of float
-        Of the blocks, mean over the joints.
-    joints : mapping of str to tuple of float
-        Relative residual of each joint in each block; NaN where it does not move.
-    reason : str
-        Why it wins or does not win.
-    """
-
-    inertia: Inertia
-    model: str
-    parameters: int
-    score: float
-    stderr: float
-    fold_scores: tuple[float, ...]
-    joints: Mapping[str, tuple[float, ...]]
-    reason: str = ""
-
-    @property
-    def name(self) -> str:
-        """Inertia and model in one text."""
-        return f"inertia {self.inertia}, {self.model}"
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RobotComparison:
-    """The result of `compare_robot_models`.
+class RobotComparison(KeptResult):
+    """What `compare` returns of a robot.
 
     Attributes
     ----------
@@ -87,6 +49,39 @@ class RobotComparison:
     estimate: RobotEstimate
     settings: Mapping[str, Any]
 
+    _KIND = "robot comparison"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the comparison."""
+        from jointid.robot.result.overview import made_by
+
+        left_out = self._left_out.items()
+        return Overview(
+            title=f"{self.estimate.robot.name or 'robot'}: {len(self.rows)} models compared",
+            footer=made_by(self.estimate),
+            answer=(f"Use {self.winner.name}.", self.reason),
+            level=self.estimate.verdict.level,
+            parameters=tuple(
+                Quantity(
+                    name=row.name,
+                    value=100.0 * row.score,
+                    error=100.0 * row.stderr,
+                    unit="%",
+                    meaning="residual of held-out torque",
+                    remark=row.reason,
+                )
+                for row in self.rows
+            ),
+            facts=(
+                ("held out", self.setting()),
+                *((f"model of {joint}", model) for joint, model in self.models.items()),
+                *((f"not compared: {name}", why) for name, why in left_out),
+            ),
+            findings=self.estimate.findings,
+            inner={self.winner.name: self.estimate},
+        )
+
     def report(self, verbose: bool = False) -> str:
         """Return the winner, a line for each joint, and the first finding, as text.
 
@@ -104,16 +99,10 @@ class RobotComparison:
         lines += ["", *(f"not compared: {name}: {why}" for name, why in self._left_out.items())]
         return printable("\n".join([*lines, f"winner: {self.winner.name}", self.reason]))
 
-    def _repr_html_(self) -> str:
-        tables = [([*_HEAD], self.cells()), (["", *self.models], self.joint_cells())]
-        shown = "".join(_html(head, cells) for head, cells in tables)
-        return (
-            f"<div><b>jointid comparison</b>{shown}<p>{escape(self.setting())}</p>"
-            f"<p>{escape(self.reason)}</p></div>"
-        )
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything in JSON's types; the winner's estimate as in `RobotEstimate.to_dict`."""
+        from jointid.robot.result.comparison_reading import KIND, SCHEMA
 
-    def document(self) -> dict[str, Any]:
-        """Return everything in JSON types; the winner's estimate as in `RobotEstimate.document`."""
         rows = [asdict(row) for row in self.rows]
         for row in rows:
             row["joints"] = {
@@ -126,14 +115,52 @@ class RobotComparison:
             "winner": {"inertia": self.winner.inertia, "model": self.winner.model},
             "models": dict(self.models),
             "reason": self.reason,
-            "rows": rows,
-            "settings": dict(self.settings),
-            "estimate": self.estimate.document(),
+            "rows": json_types(rows),
+            "settings": json_types(self.settings),
+            "estimate": self.estimate.to_dict(),
         }
 
+    document = to_dict
+
     def to_json(self) -> str:
-        """Return `document` as JSON text."""
-        return json.dumps(self.document(), indent=1, ensure_ascii=False, allow_nan=False)
+        """Return `to_dict` as JSON text; `from_json` reads it."""
+        return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the comparison that a JSON text holds; `bootstrap` of its estimate needs the recordings.
+
+        Parameters
+        ----------
+        text : str
+            From `to_json`.
+
+        Raises
+        ------
+        InputError
+            Not JSON, not a robot's comparison, another schema, or a value that cannot be used; names the place in it.
+        """
+        from jointid.robot.result.comparison_reading import comparison_fields
+
+        return cls(**comparison_fields(require_text(text), RobotEstimate))
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a row for each candidate, in the order of the call, as a data frame.
+
+        Returns
+        -------
+        DataFrame
+            Indexed by inertia and model; scores relative to the measured torque, as in `rows`.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        from jointid.base.frames import data_frame
+
+        rows = [{name: getattr(row, name) for name in _PLAIN} for row in self.rows]
+        return data_frame(rows, index=["inertia", "model"])
 
     def cells(self) -> list[list[str]]:
         """The table of the candidates, without its head."""
@@ -152,7 +179,7 @@ class RobotComparison:
     def joint_cells(self) -> list[list[str]]:
         """Each joint's held-out residual, a row a candidate, and its model."""
         found = [
-            [row.name, *(f"{100.0 * mean_of(scores):.2f} %" for scores in row.joints.values())]
+            [row.name, *(f"{100.0 * row.mean_of(joint):.2f} %" for joint in row.joints)]
             for row in self.rows
         ]
         return [*found, ["chosen", *self.models.values()]]
@@ -181,21 +208,8 @@ class RobotComparison:
         return f"RobotComparison({scores}; winner {self.winner.name})"
 
 
+_PLAIN = ("inertia", "model", "parameters", "score", "stderr", "fold_scores", "reason")
 _HEAD = ["inertia", "model", "parameters", "held-out residual", "± std. error", "remark"]
-
-
-def mean_of(scores: tuple[float, ...]) -> float:
-    """Mean of the blocks in which a joint moves."""
-    moving = [each for each in scores if each == each]
-    return sum(moving) / len(moving) if moving else float("nan")
-
-
-def _html(head: list[str], rows: list[list[str]]) -> str:
-    top = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f"<table class='jointid'><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def answer_of_comparison(

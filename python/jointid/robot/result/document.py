@@ -1,14 +1,9 @@
-"""A robot's estimate as JSON: complete enough to use it, and to draw its page again."""
+"""A robot's estimate in JSON's types: complete enough to use it, and to draw its page again."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import Any
 
-from jointid.base.argument_checks import require_path
-from jointid.base.errors import InputError
-from jointid.base.files import write_whole
 from jointid.estimate.json import documents_of, plain
 from jointid.robot.links.robot import Robot
 from jointid.robot.result.record import RobotEstimateRecord
@@ -79,17 +74,3 @@ def robot_document(robot: Robot) -> dict[str, Any]:
         "directions": plain(robot.directions),
         "side": robot.side,
     }
-
-
-def json_of(estimate: RobotEstimateRecord) -> str:
-    """Return the estimate as JSON text."""
-    return json.dumps(document_of(estimate), indent=1, ensure_ascii=False, allow_nan=False)
-
-
-def save_json(estimate: RobotEstimateRecord, path: str | Path) -> Path:
-    """Write the estimate as JSON: see `RobotEstimate.save`."""
-    target = require_path("path", path)
-    if target.suffix != ".json":
-        raise InputError("a robot's estimate is saved as .json", argument="path", value=target.name)
-    write_whole(target, json_of(estimate).encode())
-    return target

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from jointid.base.errors import InputError
-from jointid.base.schema import Number, read_json
+from jointid.base.schema import Number
 from jointid.estimate.json import (
     arrays_of,
     empty_calls,
@@ -34,13 +34,12 @@ _TURNED = 1e-6  # by which a rotation may be none
 _SINGULAR = 1e9
 
 
-def read_robot_estimate(text: str, cls: type[Saved]) -> Saved:
-    """Return the estimate of this class that a JSON text holds; see `RobotEstimate.load`."""
-    document = read_json(text)
+def robot_estimate_of(document: Any, cls: type[Saved]) -> Saved:
+    """Return the estimate of this class that a document holds; see `RobotEstimate.from_json`."""
     if not isinstance(document, dict) or document.get("kind") != KIND:
         raise InputError(
             f"this JSON is not a robot's estimate: its field 'kind' is not '{KIND}'",
-            remedy="save one with identify_robot",
+            remedy="identify a robot and save its estimate",
         )
     schema = int(Number(low=1, whole=True).read(document.get("schema"), "schema"))
     if schema != SCHEMA:

@@ -1,20 +1,22 @@
-"""The result of `identify_robot`."""
+"""What `identify` returns of a robot."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+import json
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.base.argument_checks import require_kind, require_path
+from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
-from jointid.base.notebook import Shown
+from jointid.base.result import KeptResult, Overview, require_text
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.result.record import RobotEstimateRecord
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.verdict import Verdict
     from jointid.robot.result.prediction import RobotPrediction
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-class RobotEstimate(RobotEstimateRecord, Shown):
+class RobotEstimate(RobotEstimateRecord, KeptResult):
     """Friction and inertia of a whole robot.
 
     Attributes
@@ -63,6 +65,14 @@ class RobotEstimate(RobotEstimateRecord, Shown):
     """
 
     __slots__ = ()
+    _KIND = "robot"
+
+    @property
+    def overview(self) -> Overview:
+        """What a page needs to know of the robot."""
+        from jointid.robot.result.overview import overview_of
+
+        return overview_of(self)
 
     @property
     def verdict(self) -> Verdict:
@@ -182,71 +192,57 @@ class RobotEstimate(RobotEstimateRecord, Shown):
 
         return text_summary(self)
 
-    def document(self) -> dict[str, Any]:
-        """Return the result in JSON types."""
+    def to_dict(self) -> dict[str, Any]:
+        """Return the result in JSON's types; everything but `draws` is in it."""
         from jointid.robot.result.document import document_of
 
         return document_of(self)
 
+    document = to_dict
+
     def to_json(self) -> str:
-        """Return the result as JSON."""
-        from jointid.robot.result.document import json_of
-
-        return json_of(self)
-
-    def save(self, path: str | Path) -> Path:
-        """Write the result as JSON, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            The path does not end in ``.json``, or its folder does not exist.
-        OSError
-            The file cannot be written; an existing one is untouched.
-        """
-        from jointid.robot.result.document import save_json
-
-        return save_json(self, path)
+        """Return `to_dict` as JSON text; `from_json` reads it."""
+        return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     @classmethod
-    def from_json(cls, text: str) -> RobotEstimate:
-        """Return the estimate that a JSON text holds.
+    def from_json(cls, text: str) -> Self:
+        """Return the estimate that a JSON text holds; everything but `bootstrap` works with it.
 
         Raises
         ------
         InputError
             Not JSON, not a robot's estimate, another schema, or a field that cannot be used; names the place in it.
-        """
-        from jointid.robot.result.reading_back import read_robot_estimate
-
-        return read_robot_estimate(text, cls)
-
-    @classmethod
-    def load(cls, path: str | Path) -> RobotEstimate:
-        """Return the estimate that a .json file holds; everything but `bootstrap` works with it.
-
-        Parameters
-        ----------
-        path : path-like
-
-        Raises
-        ------
-        InputError
-            No such file, or as `from_json`; names the file and the place in it.
 
         Examples
         --------
         >>> jid.RobotEstimate.load("arm.json").friction([0.5, -0.5])  # doctest: +SKIP
         array([ 5.5, -2.75])
         """
-        from jointid.base.schema import read_text
+        from jointid.base.schema import read_json
+        from jointid.robot.result.reading_back import robot_estimate_of
 
-        place = require_path("path", path)
-        text = read_text(place)
-        try:
-            return cls.from_json(text)
-        except InputError as error:
-            raise error.at(str(place)) from error
+        return robot_estimate_of(read_json(require_text(text)), cls)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the parameters of all joints, and the base parameters, as a data frame, one row each.
+
+        Returns
+        -------
+        DataFrame
+            Indexed by the names of `parameters`, with the columns of `Estimate.to_pandas`.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        from jointid.base.frames import data_frame
+        from jointid.estimate.frame import parameter_rows
+
+        every = self.parameters
+        rows = parameter_rows(every.values())
+        named = [row | {"name": name} for name, row in zip(every, rows, strict=True)]
+        return data_frame(named, index="name")
 
     def __str__(self) -> str:
         return self.report()
