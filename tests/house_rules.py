@@ -112,14 +112,14 @@ FOLDERS: dict[str, Folder] = {
     "comparison": Folder(may_use={"balance", *_SOUGHT, "servo"}, packages={"numpy", "pandas"}),
     "joints": Folder(
         may_use={*(_SOUGHT - {"problem"}), "recording/wide", "identification/causes"},
-        packages={"numpy"},
+        packages={"numpy", "pandas"},
     ),
     "online": Folder(may_use={"balance", *_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
     "excitation": Folder(
         may_use={*(_SOUGHT - {"identification/search"}), "simulation", "plot"},
-        packages={"numpy", "matplotlib"},
+        packages={"numpy", "matplotlib", "pandas"},
     ),
     "robot/links": Folder(
         may_use={"base", "joint", "recording", "recording/wide"}, packages={"numpy", "pinocchio"}
@@ -145,7 +145,7 @@ FOLDERS: dict[str, Folder] = {
             "robot/links",
             "robot/motion",
         },
-        packages={"numpy"},
+        packages={"numpy", "pandas"},
     ),
     "robot/fit": Folder(
         may_use={
@@ -211,26 +211,41 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy"},
     ),
     "servo": Folder(
-        may_use={"balance", *_DATA, "estimate", "identification/causes"}, packages={"numpy"}
+        may_use={"balance", *_DATA, "estimate", "identification/causes"},
+        packages={"numpy", "pandas"},
+    ),
+    "panels": Folder(
+        may_use={
+            *("base", "recording", "joint", "problem", "estimate", "simulation"),
+            *("robot/result", "servo", "comparison", "study", "commissioning"),
+        },
+        packages={"numpy"},
     ),
     "plot": Folder(
-        may_use={*_DATA, "simulation", "estimate", "study", "servo"},
+        may_use={*_DATA, "simulation", "estimate", "study", "servo", "panels"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
         may_use={
-            *("base", "joint", "estimate", "joints", "robot/result", "servo"),
-            "identification/warnings",
-            *("report/drawing", "recording", "commissioning", "comparison", "study", "excitation"),
-            "problem",
+            *("base", "problem", "recording", "servo"),
+            *("report/page", "report/sections", "report/renderers"),
+        }
+    ),
+    "report/page": Folder(may_use={"base", "recording", "estimate", "servo", "panels"}),
+    "report/sections": Folder(
+        may_use={
+            *("base", "recording", "problem", "estimate", "identification/warnings", "comparison"),
+            *("joints", "robot/result", "servo", "excitation", "study", "commissioning"),
+            *("panels", "report/page"),
         },
         packages={"numpy"},
     ),
-    "report/drawing": Folder(may_use={"base"}, packages={"numpy"}),
+    "report/renderers": Folder(may_use={"base", "report/drawing", "report/page"}),
+    "report/drawing": Folder(may_use={"base", "panels"}, packages={"numpy"}),
     "exports": Folder(
         may_use={
             *("base", "joint", "estimate", "simulation", "identification", "problem"),
-            *("robot/links", "robot/result"),
+            *("robot/links", "robot/result", "servo"),
         },
         packages={"numpy", "scipy"},
     ),
@@ -266,11 +281,21 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"} - {"problem"},
         packages={"numpy"},
     ),
+    # One verb an act: each finds the function of its subject in the rooms below.
+    "verbs": Folder(
+        may_use={
+            *(*_DATA, "estimate", "identification"),
+            *("recording/readers", "recording/wide", "comparison", "joints", "servo"),
+            *("robot", "robot/links", "robot/result", "simulation", "excitation", "study"),
+        },
+        packages={"numpy"},
+    ),
     # The page in a browser; what it computes is asked for in a process of its own.
     "app": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "comparison", "report"),
+            *("recording/readers", "comparison", "panels"),
+            *("report", "report/page", "report/renderers"),
         },
         packages={"numpy", "nicegui"},
     ),
@@ -289,6 +314,7 @@ FOLDERS: dict[str, Folder] = {
                 "plot",
                 "report",
                 "exports",
+                "verbs",
                 "identification/warnings",
             ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
@@ -299,7 +325,7 @@ FOLDERS: dict[str, Folder] = {
     # The face of the package: its own folder is the top one.
     "": Folder(
         may_use={
-            *(_SOUGHT - {"problem"}),
+            *(_SOUGHT - {"problem", "identification"}),
             *(
                 "recording/readers",
                 "recording/wide",
@@ -310,7 +336,7 @@ FOLDERS: dict[str, Folder] = {
                 "servo",
             ),
             *("simulation", "study", "excitation"),
-            *("plot", "report", "exports", "hardware", "commissioning", "cli"),
+            *("plot", "report", "exports", "verbs", "hardware", "commissioning", "cli"),
         },
     ),
 }

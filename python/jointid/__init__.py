@@ -25,153 +25,121 @@ if find_spec("jointid._core") is None:
 
 if TYPE_CHECKING:
     from jointid import hardware, plot
-    from jointid._core import (
-        AdaptiveRobust,
-        CompensatedPid,
-        GaOptions,
-        Generation,
-        LugreObserver,
-        OpenLoop,
-        Pd,
-        Pid,
-        Sensors,
-        WindowOptions,
-    )
-    from jointid.base.advice import Action
+    from jointid._core import AdaptiveRobust as AdaptiveRobust
+    from jointid._core import CompensatedPid as CompensatedPid
+    from jointid._core import GaOptions as GaOptions
+    from jointid._core import Generation as Generation
+    from jointid._core import LugreObserver as LugreObserver
+    from jointid._core import OpenLoop as OpenLoop
+    from jointid._core import Pd as Pd
+    from jointid._core import Pid
+    from jointid._core import Sensors as Sensors
+    from jointid._core import WindowOptions as WindowOptions
+    from jointid.base.advice import Action as Action
     from jointid.base.errors import InputError
-    from jointid.cli.demonstration import Demonstration, demo
+    from jointid.base.result import Result
+    from jointid.cli.demonstration import Demonstration as Demonstration
+    from jointid.cli.demonstration import demo
     from jointid.commissioning import ring as commissioning
-    from jointid.comparison.comparison import compare_models
-    from jointid.comparison.result import Comparison
-    from jointid.excitation.design import Design
-    from jointid.excitation.design_file import load_design
-    from jointid.excitation.design_search import DesignProgress, DesignSearch
-    from jointid.excitation.designing import design_excitation
-    from jointid.excitation.information import Known
-    from jointid.excitation.motion_limits import MotionLimits
-    from jointid.estimate.bootstrap import Bootstrap
+    from jointid.comparison.comparison import compare_models as compare_models
+    from jointid.comparison.result import Comparison as Comparison
+    from jointid.estimate.bootstrap import Bootstrap as Bootstrap
     from jointid.estimate.estimate import Estimate
-    from jointid.estimate.selection import Selection
-    from jointid.estimate.self_test import SelfTest
+    from jointid.estimate.selection import Selection as Selection
+    from jointid.estimate.self_test import SelfTest as SelfTest
+    from jointid.excitation.design import Design
+    from jointid.excitation.design import load_design as load_design
+    from jointid.excitation.design_search import DesignProgress as DesignProgress
+    from jointid.excitation.design_search import DesignSearch as DesignSearch
+    from jointid.excitation.designing import design_excitation as design_excitation
+    from jointid.excitation.information import Known as Known
+    from jointid.excitation.motion_limits import MotionLimits
     from jointid.exports.exporting import export
-    from jointid.identification.identification import identify
-    from jointid.identification.search.search import Search
+    from jointid.identification.search.search import Search as Search
     from jointid.joint.joint import Joint
     from jointid.joint.link import Limits, Link
     from jointid.joint.model import Model
-    from jointid.joint.parameters import Parameter
+    from jointid.joint.parameters import Parameter as Parameter
     from jointid.joint.thesis import thesis_joint
-    from jointid.joint.voltage_drive import PositionLoop, VoltageDrive
-    from jointid.joints.identifying import identify_joints
-    from jointid.joints.result import JointEstimates
-    from jointid.online.online_estimate import OnlineEstimate
-    from jointid.online.online_identifier import OnlineIdentifier
-    from jointid.recording.readers.loading import load, load_runs
-    from jointid.recording.readers.loading_robot import load_robot
+    from jointid.joint.voltage_drive import PositionLoop as PositionLoop
+    from jointid.joint.voltage_drive import VoltageDrive
+    from jointid.joints.identifying import identify_joints as identify_joints
+    from jointid.joints.result import JointEstimates as JointEstimates
+    from jointid.online.online_estimate import OnlineEstimate as OnlineEstimate
+    from jointid.online.online_identifier import OnlineIdentifier as OnlineIdentifier
+    from jointid.recording.readers.loading import load_runs as load_runs
+    from jointid.recording.readers.loading_robot import load_robot as load_robot
     from jointid.recording.recording import Recording
     from jointid.recording.wide.robot_recording import RobotRecording
     from jointid.report.saving import save_report
-    from jointid.robot.comparing import compare_robot_models
-    from jointid.robot.identifying import identify_robot
+    from jointid.robot.comparing import compare_robot_models as compare_robot_models
+    from jointid.robot.identifying import identify_robot as identify_robot
     from jointid.robot.links.robot import Robot
-    from jointid.robot.result.comparison_result import RobotComparison
-    from jointid.robot.result.result import RobotEstimate
-    from jointid.servo.comparing import ServoComparison, compare_servo_models
-    from jointid.servo.estimate import ServoEstimate
-    from jointid.servo.identifying import identify_servo
-    from jointid.servo.rolling_out import Rollout, rollout
-    from jointid.simulation.batch import SimulatedBatch, simulate_batch
-    from jointid.simulation.plant import Bristle, control_estimates
-    from jointid.simulation.scenario import Scenario
-    from jointid.simulation.simulated_recording import SimulatedRecording, Truth
-    from jointid.simulation.simulation import simulate
+    from jointid.robot.result.comparison_result import RobotComparison as RobotComparison
+    from jointid.robot.result.result import RobotEstimate as RobotEstimate
+    from jointid.servo.comparing import compare_servo_models as compare_servo_models
+    from jointid.servo.comparison_result import ServoComparison as ServoComparison
+    from jointid.servo.estimate import ServoEstimate as ServoEstimate
+    from jointid.servo.identifying import identify_servo as identify_servo
+    from jointid.servo.rolling_out import Rollout as Rollout
+    from jointid.servo.rolling_out import rollout as rollout
+    from jointid.simulation.batch import SimulatedBatch as SimulatedBatch
+    from jointid.simulation.batch import simulate_batch as simulate_batch
+    from jointid.simulation.plant import Bristle as Bristle
+    from jointid.simulation.plant import control_estimates as control_estimates
+    from jointid.simulation.scenario import Scenario as Scenario
+    from jointid.simulation.simulated_recording import SimulatedRecording as SimulatedRecording
+    from jointid.simulation.simulated_recording import Truth as Truth
     from jointid.simulation.trajectory import Trajectory
     from jointid.study.study_result import Study
-    from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError, StudyStep, sweep
+    from jointid.study.sweeping import StudyBrokenError as StudyBrokenError
+    from jointid.study.sweeping import StudyInterruptedError as StudyInterruptedError
+    from jointid.study.sweeping import StudyStep as StudyStep
+    from jointid.study.sweeping import sweep
+    from jointid.verbs.comparing import compare
+    from jointid.verbs.designing import design
+    from jointid.verbs.identifying import identify
+    from jointid.verbs.loading import load
+    from jointid.verbs.simulating import simulate
 
     __version__: str
 
 __all__ = [
-    "Action",
-    "AdaptiveRobust",
-    "Bootstrap",
-    "Bristle",
-    "Comparison",
-    "CompensatedPid",
-    "Demonstration",
     "Design",
-    "DesignProgress",
-    "DesignSearch",
     "Estimate",
-    "GaOptions",
-    "Generation",
     "InputError",
     "Joint",
-    "JointEstimates",
-    "Known",
     "Limits",
     "Link",
-    "LugreObserver",
     "Model",
     "MotionLimits",
-    "OnlineEstimate",
-    "OnlineIdentifier",
-    "OpenLoop",
-    "Parameter",
-    "Pd",
     "Pid",
-    "PositionLoop",
     "Recording",
+    "Result",
     "Robot",
-    "RobotComparison",
-    "RobotEstimate",
     "RobotRecording",
-    "Rollout",
-    "Scenario",
-    "Search",
-    "Selection",
-    "SelfTest",
-    "Sensors",
-    "ServoComparison",
-    "ServoEstimate",
-    "SimulatedBatch",
-    "SimulatedRecording",
     "Study",
-    "StudyBrokenError",
-    "StudyInterruptedError",
-    "StudyStep",
     "Trajectory",
-    "Truth",
     "VoltageDrive",
-    "WindowOptions",
     "__version__",
     "commissioning",
-    "compare_models",
-    "compare_robot_models",
-    "compare_servo_models",
-    "control_estimates",
+    "compare",
     "demo",
-    "design_excitation",
+    "design",
     "export",
     "hardware",
     "identify",
-    "identify_joints",
-    "identify_robot",
-    "identify_servo",
     "load",
-    "load_design",
-    "load_robot",
-    "load_runs",
     "plot",
-    "rollout",
     "save_report",
     "simulate",
-    "simulate_batch",
     "sweep",
     "thesis_joint",
 ]
+"""The documented names; all others are loaded, too, and described where they are used."""
 
-# Where each public name is defined; its module is imported when the name is asked for.
+# Where each name is defined; its module is imported when the name is asked for. Functions that are not in `__all__`
+# are what a verb does for one subject, under the names that they had before there were verbs.
 _HOMES = {
     "jointid._core": (
         "AdaptiveRobust",
@@ -187,11 +155,11 @@ _HOMES = {
     ),
     "jointid.base.advice": ("Action",),
     "jointid.base.errors": ("InputError",),
+    "jointid.base.result": ("Result",),
     "jointid.cli.demonstration": ("Demonstration", "demo"),
     "jointid.comparison.comparison": ("compare_models",),
     "jointid.comparison.result": ("Comparison",),
-    "jointid.excitation.design": ("Design",),
-    "jointid.excitation.design_file": ("load_design",),
+    "jointid.excitation.design": ("Design", "load_design"),
     "jointid.excitation.design_search": ("DesignProgress", "DesignSearch"),
     "jointid.excitation.designing": ("design_excitation",),
     "jointid.excitation.information": ("Known",),
@@ -201,7 +169,6 @@ _HOMES = {
     "jointid.estimate.selection": ("Selection",),
     "jointid.estimate.self_test": ("SelfTest",),
     "jointid.exports.exporting": ("export",),
-    "jointid.identification.identification": ("identify",),
     "jointid.identification.search.search": ("Search",),
     "jointid.joint.joint": ("Joint",),
     "jointid.joint.link": ("Limits", "Link"),
@@ -213,7 +180,7 @@ _HOMES = {
     "jointid.joints.result": ("JointEstimates",),
     "jointid.online.online_estimate": ("OnlineEstimate",),
     "jointid.online.online_identifier": ("OnlineIdentifier",),
-    "jointid.recording.readers.loading": ("load", "load_runs"),
+    "jointid.recording.readers.loading": ("load_runs",),
     "jointid.recording.readers.loading_robot": ("load_robot",),
     "jointid.recording.recording": ("Recording",),
     "jointid.recording.wide.robot_recording": ("RobotRecording",),
@@ -223,7 +190,8 @@ _HOMES = {
     "jointid.robot.identifying": ("identify_robot",),
     "jointid.robot.result.result": ("RobotEstimate",),
     "jointid.robot.links.robot": ("Robot",),
-    "jointid.servo.comparing": ("ServoComparison", "compare_servo_models"),
+    "jointid.servo.comparing": ("compare_servo_models",),
+    "jointid.servo.comparison_result": ("ServoComparison",),
     "jointid.servo.estimate": ("ServoEstimate",),
     "jointid.servo.identifying": ("identify_servo",),
     "jointid.servo.rolling_out": ("Rollout", "rollout"),
@@ -231,10 +199,14 @@ _HOMES = {
     "jointid.simulation.plant": ("Bristle", "control_estimates"),
     "jointid.simulation.scenario": ("Scenario",),
     "jointid.simulation.simulated_recording": ("SimulatedRecording", "Truth"),
-    "jointid.simulation.simulation": ("simulate",),
     "jointid.simulation.trajectory": ("Trajectory",),
     "jointid.study.study_result": ("Study",),
     "jointid.study.sweeping": ("StudyBrokenError", "StudyInterruptedError", "StudyStep", "sweep"),
+    "jointid.verbs.comparing": ("compare",),
+    "jointid.verbs.designing": ("design",),
+    "jointid.verbs.identifying": ("identify",),
+    "jointid.verbs.loading": ("load",),
+    "jointid.verbs.simulating": ("simulate",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 # Folders that are public as a whole; `hardware` and `commissioning` bring python-can.
@@ -248,15 +220,22 @@ def _next_motion() -> Callable[..., object]:
     return motion_after
 
 
-def _friction_image() -> Callable[..., object]:
-    """Load what draws an estimate in a notebook."""
-    from jointid.report.notebook import friction_image
+def _class_of_kind() -> Callable[..., object]:
+    """Load what finds the kind of result that a file holds."""
+    from jointid.verbs.kept_kinds import class_of_kind
 
-    return friction_image
+    return class_of_kind
+
+
+def _notebook_view() -> Callable[..., object]:
+    """Load what draws an estimate in a notebook."""
+    from jointid.report.notebook import notebook_view
+
+    return notebook_view
 
 
 # The rooms stand one above the other, and here all is seen.
-join(next_motion=_next_motion, friction_image=_friction_image)
+join(next_motion=_next_motion, class_of_kind=_class_of_kind, notebook_view=_notebook_view)
 
 
 def _load(name: str) -> object:

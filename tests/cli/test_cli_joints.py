@@ -46,9 +46,10 @@ def test_all_joints(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pat
     )
     assert json.loads(saved.read_text(encoding="utf-8"))["joints"].keys() == {"1", "2"}
     text = page.read_text(encoding="utf-8")
-    assert text.count("<svg ") == 4
-    assert '<h2 id="joint-2">Joint 2</h2>' in text
-    assert '<a href="#joint-2">Joint 2</a>: ' in text
+    # Of each joint a small map, and folded its map, its windows and its residual.
+    assert text.count("<svg ") == 2 * 4
+    assert '<details><summary><h2>Joint 2</h2></summary><div id="of-2">' in text
+    assert '<a href="#of-2">2</a>' in text
     assert "joint 2&#x27;s speed explains" in text
 
 

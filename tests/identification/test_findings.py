@@ -20,7 +20,7 @@ from jointid.estimate.findings import Finding
 from jointid.identification import warnings
 from jointid.identification.warnings import registry
 from jointid.identification.warnings.table import findings_page
-from jointid.report.html import html_report
+from jointid.report.saving import report_page
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "python" / "jointid" / "identification" / "warnings"
@@ -346,10 +346,10 @@ def test_a_check_is_a_file_and_a_line(
     assert [found.code for found in estimate.warnings] == ["wobble"]
     sentence = "the base wobbles in 1 recording(s); inspect the bolts"
     assert f"warning (wobble): {sentence}" in estimate.report(verbose=True)
-    page = html_report(estimate)
+    page = report_page(estimate)
     assert "the base wobbles in 1 recording(s)" in page
-    assert "do: inspect the bolts" in page
-    assert "do: inspect the bolts" in estimate._repr_html_()
+    assert "<b>do: </b>inspect the bolts" in page
+    assert "<b>do: </b>inspect the bolts" in estimate._repr_html_()
     assert "the base wobbles in 1 recording(s)" in estimate._repr_html_()
     again = jid.Estimate.from_json(estimate.to_json())
     assert again.findings == estimate.findings

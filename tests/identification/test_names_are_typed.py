@@ -25,21 +25,21 @@ def test_models_are_those_of_the_core() -> None:
 def test_a_misspelt_name_is_refused_and_is_an_error_of_types() -> None:
     run = _run()
     with pytest.raises(jid.InputError, match="stribek"):
-        jid.identify(run, model="stribek")  # type: ignore[arg-type]
+        jid.identify(run, model="stribek")  # type: ignore[call-overload]
     with pytest.raises(jid.InputError, match="stribek"):
         jid.Model("stribek")  # type: ignore[arg-type]
     with pytest.raises(jid.InputError, match="separabel"):
-        jid.identify(run, search="separabel")  # type: ignore[arg-type]
+        jid.identify(run, search="separabel")  # type: ignore[call-overload]
     with pytest.raises(jid.InputError, match="separabel"):
         jid.Search("separabel")  # type: ignore[arg-type]
     with pytest.raises(jid.InputError, match="torqe"):
-        jid.identify(run, residual="torqe")  # type: ignore[arg-type]
+        jid.identify(run, residual="torqe")  # type: ignore[call-overload]
     with pytest.raises(jid.InputError, match="hold"):
-        jid.identify(run, torque_hold="hold")  # type: ignore[arg-type]
+        jid.identify(run, torque_hold="hold")  # type: ignore[call-overload]
 
 
 def test_text_with_options_runs() -> None:
-    text = jid.identify(_run(), model="coulomb_viscous:asymmetric", search="separable")  # type: ignore[arg-type]
+    text = jid.identify(_run(), model="coulomb_viscous:asymmetric", search="separable")  # type: ignore[call-overload]
     value = jid.identify(
         _run(), model=jid.Model("coulomb_viscous", asymmetric=True), search="separable"
     )

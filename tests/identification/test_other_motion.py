@@ -40,7 +40,7 @@ def test_a_range_that_is_missing_is_left_to_the_user(poor: jid.Recording) -> Non
     # The joint states its torque and its link, not its speed.
     assert action.arguments == {"limits": {"position": ..., "velocity": ...}, "duration": 6.0}
     assert str(action).endswith(
-        "designed by estimate.next_motion(limits={'position': ..., 'velocity': ...}, duration=6.0)"
+        "designed by jid.design(estimate, limits={'position': ..., 'velocity': ...}, duration=6.0)"
     )
 
 

@@ -22,12 +22,13 @@ def noise(seed: int) -> Any:
 
 
 def identify(recording: Any, terms: Any, **changes: Any) -> jid.Estimate:
-    return jid.identify(
+    found: jid.Estimate = jid.identify(
         recording,
         **({"model": "coulomb_viscous"} | changes),
         terms=terms,
         search=Search("separable"),
     )
+    return found
 
 
 @pytest.mark.parametrize("residual", ["sensor", "torque", "instruments"])

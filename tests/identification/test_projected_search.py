@@ -29,11 +29,11 @@ def test_projection_agrees_with_the_genetic_search(
     well_excited: jid.Recording, model: str, residual: str
 ) -> None:
     projected, genetic = (
-        jid.identify(
+        jid.identify(  # type: ignore[call-overload]
             well_excited,
             jid.thesis_joint(),
             model=jid.Model.parse(model),
-            residual=residual,  # type: ignore[arg-type]
+            residual=residual,
             search=method,
         )
         for method in ("separable", "ga")
@@ -73,10 +73,10 @@ def test_what_projection_cannot_tell_is_compressed_and_said(
     well_excited: jid.Recording, options: dict[str, object], reason: str
 ) -> None:
     joint = jid.thesis_joint()
-    estimate = jid.identify(well_excited, joint, search="separable", **options)  # type: ignore[arg-type]
+    estimate = jid.identify(well_excited, joint, search="separable", **options)  # type: ignore[call-overload]
     assert "not by projection: " in estimate.message
     assert reason in estimate.message
-    genetic = jid.identify(well_excited, joint, search="ga", **options)  # type: ignore[arg-type]
+    genetic = jid.identify(well_excited, joint, search="ga", **options)  # type: ignore[call-overload]
     assert estimate.penalty <= genetic.penalty * (1.0 + 1e-6)
 
 

@@ -23,7 +23,10 @@ def late(run: jid.Recording, signal: str, delay: float) -> jid.Recording:
 
 
 def identified(run: jid.Recording, **options: object) -> jid.Estimate:
-    return jid.identify(run, jid.thesis_joint(), search="separable", **options)  # type: ignore[arg-type]
+    found: jid.Estimate = jid.identify(  # type: ignore[call-overload]
+        run, jid.thesis_joint(), search="separable", **options
+    )
+    return found
 
 
 @pytest.fixture(scope="module")

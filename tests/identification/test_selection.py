@@ -44,9 +44,9 @@ def home() -> jid.Estimate:
 
 
 def chosen(*arguments: Any, **keywords: Any) -> Selection:
-    found = jid.identify(*arguments, **{"search": "separable", **keywords}).selection
-    assert found is not None
-    return found
+    estimate: jid.Estimate = jid.identify(*arguments, **{"search": "separable", **keywords})
+    assert estimate.selection is not None
+    return estimate.selection
 
 
 def test_a_strain_wave_joint_is_found_by_the_plainest_call(home: jid.Estimate) -> None:

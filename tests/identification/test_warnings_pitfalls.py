@@ -75,9 +75,9 @@ def test_as_many_windows_as_parameters_know_no_error() -> None:
 
 
 def test_numpy_whole_numbers_are_whole_numbers() -> None:
-    estimate = jid.identify(
+    estimate = jid.identify(  # type: ignore[call-overload]
         moving(),
-        windows=np.int64(100),  # type: ignore[arg-type]
+        windows=np.int64(100),
         search=jid.Search(seed=np.int64(3), threads=np.int32(1)),  # type: ignore[arg-type]
     )
     assert '"seed": 3' in estimate.to_json()
@@ -113,7 +113,7 @@ def test_odd_arguments_get_one_sentence(options: dict[str, Any], wording: str) -
 @pytest.mark.parametrize("recordings", [None, 3, "run.csv", [], ["run.csv"]])
 def test_what_is_no_recording_is_refused(recordings: object) -> None:
     with pytest.raises(jid.InputError, match=r"[Rr]ecording"):
-        jid.identify(recordings)  # type: ignore[arg-type]
+        jid.identify(recordings)  # type: ignore[call-overload]
 
 
 def test_prediction_asks_for_the_same_kind() -> None:

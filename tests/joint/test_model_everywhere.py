@@ -165,7 +165,7 @@ def test_python_calls_agree(recording: jid.Recording) -> None:
 
     for description, wanted in expected():
         faces: dict[str, Callable[[Any], object]] = {
-            "identify": lambda d: jid.identify(recording, KNOWN, model=d, windows=refuse),  # type: ignore[arg-type]
+            "identify": lambda d: jid.identify(recording, KNOWN, model=d, windows=refuse),  # type: ignore[call-overload]
             "compare": lambda d: jid.compare_models(recording, KNOWN, models=[d], folds=0),
             "sweep": lambda d: jid.sweep(recording, KNOWN, model=d, trials=0),
             "sweep grid": lambda d: jid.sweep(recording, KNOWN, grid={"model": {"a": d}}, trials=0),

@@ -269,7 +269,7 @@ def test_bad_runs_name_the_run(tmp_path: Path) -> None:
 )
 def test_the_advice_on_several_runs_can_be_followed(name: Any, tmp_path: Path) -> None:
     path = runs_file(tmp_path / "a.csv", name)
-    with pytest.raises(InputError, match=r"one run.* or load_runs with by='run'") as caught:
+    with pytest.raises(InputError, match=r"one run.* or load with by='run'") as caught:
         load(path)
     one, every = caught.value.remedy
     assert isinstance(one, Action)

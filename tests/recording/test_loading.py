@@ -279,10 +279,7 @@ def test_several_axes_are_refused_with_a_remedy(shared_data: Path) -> None:
 def test_several_runs_are_refused_with_a_remedy(shared_data: Path) -> None:
     error_text = refusal(shared_data / "xl330" / "bam_xl330.csv.gz")
     assert "line 1126, column 'time_s'" in error_text
-    assert (
-        "; load with where={'run_index': 0} (one run) or load_runs with by='run_index'"
-        in error_text
-    )
+    assert "; load with where={'run_index': 0} (one run) or load with by='run_index'" in error_text
 
 
 def test_a_file_name_that_is_not_utf8_is_replaced_once(tmp_path: Path) -> None:

@@ -64,4 +64,4 @@ def test_errors_name_no_folder_that_nobody_knows() -> None:
             return 3
 
     with pytest.raises(jid.InputError, match="open for reading"):
-        jid.load(Odd())  # type: ignore[arg-type]
+        jid.load(Odd())  # type: ignore[call-overload]

@@ -99,7 +99,7 @@ def test_the_page_on_exports_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_the_page_on_the_next_motion_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = run_python_blocks(read("docs/next_motion.md"), tmp_path, monkeypatch)
-    assert "designed by estimate.next_motion(" in str(names["estimate"].warnings[0])
+    assert "designed by jid.design(estimate, " in str(names["estimate"].warnings[0])
     for name, true in names["true"].parameters.items():
         assert names["both"].parameters[name].value == pytest.approx(true.value, rel=0.02), name
     (commands,) = blocks(read("docs/next_motion.md"), "sh")

@@ -42,7 +42,7 @@ CLEAN = {
     ),
     "cpp/tests/check.cpp": '#include <cstdio>\n#include "model/joint.hpp"\n',
     "python/jointid/__init__.py": (
-        "from jointid.identification.identify import find\n"
+        "from jointid.estimate.estimate import Estimate\n"
         "from . import _core\n"
         "def __getattr__(name):\n    from jointid import hardware\n    return hardware\n"
     ),

@@ -12,7 +12,7 @@ from small_arm import recording, urdf
 import jointid as jid
 from jointid import _core
 from jointid.identification.search.computed_bounds import shape_bounds
-from jointid.report.robot_page import robot_report
+from jointid.report.saving import report_page
 
 pytest.importorskip("pinocchio")
 
@@ -75,7 +75,7 @@ def test_a_model_of_the_table_is_a_robots(model: str, tmp_path: Path) -> None:
     assert again.to_json() == found.to_json()
     assert again.friction(both).tobytes() == found.friction(both).tobytes()
     assert again.predict(other) == found.predict(other)
-    for text in (robot_report(again), again.report(verbose=True)):
+    for text in (report_page(again), again.report(verbose=True)):
         assert all(name in text for name in truth(model))
     written = jid.export(again, tmp_path / "new.urdf", into=path, approximate=True)
     assert all(f"{name}: " in written.read_text(encoding="utf-8") for name in truth(model))

@@ -13,7 +13,7 @@ from dealt_places import dealt
 from small_arm import recording, urdf
 
 import jointid as jid
-from jointid.report.robot_page import robot_report
+from jointid.report.saving import report_page
 from jointid.robot.links.inertia_modes import Inertia
 
 pytest.importorskip("pinocchio")
@@ -77,7 +77,7 @@ def test_everything_works_after_reading_back(inertia: Inertia, tmp_path: Path) -
     speeds = np.array([[0.05, -0.2], [1.0, 0.0]])
     assert again.friction(speeds).tobytes() == found.friction(speeds).tobytes()
     assert again.predict(run) == found.predict(run)
-    assert robot_report(again) == robot_report(found)
+    assert report_page(again) == report_page(found)
     path = urdf(tmp_path)
     files = [
         jid.export(each, tmp_path / f"{name}.urdf", into=path, approximate=True).read_bytes()

@@ -9,7 +9,7 @@ from simulated_servo import Bench, Truth, bench_runs, servo_joint
 
 import jointid as jid
 from jointid import _core
-from jointid.report.servo_page import servo_report
+from jointid.report.saving import report_page
 
 TRUTH = replace(Truth(), coulomb=0.0, viscous=0.0)  # friction of the speed is the bench's
 MODELS = {model.name: [_core.term(key) for key in model.terms] for model in _core.models()}
@@ -36,7 +36,7 @@ def test_each_is_identified_saved_shown_rolled_out_and_exported(model: str, tmp_
         assert found[name] == pytest.approx(value, rel=0.25), name
         low, high = found.parameters[name].interval or (np.nan, np.nan)
         assert low <= found[name] <= high
-    page, table = servo_report(found), found.report(verbose=True)
+    page, table = report_page(found), found.report(verbose=True)
     for term in MODELS[model]:
         assert found.parameters[term.name].unit == term.unit
         assert term.meaning in page

@@ -218,8 +218,8 @@ def test_the_cause_comes_before_its_effects(runs: list[jid.Recording]) -> None:
 
 
 def test_a_servo_is_refused_where_a_torque_is_needed(runs: list[jid.Recording]) -> None:
-    with pytest.raises(jid.InputError, match="identify_servo"):
-        jid.identify(runs, servo_joint())
+    with pytest.raises(jid.InputError, match="identify its recordings alone"):
+        jid.sweep(runs, servo_joint(), grid={"windows": [100]}, trials=1)
 
 
 def test_without_a_load_the_scale_is_unknown(runs: list[jid.Recording]) -> None:

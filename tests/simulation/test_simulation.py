@@ -427,7 +427,7 @@ def test_what_is_missing_is_named(joint: jid.Joint) -> None:
     with pytest.raises(jid.InputError, match="coulomb: has no value"):
         jid.simulate(thesis_joint(), wrong_controller(), well_excited(0.1))
     with pytest.raises(jid.InputError, match="controllers is 3: one of"):
-        jid.simulate(joint, 3, well_excited(0.1))  # type: ignore[arg-type]
+        jid.simulate(joint, 3, well_excited(0.1))  # type: ignore[call-overload]
     loose = joint.replace(limits=jid.Limits())
     with pytest.raises(jid.InputError, match="not stable"):
         jid.simulate(

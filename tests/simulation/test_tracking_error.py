@@ -40,4 +40,4 @@ def test_a_motion_beyond_all_bounds_is_refused(joint: jid.Joint, start: dict[str
     """Of the position or of the velocity alone."""
     push = jid.Trajectory.step(0.0, duration=0.1)
     with pytest.raises(jid.InputError, match=r"leaves all bounds 0\.0+ s after its start"):
-        jid.simulate(joint, jid.OpenLoop(), push, **start)  # type: ignore[arg-type]
+        jid.simulate(joint, jid.OpenLoop(), push, **start)  # type: ignore[call-overload]

@@ -1,4 +1,4 @@
-"""The public names, in groups: a page each, with what their docstrings say."""
+"""The public names, in groups: a page each, the documented ones first, with what their docstrings say."""
 
 from __future__ import annotations
 
@@ -22,16 +22,34 @@ class Group:
         """The page of the group."""
         lines = [f"# {self.title}", ""]
         lines += [self.text, ""] if self.text else []
-        for name in self.names:
-            lines += [
-                f"## {name.removeprefix('jointid.')}",
-                "",
-                "```{eval-rst}",
-                _directive(name),
-                "```",
-                "",
-            ]
+        for name in self.first:
+            lines += _section("##", name)
+        if self.more:
+            lines += ["## More", ""]
+        for name in self.more:
+            lines += _section("###", name)
         return "\n".join(lines)
+
+    @property
+    def first(self) -> tuple[str, ...]:
+        """The names that are documented at the top of the package, and those of a module."""
+        return tuple(name for name in self.names if name not in self.more)
+
+    @property
+    def more(self) -> tuple[str, ...]:
+        """The names of the package that are not at its top: what the others take and return."""
+        return tuple(name for name in self.names if _at_top(name) not in (None, *jid.__all__))
+
+
+def _at_top(name: str) -> str | None:
+    """The name in the package itself; None for one of a module."""
+    module, _, own = name.rpartition(".")
+    return own if module == "jointid" else None
+
+
+def _section(level: str, name: str) -> list[str]:
+    title = f"{level} {name.removeprefix('jointid.')}"
+    return [title, "", "```{eval-rst}", _directive(name), "```", ""]
 
 
 def _directive(name: str) -> str:
@@ -69,6 +87,14 @@ def _promised(module: str) -> tuple[str, ...]:
     return tuple(import_module(f"jointid.{module}").__all__)
 
 
+# What a verb does for one subject, under the names that they had before there were verbs: for one version.
+ALIASES = frozenset(
+    {
+        *("identify_joints", "identify_robot", "identify_servo"),
+        *("compare_models", "compare_robot_models", "compare_servo_models"),
+        *("load_robot", "load_runs", "design_excitation", "rollout"),
+    }
+)
 _MODULES = ("commissioning", "hardware", "plot")
 GROUPS = (
     Group(
@@ -77,8 +103,6 @@ GROUPS = (
         _of(
             "jointid",
             "load",
-            "load_runs",
-            "load_robot",
             "Recording",
             "RobotRecording",
             "SimulatedRecording",
@@ -114,7 +138,7 @@ GROUPS = (
                 "Estimate",
                 "Selection",
             ),
-            *("Bootstrap", "SelfTest", "Action", "InputError"),
+            *("Bootstrap", "SelfTest", "Result", "Action", "InputError"),
         ),
     ),
     Group(
@@ -122,7 +146,7 @@ GROUPS = (
         "Comparison and sweeps",
         _of(
             "jointid",
-            "compare_models",
+            "compare",
             "Comparison",
             "sweep",
             "Study",
@@ -136,8 +160,7 @@ GROUPS = (
         "Several joints, whole robots",
         _of(
             "jointid",
-            *("identify_joints", "JointEstimates", "Robot", "identify_robot", "RobotEstimate"),
-            *("compare_robot_models", "RobotComparison"),
+            *("Robot", "JointEstimates", "RobotEstimate", "RobotComparison"),
         ),
     ),
     Group(
@@ -145,13 +168,10 @@ GROUPS = (
         "Servos",
         _of(
             "jointid",
-            "identify_servo",
-            "compare_servo_models",
-            "ServoComparison",
-            "ServoEstimate",
             "VoltageDrive",
             "PositionLoop",
-            "rollout",
+            "ServoEstimate",
+            "ServoComparison",
             "Rollout",
         ),
     ),
@@ -161,7 +181,7 @@ GROUPS = (
         "Design of motions",
         _of(
             "jointid",
-            "design_excitation",
+            "design",
             "Design",
             "DesignSearch",
             "DesignProgress",
@@ -218,7 +238,7 @@ GROUPS = (
 
 def public_names() -> set[str]:
     """Every name that the package promises, with its module."""
-    plain = {f"jointid.{name}" for name in jid.__all__ if name not in (*_MODULES, "__version__")}
+    plain = {f"jointid.{name}" for name in jid._HOME_OF if name not in ALIASES}
     for module in _MODULES:
         plain |= set(_of(f"jointid.{module}", *_promised(module)))
     return plain

@@ -172,10 +172,14 @@ def _kind(kind: str) -> str:
 
 
 def _names_page() -> str:
-    lines = ["# Python", "", "`import jointid as jid`. Every public name, by what it is for.", ""]
+    lines = ["# Python", "", "`import jointid as jid`. Names by what they are for.", ""]
     for group in GROUPS:
-        names = ", ".join(f"`{name.removeprefix('jointid.')}`" for name in group.names)
-        lines += [f"[{group.title}]({group.file}.md)", f": {names}", ""]
+        names = ", ".join(f"`{name.removeprefix('jointid.')}`" for name in group.first)
+        lines += [
+            f"[{group.title}]({group.file}.md)",
+            f": {names or 'what they take and return'}",
+            "",
+        ]
     lines += ["```{toctree}", ":hidden:", "", *(group.file for group in GROUPS), "```", ""]
     return "\n".join(lines)
 

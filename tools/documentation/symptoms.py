@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from documentation.pictures import (
-    Picture,
+    Drawing,
     friction,
     over_time,
     rate,
@@ -23,7 +23,7 @@ class Symptom:
     """What is seen, and a picture of it; without one, the case's file is shown."""
 
     seen: str
-    picture: Picture | None = None
+    picture: Drawing | None = None
 
 
 _RATE = {"start": 1.0, "stop": 1.12}

@@ -15,8 +15,8 @@ from jointid.cli.outputs import check_folder, check_page
 
 if TYPE_CHECKING:
     from jointid.cli.parser import CommandParser
-    from jointid.excitation.design import Design
     from jointid.estimate.estimate import Estimate
+    from jointid.excitation.design import Design
 
 _PICTURES = (".png", ".pdf", ".svg")
 _DURATION = 12.0  # s

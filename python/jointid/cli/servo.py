@@ -43,7 +43,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     joint : Joint
         With a voltage drive.
     """
-    from jointid.report.servo_page import save_servo_report
+    from jointid.report.saving import save_report
     from jointid.servo.answers import answer
     from jointid.servo.identifying import identify_servo
     from jointid.servo.rolling_out import rollout
@@ -63,7 +63,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     rolled = rollout(found, runs, threads=arguments.threads) if wanted else None
     wording, saved = Wording.of(arguments), estimate_file(arguments)
     if arguments.report is not None:
-        save_servo_report(found, arguments.report, rolled, action=wording.of_command)
+        save_report(found, arguments.report, wording.of_command, rollout=rolled)
     for path in {saved, arguments.save} - {None}:
         found.save(path)
     if arguments.json:
@@ -120,12 +120,15 @@ def _parameter(name: str, value: float) -> Any:
 
 def _load(arguments: argparse.Namespace, drive: VoltageDrive) -> list[Recording]:
     """Return the runs of files and folders, with the extra signals of a servo."""
+    from jointid.recording.readers.folders import files_of
     from jointid.recording.readers.loading import load, load_runs
+    from jointid.verbs.servo_log import servo_columns
 
-    paths = _files(arguments.recordings)
+    paths = files_of(arguments.recordings)
     reading = how_to_read(arguments)
+    parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
     try:
-        first = _extra(paths[0], drive, reading.pop("extra") or {}, arguments)
+        first = servo_columns(paths[0], drive, reading.pop("extra") or {}, **parts)
         if arguments.by is None:
             drops = {name: getattr(arguments, name) for name in ("drop_copies", "drop_invalid")}
             return [load(path, extra=first, **drops, **reading) for path in paths]
@@ -174,22 +177,3 @@ def _files(paths: Sequence[Path]) -> list[Path]:
             raise InputError("there is no recording in this folder", place=str(path))
         found += inside
     return found
-
-
-def _extra(
-    path: Path, drive: VoltageDrive, given: dict[str, Any], arguments: argparse.Namespace
-) -> dict[str, Any]:
-    """Return which column each extra signal is: as given, as the joint file has it, or of its own name."""
-    from jointid.joint.voltage_drive import SIGNALS
-    from jointid.recording.headers import parsed
-    from jointid.recording.readers.loading import table_of
-
-    headers = table_of(
-        path, topic=arguments.topic, group=arguments.group, unpacked=arguments.unpacked
-    ).headers
-    own = {name: name for name in SIGNALS if name in headers}
-    for header in headers:
-        name, unit, _ = parsed(header)
-        if name == "supply" and unit is not None and unit.dimension == "voltage":
-            own.setdefault(name, header)
-    return own | dict(drive.signals) | given

@@ -14,6 +14,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.joint.checks import check_flag, positive_number
 from jointid.joint.joint import Joint
 from jointid.robot.result.result import RobotEstimate
+from jointid.servo.estimate import ServoEstimate
 
 if TYPE_CHECKING:
     from jointid.exports.target import Existing, Target
@@ -22,7 +23,7 @@ _LARGEST = 64 * 2**20  # bytes of a file that is edited
 
 
 def export(
-    source: Estimate | Joint | RobotEstimate,
+    source: Estimate | Joint | RobotEstimate | ServoEstimate,
     path: str | os.PathLike[str],
     *,
     target: str | None = None,
@@ -40,8 +41,9 @@ def export(
 
     Parameters
     ----------
-    source : Estimate, Joint or RobotEstimate
-        A joint needs values for the parameters of its model; their uncertainty is not known then. A whole robot is
+    source : Estimate, Joint, ServoEstimate or RobotEstimate
+        A joint needs values for the parameters of its model; their uncertainty is not known then. So it is of a servo,
+        of which the joint is written as identified. A whole robot is
         written into its URDF, which `into` names: damping and friction of every joint.
     path : path-like
         Its ending chooses the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC 61131-3 Structured
@@ -100,6 +102,8 @@ def export(
         )
     if isinstance(source, RobotEstimate):
         return _export_robot(source, path, target, into, joint_name, approximate, inertia)
+    if isinstance(source, ServoEstimate):
+        source = source.identified
     require_kind("source", source, Estimate, Joint)
     check_flag("", "inertia", inertia)
     if inertia:

@@ -1,4 +1,4 @@
-"""What `identify` and `compare_models` take by keyword: the settings of the problem, and the search."""
+"""What `identify` and `compare` take by keyword: the settings of the problem, and the search."""
 
 from typing import Annotated, TypedDict
 

@@ -48,7 +48,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
             "a Recording of one joint is expected, or several of the same joint",
             argument="recordings",
             value=recordings,
-            remedy="name a joint, or call identify_joints",
+            remedy="name a joint",
         )
     if hasattr(recordings, "columns") or hasattr(recordings, "data_vars"):
         raise InputError(

@@ -28,7 +28,8 @@ from jointid.robot.motion.request import least_speeds, recordings_of
 from jointid.robot.motion.shifts import shift_option
 from jointid.robot.motion.stamps import all_on_even_clocks
 from jointid.robot.options import RobotFitOptions
-from jointid.robot.result.comparison_result import ComparedRobotModel, RobotComparison
+from jointid.robot.result.comparison_result import RobotComparison
+from jointid.robot.result.comparison_row import ComparedRobotModel
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -71,12 +72,12 @@ def compare_robot_models(
     Raises
     ------
     InputError
-        As `identify_robot`; or candidates or folds that cannot be.
+        As `identify`; or candidates or folds that cannot be.
 
     Examples
     --------
     >>> robot = jid.Robot.from_urdf("arm.urdf")
-    >>> found = jid.compare_robot_models(jid.load_robot("arm.csv"), robot, inertia="urdf")
+    >>> found = jid.compare(jid.load("arm.csv", joints="all"), robot, inertia="urdf")
     >>> isinstance(found, jid.RobotComparison), found.winner.inertia
     (True, 'urdf')
     """

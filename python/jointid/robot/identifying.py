@@ -81,7 +81,7 @@ def identify_robot(
     Examples
     --------
     >>> robot = jid.Robot.from_urdf("arm.urdf")
-    >>> found = jid.identify_robot(jid.load_robot("arm.csv"), robot, inertia="free")
+    >>> found = jid.identify(jid.load("arm.csv", joints="all"), robot, inertia="free")
     >>> [*found.joints], found.joints["elbow"].parameters["coulomb"].unit
     (['shoulder', 'elbow'], 'N·m')
     """

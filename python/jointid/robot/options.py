@@ -1,4 +1,4 @@
-"""What `identify_robot` and `compare_robot_models` take by keyword."""
+"""What `identify` and `compare` take of a robot by keyword."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated

@@ -2,84 +2,28 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable, Sequence
-from dataclasses import field
-from typing import Any
+from typing import Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
-from jointid.base.notebook import Shown
-from jointid.base.text_table import aligned
-from jointid.base.values import dataclass
+from jointid.base.options import takes
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.recording.recording import Recording
-from jointid.servo.estimate import ServoEstimate
+from jointid.servo.comparison_result import ServoComparison
 from jointid.servo.identifying import identify_servo
 from jointid.servo.layout import DEFAULT_MODEL
+from jointid.servo.options import ServoFitOptions
 from jointid.servo.rolling_out import rollout
 from jointid.servo.signals import signals_of
-
-Array = NDArray[np.float64]
 
 MODELS = tuple(Model.parse(DEFAULT_MODEL).replace(load_friction=load) for load in (False, True))
 """What is compared by default."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ServoComparison(Shown):
-    """Models and the errors of their rollouts on held-out runs.
-
-    Attributes
-    ----------
-    models : tuple of str
-    errors : ndarray, shape (models, runs)
-        Mean absolute error of the position of each run, from the fit that did not see it [rad].
-    bistable : ndarray of bool, shape (models, runs)
-    runs : tuple of str
-    groups : tuple of str
-        The group that each run was held out with.
-    estimate : ServoEstimate
-        Of the best model, from all runs.
-    """
-
-    models: tuple[str, ...]
-    errors: Array = field(repr=False)
-    bistable: NDArray[np.bool_] = field(repr=False)
-    runs: tuple[str, ...]
-    groups: tuple[str, ...]
-    estimate: ServoEstimate
-
-    @property
-    def medians(self) -> Array:
-        """Median of each model's errors [rad]: a bistable run does not decide it."""
-        return np.asarray(np.median(self.errors, axis=1))
-
-    @property
-    def best(self) -> str:
-        """The model with the smallest median."""
-        return self.models[int(np.argmin(self.medians))]
-
-    def report(self) -> str:
-        """Return the table as text."""
-        table = [["model", "median [deg]", "worst [deg]", "bistable runs"]]
-        for k, name in enumerate(self.models):
-            table.append(
-                [
-                    name,
-                    f"{math.degrees(self.medians[k]):.2f}",
-                    f"{math.degrees(self.errors[k].max()):.2f}",
-                    str(int(self.bistable[k].sum())),
-                ]
-            )
-        groups = len(set(self.groups))
-        head = f"Closed loop of {len(self.runs)} runs, held out in {groups} groups: mean absolute error"
-        return "\n".join([head, "", *aligned(table), "", f"best: {self.best}"])
-
-
+@takes(ServoFitOptions)
 def compare_servo_models(
     recordings: Sequence[Recording],
     joint: Joint,
@@ -87,14 +31,14 @@ def compare_servo_models(
     models: Sequence[Model | str] | None = None,
     groups: Sequence[Hashable] | None = None,
     threads: int = 0,
-    **options: Any,
+    **options: Unpack[ServoFitOptions],
 ) -> ServoComparison:
     """Compare friction models of a servo by rollouts of held-out runs.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        As for `identify_servo`; several.
+        As for `identify`; several.
     joint : Joint
     models : sequence of Model or str, optional
         Default: `MODELS`, with and without friction of the load.
@@ -104,7 +48,6 @@ def compare_servo_models(
     threads : int
         Of the rollouts; 0 (default): all.
     **options
-        Of `identify_servo`: `window`, `slowest`, `lead`.
 
     Returns
     -------
@@ -113,11 +56,11 @@ def compare_servo_models(
     Raises
     ------
     InputError
-        Fewer than two groups, or as in `identify_servo` and `rollout`.
+        Fewer than two groups, or as in `identify` and `simulate`.
 
     Examples
     --------
-    >>> compared = jid.compare_servo_models(servo_runs, servo)
+    >>> compared = jid.compare(servo_runs, servo)
     >>> isinstance(compared, jid.ServoComparison)
     True
     """

@@ -187,7 +187,7 @@ class FittedServo(FittedBalance):
         return (Action("inspect", text="the zero of the position, and the link's angle and mass"),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `compare_servo_models`, where a servo can have such a model."""
+        """A call of `compare`, where a servo can have such a model."""
         known: dict[str, Any] = {
             "name": self.model_name,
             LOAD_FRICTION.option: self.unknowns.load_friction,

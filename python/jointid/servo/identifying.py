@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
+from jointid.base.options import takes
 from jointid.joint.checks import finite_number, positive_number
 from jointid.joint.joint import Joint
-from jointid.joint.model import AUTO, Model, ModelName
+from jointid.joint.model import AUTO, Model
 from jointid.recording.recording import Recording
 from jointid.servo.dividing import share_of
 from jointid.servo.estimate import ServoEstimate
@@ -22,12 +23,13 @@ from jointid.servo.findings import findings_of
 from jointid.servo.fitted_servo import FittedServo
 from jointid.servo.layout import DEFAULT_MODEL, HELD, KNOWN, LAYOUTS, LOAD_FRICTION, Layout
 from jointid.servo.named_causes import causes_of_servo
+from jointid.servo.options import ServoOptions
 from jointid.servo.resampling import drawn, units_of
 from jointid.servo.row_lead import lead_of
 from jointid.servo.signals import ServoSignals, signals_of
 from jointid.servo.solving import Unknowns, fixed_point, weights
 from jointid.servo.tables import parameters_of
-from jointid.servo.windows import SLOWEST, WINDOW, ServoGrid, grid_of
+from jointid.servo.windows import ServoGrid, grid_of
 
 Array = NDArray[np.float64]
 
@@ -37,16 +39,11 @@ _DECIDING, _DOUBT = 200, 0.025  # draws, and the share of them that may say othe
 _DIVISIONS = 3  # the share of back-EMF hardly depends on what follows from it
 
 
+@takes(ServoOptions)
 def identify_servo(
     recordings: Recording | Sequence[Recording],
     joint: Joint,
-    *,
-    model: Model | ModelName | Mapping[str, Any] | None = None,
-    window: float = WINDOW,
-    slowest: float = SLOWEST,
-    lead: float | None = None,
-    draws: int = 200,
-    seed: int = 0,
+    **options: Unpack[ServoOptions],
 ) -> ServoEstimate:
     """Identify a servo that logs a duty instead of a torque: motor, friction and inertia, from all runs at once.
 
@@ -61,20 +58,7 @@ def identify_servo(
     joint : Joint
         With `voltage`, and with the known load as its `link`. A given `inertia`, `torque_constant` or resistance, and
         parameters with ``vary=False``, are facts.
-    model : Model, str or mapping, optional
-        One without shape parameters such as "coulomb_viscous", with or without `load_friction`. Default: the joint's;
-        with friction of the load where neither says.
-    window : float
-        Duration of a window [s]. Default 0.05.
-    slowest : float
-        Windows with slower motion are left out [rad/s]. Default 0.1.
-    lead : float, optional
-        Time by which a row's position is older than its duty [s], because a bus reads them one after the other.
-        Default: estimated where the position loop is known and the duty logged, else 0.
-    draws : int
-        Sets of runs that are drawn for errors and intervals. Default 200; 0: none.
-    seed : int
-        Of the drawing. Default 0.
+    **options
 
     Returns
     -------
@@ -91,15 +75,16 @@ def identify_servo(
     >>> drive = jid.VoltageDrive(supply=7.4, position_loop=loop)
     >>> link = jid.Link(mass=0.49, centre_of_mass=0.1, angle=-np.pi / 2)
     >>> servo = jid.Joint(link=link, voltage=drive)
-    >>> found = jid.identify_servo(servo_runs, servo)
+    >>> found = jid.identify(servo_runs, servo)
     >>> found["torque_per_voltage"] > 0.0
     True
     """
     started = time.perf_counter()
     runs = signals_of(recordings, joint)
-    layout, load_friction = _terms(Model.of(model).over(joint.model))
-    window = positive_number("", "window", window)
-    slowest = positive_number("", "slowest", slowest)
+    layout, load_friction = _terms(Model.of(options["model"]).over(joint.model))
+    window = positive_number("", "window", options["window"])
+    slowest = positive_number("", "slowest", options["slowest"])
+    lead, draws, seed = options["lead"], options["draws"], options["seed"]
     if isinstance(draws, bool) or not isinstance(draws, int) or draws < 0:
         raise InputError("a whole number of at least 0 is expected", argument="draws", value=draws)
     found_lead = lead_of(runs, joint) if lead is None else None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +53,8 @@ def signals_of(recordings: Recording | Sequence[Recording], joint: Joint) -> lis
     """
     require_kind("joint", joint, Joint)
     drive = voltage_drive(joint)
-    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
+    one = (Recording, Mapping)  # a mapping is a recording of several joints
+    given: list[Any] = [recordings] if isinstance(recordings, one) else list(recordings)
     if not given:
         raise InputError("at least one recording is expected", argument="recordings", value=[])
     for each in given:

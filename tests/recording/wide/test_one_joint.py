@@ -79,7 +79,7 @@ def test_a_number_in_a_name_is_not_the_joints_number(tmp_path: Path) -> None:
     pasted = caught.value.remedy[0].arguments["joint"]  # type: ignore[union-attr]
     loaded = jid.load(path, joint=pasted)
     np.testing.assert_array_equal(loaded.position, columns["shoulder_lift_joint.position [rad]"])
-    with pytest.raises(jid.InputError, match=r"load_robot with joints=\['shoulder_lift_joint'\]"):
+    with pytest.raises(jid.InputError, match=r"load with joints=\['shoulder_lift_joint'\]"):
         jid.load_robot(path, [3])
     robot = jid.load_robot(path)
     with pytest.raises(KeyError, match="there are shoulder_lift_joint"):

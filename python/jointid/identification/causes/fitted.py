@@ -156,7 +156,7 @@ class Fitted(FittedBalance):
         return (Action("call", {"model": str(self.problem.choice.model.replace(**changes))}),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `compare_models`."""
+        """A call of `compare`."""
         model = self.problem.choice.model
         models = (str(model), str(model.replace(**changes)))
         return (Action("call", {"models": models}, function="compare_models"),)

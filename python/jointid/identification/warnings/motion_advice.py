@@ -12,7 +12,7 @@ from jointid.identification.warnings.evidence import Evidence
 from jointid.joint.joint import Joint
 from jointid.recording.order_statistics import quantile, quantile_of_sizes
 
-DESIGNED = "; `jointid design --after` or `estimate.next_motion` designs it"
+DESIGNED = "; `jointid design --after` or `jid.design(estimate)` designs it"
 """What the list of findings says of such advice."""
 
 _SHORTEST, _LONGEST = 6.0, 60.0  # [s]
@@ -29,7 +29,7 @@ def other_motion(
     gentler: bool = False,
     sensor_range: float | None = None,
 ) -> Action:
-    """Return the advice to record such a motion, with the arguments of `Estimate.next_motion`.
+    """Return the advice to record such a motion, with the arguments of `design`.
 
     What the joint limits is left out: the design takes it from there. Where the joint does not say, a motion stays
     in the range that was recorded; one that must leave it leaves the range to the user.

@@ -54,110 +54,7 @@ def load(
     group: str | None = None,
     unpacked: int | None = None,
 ) -> Recording:
-    """Return the recording that a file holds.
-
-    Headers are a signal's name with its unit, in upper or lower case: ``position_rad``,
-    ``velocity [deg/s]``, ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q),
-    velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
-    sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
-    goal_position), link_position, temperature, motor_torque and current (motor_current), also with words around
-    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. What
-    was commanded is never taken for what was measured. A signal without a unit is assumed to be in SI units and
-    listed in ``metadata["assumed_units"]``; stamps whose size or steps show another unit are read in it
-    (``metadata["recognised_units"]``). A column that has a signal's name and is not needed, but cannot be read,
-    is left out: ``metadata["left_out"]`` says why. `docs/text_logs.md` has the rules.
-
-    Parameters
-    ----------
-    path : path-like, or open file
-        A file's name, or a file or buffer that is open for reading (``io.StringIO``, ``io.BytesIO``), whose first
-        bytes then tell the format if it has no name.
-        A text file (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or a ``.npz`` file, from any
-        program or from `Recording.save`; a
-        MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
-        ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
-        (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``; a ``.json``
-        file with a list of records, or of WPILib's SysId, and a ``.wpilog`` (the extra ``wpilib``).
-        The cells of a text are separated by commas, semicolons, tabs or blanks; where commas do not separate,
-        decimal commas are read as well. Exports of TwinCAT Scope are read, too.
-    joint : str or int, optional
-        Of a file with several joints the one to read, by its number or name as the headers have it:
-        ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,
-        ``elbow_position``. Columns without a joint, such as time, belong to all. `docs/several_joints.md` has the
-        rules. Default: the only one.
-    columns : mapping of str to str, int or None, optional
-        Signal → header or 0-based number of its column; None leaves the signal out (a velocity
-        left out is derived from position). ``{joint}`` in a header stands for the joint:
-        ``{"position": "enc_{joint}_rad"}``. Default: by the headers, also for signals not mapped.
-    units : mapping of str to str, optional
-        Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
-        Default: the header's.
-    scale : mapping of str to float, optional
-        Signal → factor from file units to SI, whatever the header says: for encoder counts
-        (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
-        Saved in ``metadata["scale"]``. Default: the factor of the unit.
-    extra : collection of str or mapping of str to str or int, optional
-        Columns to keep as `Recording.extra`: their headers, which are then the names, or name →
-        header or 0-based number. A known unit at the header's end (``_rad_s``, ``[kNm]``, ``_kgm2``)
-        is converted to SI; without one, values stay as they are. Every cell must be a finite
-        number. Default: none, but those of a saved recording.
-    gear_ratio : float, optional
-        Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
-        (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Default: not known;
-        positions of the motor stay what they are, and ``metadata["side"]`` is "motor".
-    side : mapping of str to str, optional
-        Signal → "motor" or "joint", where a position, velocity, reference or torque is on another side of the gear
-        than its header says: ``{"velocity": "motor"}`` beside the joint's position, with `gear_ratio`.
-        Default: by the headers of a file that names its joints, otherwise the joint's.
-    sample_period : float, optional
-        Time between rows [s], for rows that were taken at an even rate; stamps of the file are not read then.
-        Default: by the file's time column.
-    where : mapping of str to number or str, optional
-        Header → value: only rows with this value are kept. Default: all rows.
-    kind : {"revolute", "prismatic"}, optional
-        Default: from the units, ``"prismatic"`` for metres or newtons, else ``"revolute"``.
-    torque_hold : {"zoh", "linear"}, optional
-        How the torque varies between samples: held (zero-order hold) or linearly.
-        Default: as saved, else not known.
-    drop_copies : bool
-        Whether rows that repeat all measured signals of the row before are left out, as a logger makes
-        them that is faster than the drive's bus. A standstill of more than ten rows stays. Default
-        False.
-    drop_invalid : bool
-        Whether rows are left out that have a value which is missing, no number, not finite or larger than any of a
-        joint (1e15): single damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and
-        longer stretches become gaps. Default False.
-    name : str, optional
-        Default: as saved, else the file's name without its ending.
-    topic : str, optional
-        Of a file of messages: the topic that is the recording. Default: the only one with joints.
-    group : str, optional
-        Of an HDF5 or MATLAB 7.3 file: the group (struct) whose datasets are the recording, as a path.
-        Default: the only one with such datasets.
-    unpacked : int, optional
-        Bytes that a compressed file may hold when it is unpacked. Default: 64 MB or 50 times its size, whichever is
-        larger; a small file that holds more is refused. A number counts 8 bytes, however it is stored; of a packed
-        text, numbers may take 100 MB.
-
-    Returns
-    -------
-    Recording
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or its columns are not a recording. The error names the file, the
-        line or the header, and what is expected.
-
-    Examples
-    --------
-    >>> recording = jid.load("run.csv")
-    >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
-    >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
-    >>> buffered = jid.load(io.StringIO(Path("run.csv").read_text()))
-    >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
-    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")  # doctest: +SKIP
-    """
+    """Return the recording that a file holds; the verb `load` describes the options."""
     file = require_path("path", path)
     try:
         table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)
@@ -252,7 +149,7 @@ def load_runs(
 
     Examples
     --------
-    >>> slow, fast = jid.load_runs("week.csv", by="run")
+    >>> slow, fast = jid.load("week.csv", by="run")
     """
     file = require_path("path", path)
     table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)

@@ -87,7 +87,7 @@ def load_robot(
 
     Examples
     --------
-    >>> robot = jid.load_robot("arm.csv", gear_ratio=[32, 32, 45, -48, 45, 32])
+    >>> robot = jid.load("arm.csv", joints="all", gear_ratio=[32, 32, 45, -48, 45, 32])
     >>> elbow = robot.joint(3)
     """
     file = require_path("path", path)

@@ -49,7 +49,7 @@ def reads_open_files(function: Callable[P, Read]) -> Callable[P, Read]:
     @functools.wraps(function)
     def either(*args: Any, **options: Any) -> Any:
         path = args[0] if args else options.get("path")
-        if not callable(getattr(path, "read", None)):
+        if not is_open(path):
             return function(*args, **options)
         from tempfile import TemporaryDirectory
 
@@ -65,6 +65,11 @@ def reads_open_files(function: Callable[P, Read]) -> Callable[P, Read]:
                 raise
 
     return either
+
+
+def is_open(source: object) -> bool:
+    """Return whether it is an open file or buffer."""
+    return callable(getattr(source, "read", None))
 
 
 def _content(source: Any) -> bytes:

@@ -227,7 +227,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the recording to a file (.npz, .csv, .csv.gz), whole or not at all.
 
-        `load_robot` returns an equal recording, bit for bit, and ``load(path, joint=...)`` one joint of it.
+        ``load(path, joints="all")`` returns an equal recording, bit for bit; ``load(path, joint=...)`` one joint of it.
 
         Raises
         ------

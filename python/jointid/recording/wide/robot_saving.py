@@ -1,4 +1,4 @@
-"""Writing a robot's recording: .csv, .csv.gz and .npz, which `load_robot` reads back bit for bit."""
+"""Writing a robot's recording: .csv, .csv.gz and .npz, which `load` reads back bit for bit."""
 
 import io
 import json

@@ -198,14 +198,14 @@ class FittedJoint(FittedBalance):
         return every[:, 0] if values.ndim == 1 else every
 
     def identified_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `identify_robot`, where a robot can have such a model."""
+        """A call of `identify`, where a robot can have such a model."""
         changed = self._changed(changes)
         if changed is None:
             return self._alone()
         return (Action("call", {"model": changed}, function="identify_robot"),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `compare_robot_models`, where a robot can have such a model."""
+        """A call of `compare`, where a robot can have such a model."""
         changed = self._changed(changes)
         if changed is None:
             return self._alone()

@@ -109,7 +109,7 @@ class Robot:
             identified. Default: all are identified.
         zero_offsets : sequence of float, optional
             Positions of the joints in the URDF's terms where the recording says 0 [rad or m]; a controller often counts
-            from another pose. Default: 0, or multiples of 90 degrees where `identify_robot` finds that they make the
+            from another pose. Default: 0, or multiples of 90 degrees where `identify` finds that they make the
             URDF's inertias fit.
         side : {"joint", "motor"}, optional
             Where recordings have positions and torques. Default: as their headers say.
@@ -121,7 +121,7 @@ class Robot:
         directions : sequence of float, optional
             1 or -1, one a joint: -1 where positions and torques are recorded against the URDF's axis. Default: 1.
         models : mapping, optional
-            Friction models by joints' names, as `identify_robot` takes them: what it uses where it is given none. In a
+            Friction models by joints' names, as `identify` takes them: what it uses where it is given none. In a
             file of facts, ``model`` in a table ``[joints.NAME]``. Default: "auto".
         facts : path-like, optional
             A TOML file with any of these arguments but `path`, ``zero_offsets_deg`` among them; arguments that are

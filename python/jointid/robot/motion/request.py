@@ -1,4 +1,4 @@
-"""What a call of `identify_robot` asks for, checked."""
+"""What a call of `identify` asks for of a robot, checked."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def recordings_of(recordings: object) -> list[RobotRecording]:
             "a RobotRecording, or several, is expected",
             argument="recordings",
             value=recordings,
-            remedy="read one with load_robot",
+            remedy='load(path, joints="all") reads one',
         )
     for run in given:
         require_kind("recordings", run, RobotRecording)

@@ -23,7 +23,7 @@ _FEWEST = 8  # samples
 
 
 def torque_shift(shift: object, robot: Robot) -> Array:
-    """Return the torque's delay of each joint [s] from a `shift` of `identify_robot`, or name what is wrong with it."""
+    """Return the torque's delay of each joint [s] from a `shift` of `identify`, or name what is wrong with it."""
     if not isinstance(shift, Mapping):
         checked_shift(shift)
     assert isinstance(shift, Mapping)

@@ -1,0 +1,55 @@
+"""What `identify` and `compare` take of a servo by keyword."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, TypedDict
+
+from jointid.base.options import Option
+from jointid.joint.model import Model, ModelName
+from jointid.servo.windows import SLOWEST, WINDOW
+
+
+class ServoFitOptions(TypedDict, total=False):
+    """What all models of a comparison share."""
+
+    window: Annotated[
+        float,
+        Option(kind="float", help="Duration of a window [s]. Default 0.05.", default=WINDOW),
+    ]
+    slowest: Annotated[
+        float,
+        Option(
+            kind="float",
+            help="Windows with slower motion are left out [rad/s]. Default 0.1.",
+            default=SLOWEST,
+        ),
+    ]
+    lead: Annotated[
+        float | None,
+        Option(
+            kind="float, optional",
+            help="Time by which a row's position is older than its duty [s], because a bus reads them one after the "
+            "other. Default: estimated where the position loop is known and the duty logged, otherwise 0.",
+        ),
+    ]
+
+
+class ServoOptions(ServoFitOptions, total=False):
+    """What one identification takes."""
+
+    model: Annotated[
+        Model | ModelName | Mapping[str, Any] | None,
+        Option(
+            kind="Model, str or mapping, optional",
+            help='One without shape parameters such as "coulomb_viscous", with or without `load_friction`. Default: '
+            "the joint's; with friction of the load where neither says.",
+        ),
+    ]
+    draws: Annotated[
+        int,
+        Option(
+            kind="int",
+            help="Sets of runs that are drawn for errors and intervals. Default 200; 0: none.",
+            default=200,
+        ),
+    ]
+    seed: Annotated[int, Option(kind="int", help="Of the drawing. Default 0.", default=0)]

@@ -1,0 +1,126 @@
+"""`design`: the motion from which a joint is identified best, from what is believed or from an estimate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.excitation.design import Design
+from jointid.excitation.designing import design_excitation
+from jointid.excitation.motion_limits import MotionLimits
+from jointid.excitation.next_motion import motion_after
+from jointid.joint.joint import Joint
+from jointid.verbs.signatures import shows
+from jointid.verbs.subjects import OtherKind, ask, check_options, keywords, other_kind
+
+
+@shows(design_excitation, others={"joint": None})
+def design(
+    subject: Joint | Estimate,
+    limits: MotionLimits | Mapping[str, Any] | None = None,
+    duration: float = 12.0,
+    **options: Any,
+) -> Design:
+    """Return the motion from which a joint is identified best, within limits.
+
+    Motions are sums of sines that start and end at rest. Each is judged by the information in a
+    noise-free simulation with the controller that will drive it, for several joints that the prior
+    allows; a genetic algorithm searches; the best are rehearsed: simulated with noise, and identified.
+
+    After an estimate it is the motion that adds most to what the estimate tells: the information of its recordings
+    counts, joints are drawn from its intervals, and the controller believes its values. Identify both recordings
+    together then: ``identify([first, second], joint)``.
+
+    Parameters
+    ----------
+    subject : Joint or Estimate
+        The free parameters of its model are what the motion is for.
+    limits : MotionLimits or mapping, optional
+        Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
+        the sensor [N·m] that the joint itself keeps, whichever of the prior it is. Default: the joint's.
+    duration : float
+        [s]. Default 12.
+    controller : controller, optional
+        That will drive the joint. Default: an adaptive-robust law that believes the nominal joint and
+        does not feed the torque sensor back.
+    sensors : Sensors, optional
+        Default: noise of 0.3 % of the torque limit at the torque sensor; without one, an encoder of 8000
+        counts per motor revolution. Of an estimate: with the noise that the residuals show.
+    parameters : sequence of str, optional
+        What the motion is for. Default: all free parameters.
+    criterion : {"worst", "determinant"}
+        What is made small: the largest relative error, or the product of all. Default "worst". A value
+        near 0 counts as a tenth of its range.
+    prior : mapping of str to (low, high), or sequence of mappings, optional
+        Ranges of the free parameters, or values of joints of which the first is the nominal one.
+        Default: the joint's bounds; 30 % around a value without bounds. Of an estimate: drawn from its intervals.
+    search : DesignSearch, optional
+    control_period : float
+        Of the controller [s]. Default 0.001.
+    known : Known, optional
+        Joint: information about parameters from recordings that are there.
+    callback : callable, optional
+        Called with a `DesignProgress` now and then; True ends the search early.
+
+    Other Parameters
+    ----------------
+    joint : Joint, optional
+        Estimate: facts that the joint of the identification lacked, e.g. a link.
+
+    Returns
+    -------
+    Design
+        After an estimate, errors are those expected of both recordings together; `before` is that of the estimate.
+
+    Raises
+    ------
+    InputError
+        An argument that cannot be used, a parameter without a range, limits that leave no motion, a loop that is not
+        stable for some joint of the prior, or another subject than a joint.
+    KeyboardInterrupt
+        Ctrl-C, within 0.1 s.
+
+    Examples
+    --------
+    >>> limits = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
+    >>> search = jid.DesignSearch(evaluations=64, joints=2, rehearsals=10)  # the default takes seconds
+    >>> motion = jid.design(known, limits, duration=4.0, search=search)
+    >>> path = motion.save("new_motion.toml")
+
+    After an estimate:
+
+    >>> jid.design(estimate, limits, duration=4.0, search=search).duration
+    4.0
+    """
+    if isinstance(subject, Estimate):
+        names = {*keywords(motion_after), *keywords(design_excitation)} - {"known", "estimate"}
+        check_options("design", "an estimate", options, sorted(names))
+        return motion_after(subject, limits, duration, **options)
+    _refuse(subject)
+    found: Design = ask(
+        "design", "a joint", design_excitation, subject, limits, duration, **options
+    )
+    return found
+
+
+def _refuse(subject: object) -> None:
+    """Refuse what no motion is designed for."""
+    kind = other_kind(subject)
+    if kind:
+        raise InputError(
+            "design takes a Joint, or an Estimate of one joint",
+            argument="subject",
+            value=subject,
+            remedy=_REMEDIES[kind],
+        )
+
+
+_OF_ONE = "give a jid.Joint for one of its joints"
+_REMEDIES: dict[OtherKind, str] = {
+    "robot": _OF_ONE,
+    "robot estimate": _OF_ONE,
+    "servo estimate": "give its .identified joint, which takes a torque",
+    "joint estimates": "choose one of them, as in found[NAME]",
+}

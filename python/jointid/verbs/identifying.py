@@ -1,0 +1,164 @@
+"""`identify`: from recordings to an estimate of a joint, a servo, several joints or a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Unpack, overload
+
+from jointid.estimate.estimate import Estimate
+from jointid.identification import identification
+from jointid.identification.options import IdentifyOptions
+from jointid.joint.joint import Joint
+from jointid.recording.recording import Recording
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.options import RobotOptions
+from jointid.servo.options import ServoOptions
+from jointid.verbs.signatures import shows
+from jointid.verbs.subjects import WORDS, ask, listed, second, subject_of
+
+if TYPE_CHECKING:
+    from jointid.joints.result import JointEstimates
+    from jointid.robot.links.inertia_modes import Inertia
+    from jointid.robot.links.robot import Robot
+    from jointid.robot.result.result import RobotEstimate
+    from jointid.servo.estimate import ServoEstimate
+
+
+# A type checker cannot tell a servo from another joint: a call without options of servos is of a joint to it.
+@overload
+def identify(
+    recordings: Recording | Sequence[Recording],
+    subject: Joint | None = None,
+    **options: Unpack[IdentifyOptions],
+) -> Estimate: ...
+
+
+@overload
+def identify(
+    recordings: Recording | Sequence[Recording], subject: Joint, **options: Unpack[ServoOptions]
+) -> ServoEstimate: ...
+
+
+@overload
+def identify(
+    recordings: RobotRecording | Sequence[RobotRecording],
+    subject: Robot,
+    *,
+    inertia: Inertia = "urdf",
+    **options: Unpack[RobotOptions],
+) -> RobotEstimate: ...
+
+
+@overload
+def identify(
+    recordings: RobotRecording,
+    subject: Joint | Mapping[str, Joint] | None = None,
+    *,
+    joints: Iterable[str | int] | str | None = None,
+    couplings: bool = True,
+    callback: Callable[[str, int, int], None] | None = None,
+    **options: Unpack[IdentifyOptions],
+) -> JointEstimates: ...
+
+
+@shows(
+    identification.identify,
+    others={"joints": None, "couplings": True, "callback": None, "inertia": "urdf"},
+    options=IdentifyOptions,
+    servo=ServoOptions,
+    robot=RobotOptions,
+)
+def identify(recordings: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
+    """Identify friction, inertia and torque sensor of a joint, a servo, several joints or a robot from ordinary motion.
+
+    The torque balance is integrated over windows, so no acceleration is needed (thesis 4-21 to 4-24). What is
+    identified depends on the subject:
+
+    - A joint, from one recording or several.
+    - A servo, which is a joint with `voltage`, from runs without a torque. Where each recording has a torque, a motor
+      torque, or a current with the joint's `torque_constant`, the balance of that torque is identified as of any
+      joint; ``jid.load(..., columns={"torque": None})`` leaves such a signal out.
+    - Several joints, from one recording of all of them: each for itself, held against the motion of the others.
+    - A robot, from one recording of all joints or several: all at once, with the inertia of the links.
+
+    Parameters
+    ----------
+    recordings : Recording, RobotRecording, or sequence of these
+        Several share all parameters but those of `per_recording`.
+    subject : Joint, mapping of str to Joint, or Robot, optional
+        Known values, bounds and the model. Of several joints one for all, or by name. Default: without one, inertia,
+        friction and an offset are identified with bounds from the data, and the sensor if the recording has one.
+    **options
+
+    Other Parameters
+    ----------------
+    joints : iterable of str or int, optional
+        Several joints: names or numbers of those to identify. Default, and "all": all.
+    couplings : bool
+        Several joints: whether the residuals are held against the other joints' motion. Default True.
+    callback : callable, optional
+        Several joints: called before each with its name, its number from 0, and how many there are.
+    **servo
+    inertia : {"urdf", "scaled", "free"}
+        Robot: whether the links' inertias are those of the URDF, scaled link by link, or identified: as base
+        parameters, the combinations that motion shows. Default ``"urdf"``.
+    **robot
+
+    Returns
+    -------
+    Estimate, ServoEstimate, JointEstimates or RobotEstimate
+
+    Raises
+    ------
+    InputError
+        Input that cannot be used, or an option that this subject does not have: the error names it and the reason.
+    KeyboardInterrupt
+        Ctrl-C; it is raised within 0.1 s.
+
+    Examples
+    --------
+    A joint:
+
+    >>> estimate = jid.identify(jid.load("run.csv"), joint, model="stribeck")
+    >>> round(estimate["coulomb"].value)
+    25
+    >>> windows = jid.WindowOptions(duration=0.02)
+    >>> estimate = jid.identify(recording, joint, windows=windows, parameters={"viscous": {"min": 0.0, "max": 40.0}})
+
+    A servo:
+
+    >>> found = jid.identify(servo_runs, servo, draws=100)
+    >>> found["torque_per_voltage"] > 0.0
+    True
+
+    Several joints:
+
+    >>> arm = jid.load("arm.csv", joints="all")
+    >>> [*jid.identify(arm, joints=["elbow"]).results]
+    ['elbow']
+
+    A robot:
+
+    >>> robot = jid.Robot.from_urdf("arm.urdf")
+    >>> found = jid.identify(arm, robot, inertia="scaled")
+    >>> found.joints["elbow"].parameters["coulomb"].unit
+    'N·m'
+    """
+    options = of_other_subjects
+    subject, recordings = second(subject, options, "joint", "robot"), listed(recordings)
+    kind = subject_of("identify", recordings, subject)
+    words = "identify", WORDS[kind]
+    if kind == "joint":
+        return ask(*words, identification.identify, recordings, subject, **options)
+    if kind == "servo":
+        from jointid.servo.identifying import identify_servo
+
+        return ask(*words, identify_servo, recordings, subject, **options)
+    if kind == "robot":
+        from jointid.robot.identifying import identify_robot
+
+        return ask(*words, identify_robot, recordings, subject, **options)
+    from jointid.joints.identifying import identify_joints
+
+    joints = options.pop("joints", None)
+    return ask(*words, identify_joints, recordings, joints, joint=subject, **options)

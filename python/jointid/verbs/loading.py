@@ -1,0 +1,314 @@
+"""`load`: what files hold, of a joint, a servo, several joints or a robot."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Collection, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
+
+from jointid.base.errors import InputError
+from jointid.joint.joint import Joint
+from jointid.recording.extra import named_extra
+from jointid.recording.readers import loading
+from jointid.recording.readers.folders import files_of
+from jointid.recording.readers.loading_robot import load_robot
+from jointid.recording.readers.open_files import Source, is_open, reads_open_files
+from jointid.recording.recording import Recording
+from jointid.recording.sides import MOTOR
+from jointid.recording.signals import FloatArray, Kind, TorqueHold
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.verbs.kept_kinds import class_of_kind
+from jointid.verbs.servo_log import servo_columns
+from jointid.verbs.signatures import shows
+from jointid.verbs.subjects import ask, check_options, is_robot, keywords
+
+if TYPE_CHECKING:
+    from jointid.robot.links.robot import Robot
+
+
+class LoadOptions(TypedDict, total=False):
+    """How any file is read."""
+
+    columns: Mapping[str, str | int | None] | None
+    units: Mapping[str, str] | None
+    scale: Mapping[str, float] | None
+    extra: Collection[str] | Mapping[str, str | int] | None
+    side: Mapping[str, str] | None
+    sample_period: float | None
+    kind: Kind | None
+    torque_hold: TorqueHold | None
+    name: str | None
+    topic: str | None
+    group: str | None
+    unpacked: int | None
+
+
+class RunOptions(LoadOptions, total=False):
+    """How a file of one joint is read."""
+
+    joint: str | int | None
+    gear_ratio: float | None
+
+
+class OneRunOptions(RunOptions, total=False):
+    """How a file of one run is read."""
+
+    where: Mapping[str, float | str] | None
+    drop_copies: bool
+    drop_invalid: bool
+
+
+class RobotFileOptions(LoadOptions, total=False):
+    """How a file of several joints is read."""
+
+    gear_ratio: Sequence[float] | FloatArray | float | None
+    where: Mapping[str, float | str] | None
+
+
+@overload
+def load(
+    path: Source, subject: Joint | None = None, **options: Unpack[OneRunOptions]
+) -> Recording: ...
+
+
+@overload
+def load(
+    path: Source | Sequence[Source],
+    subject: Joint | None = None,
+    *,
+    by: str | int,
+    **options: Unpack[RunOptions],
+) -> tuple[Recording, ...]: ...
+
+
+@overload
+def load(
+    path: list[Any] | tuple[Any, ...],
+    subject: Joint | None = None,
+    **options: Unpack[OneRunOptions],
+) -> tuple[Recording, ...]: ...
+
+
+@overload
+def load(
+    path: Source,
+    subject: Robot | None = None,
+    *,
+    joints: Sequence[str | int] | str,
+    **options: Unpack[RobotFileOptions],
+) -> RobotRecording: ...
+
+
+@overload
+def load(path: Source, subject: Robot, **options: Unpack[RobotFileOptions]) -> RobotRecording: ...
+
+
+@overload
+def load(
+    path: list[Any] | tuple[Any, ...],
+    subject: Robot | None = None,
+    *,
+    joints: Sequence[str | int] | str,
+    **options: Unpack[RobotFileOptions],
+) -> tuple[RobotRecording, ...]: ...
+
+
+@shows(loading.load, others={"joints": None, "by": None})
+def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
+    """Return what a file holds: a recording, that of several joints, or several runs.
+
+    Headers are a signal's name with its unit, in upper or lower case: ``position_rad``,
+    ``velocity [deg/s]``, ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q),
+    velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
+    sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
+    goal_position), link_position, temperature, motor_torque and current (motor_current), also with words around
+    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. What
+    was commanded is never taken for what was measured. A signal without a unit is assumed to be in SI units and
+    listed in ``metadata["assumed_units"]``; stamps whose size or steps show another unit are read in it
+    (``metadata["recognised_units"]``). A column that has a signal's name and is not needed, but cannot be read,
+    is left out: ``metadata["left_out"]`` says why. `docs/text_logs.md` has the rules.
+
+    Parameters
+    ----------
+    path : path-like, open file, or list of these
+        A file's name, or a file or buffer that is open for reading (``io.StringIO``, ``io.BytesIO``), whose first
+        bytes then tell the format if it has no name.
+        A text file (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or a ``.npz`` file, from any
+        program or from `Recording.save`; a
+        MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
+        ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
+        (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``; a ``.json``
+        file with a list of records, or of WPILib's SysId, and a ``.wpilog`` (the extra ``wpilib``).
+        The cells of a text are separated by commas, semicolons, tabs or blanks; where commas do not separate,
+        decimal commas are read as well. Exports of TwinCAT Scope are read, too. Several files, and a folder of them,
+        are several runs.
+    subject : Joint or Robot, optional
+        What the recording is of. The gear ratio of a joint is used for columns of the motor; of a servo, the columns
+        that its `voltage` names are kept as `extra`; of a robot, all joints are read. Default: not known.
+    joint : str or int, optional
+        Of a file with several joints the one to read, by its number or name as the headers have it:
+        ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,
+        ``elbow_position``. Columns without a joint, such as time, belong to all. `docs/several_joints.md` has the
+        rules. Default: the only one.
+    joints : sequence of str or int, or "all", optional
+        Of a file with several joints those to read, on one clock: a `RobotRecording`. Default: one joint.
+    by : str or int, optional
+        Header or 0-based number of the column that numbers the runs of a file: rows with the same value are one run,
+        named ``"NAME BY=VALUE"``. Default: the file holds one run.
+    columns : mapping of str to str, int or None, optional
+        Signal → header or 0-based number of its column; None leaves the signal out (a velocity
+        left out is derived from position). ``{joint}`` in a header stands for the joint:
+        ``{"position": "enc_{joint}_rad"}``. Default: by the headers, also for signals not mapped.
+    units : mapping of str to str, optional
+        Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
+        Default: the header's.
+    scale : mapping of str to float, optional
+        Signal → factor from file units to SI, whatever the header says: for encoder counts
+        (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
+        Saved in ``metadata["scale"]``. Default: the factor of the unit.
+    extra : collection of str or mapping of str to str or int, optional
+        Columns to keep as `Recording.extra`: their headers, which are then the names, or name →
+        header or 0-based number. A known unit at the header's end (``_rad_s``, ``[kNm]``, ``_kgm2``)
+        is converted to SI; without one, values stay as they are. Every cell must be a finite
+        number. Default: none, but those of a saved recording.
+    gear_ratio : float, or sequence of float, optional
+        Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
+        (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Of several joints one for
+        each, or one for all. Default: that of the subject; without one, positions of the motor stay what they are, and
+        ``metadata["side"]`` is "motor".
+    side : mapping of str to str, optional
+        Signal → "motor" or "joint", where a position, velocity, reference or torque is on another side of the gear
+        than its header says: ``{"velocity": "motor"}`` beside the joint's position, with `gear_ratio`.
+        Default: by the headers of a file that names its joints, otherwise the joint's.
+    sample_period : float, optional
+        Time between rows [s], for rows that were taken at an even rate; stamps of the file are not read then.
+        Default: by the file's time column.
+    where : mapping of str to number or str, optional
+        Header → value: only rows with this value are kept. Default: all rows.
+    kind : {"revolute", "prismatic"}, optional
+        Default: from the units, ``"prismatic"`` for metres or newtons, else ``"revolute"``.
+    torque_hold : {"zoh", "linear"}, optional
+        How the torque varies between samples: held (zero-order hold) or linearly.
+        Default: as saved, else not known.
+    drop_copies : bool
+        Whether rows that repeat all measured signals of the row before are left out, as a logger makes
+        them that is faster than the drive's bus. A standstill of more than ten rows stays. Default
+        False.
+    drop_invalid : bool
+        Whether rows are left out that have a value which is missing, no number, not finite or larger than any of a
+        joint (1e15): single damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and
+        longer stretches become gaps. Default False.
+    name : str, optional
+        Default: as saved, else the file's name without its ending.
+    topic : str, optional
+        Of a file of messages: the topic that is the recording. Default: the only one with joints.
+    group : str, optional
+        Of an HDF5 or MATLAB 7.3 file: the group (struct) whose datasets are the recording, as a path.
+        Default: the only one with such datasets.
+    unpacked : int, optional
+        Bytes that a compressed file may hold when it is unpacked. Default: 64 MB or 50 times its size, whichever is
+        larger; a small file that holds more is refused. A number counts 8 bytes, however it is stored; of a packed
+        text, numbers may take 100 MB.
+
+    Returns
+    -------
+    Recording, RobotRecording, or tuple of these
+        A tuple where there are several files, a folder or `by`. A `RobotRecording` is on the side of the gear that the
+        headers show; at the joint if one joint has signals of both sides, which needs `gear_ratio`.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or its columns are not a recording. The error names the file, the
+        line or the header, and what is expected. Or an option does not belong to what is read.
+
+    Examples
+    --------
+    >>> recording = jid.load("run.csv")
+    >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
+    >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
+    >>> buffered = jid.load(io.StringIO(Path("run.csv").read_text()))
+    >>> slow, fast = jid.load("week.csv", by="run")
+    >>> arm = jid.load("arm.csv", joints="all", gear_ratio=[32, 32, 45, -48, 45, 32])
+    >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
+    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")  # doctest: +SKIP
+    """
+    read = _reader(subject, of_other_subjects)
+    several = isinstance(path, list | tuple)
+    if several and not path:
+        raise InputError("at least one file is expected", argument="path", value=path)
+    if not several and (is_open(path) or files_of([path]) == [path]):
+        return read(path)
+    found: list[Any] = []
+    for file in files_of(path if several else [path]):
+        held = read(file)
+        found += held if isinstance(held, tuple) else [held]
+    return tuple(found)
+
+
+def _reader(subject: object, options: dict[str, Any]) -> Callable[[Any], Any]:
+    """Return what reads one file of a subject."""
+    joints = options.pop("joints", None)
+    if is_robot(subject) or joints is not None:
+        if isinstance(subject, Joint):
+            raise InputError(
+                "load of several joints takes no single Joint", argument="subject", value=subject
+            )
+        word = "several joints"
+        return lambda path: _said(ask, path, "load", word, load_robot, path, joints, **options)
+    if subject is not None and not isinstance(subject, Joint):
+        raise InputError(
+            "a Joint or a Robot is expected",
+            argument="subject",
+            value=subject,
+            remedy="give several files as a list",
+        )
+    function, word = loading.load, "a recording"
+    if options.get("by") is None:
+        options.pop("by", None)
+    else:
+        function, word = loading.load_runs, "several runs"  # type: ignore[assignment]
+    check_options("load", word, options, keywords(function)[1:])
+    if subject is None:
+        return lambda path: _said(function, path, path, **options)
+    return lambda path: _said(_of_joint, path, path, function, subject, options)
+
+
+@reads_open_files
+def _of_joint(
+    path: Any, function: Callable[..., Any], joint: Joint, options: dict[str, Any]
+) -> Any:
+    """Read what a joint's file holds: a servo's own columns, too, and columns of the motor with the gear ratio."""
+    if joint.voltage is not None:
+        parts = {name: options.get(name) for name in ("topic", "group", "unpacked")}
+        stated = named_extra(options.get("extra"))
+        options = options | {"extra": servo_columns(path, joint.voltage, stated, **parts)}
+    found = function(path, **options)
+    first = found if isinstance(found, Recording) else found[0]
+    if first.metadata.get("side") != MOTOR or joint.gear_ratio == 1.0 or "gear_ratio" in options:
+        return found
+    return function(path, gear_ratio=joint.gear_ratio, **options)
+
+
+def _said(function: Callable[..., Any], source: object, *arguments: Any, **options: Any) -> Any:
+    """Call what reads a source; a file of ours that is no recording is named."""
+    try:
+        return function(*arguments, **options)
+    except InputError:
+        if isinstance(source, str | os.PathLike) and (what := _of_ours(Path(source))):
+            reader = "Joint" if what == "a joint" else "Result"
+            raise InputError(
+                f"this is a file of {what}, no recording",
+                place=os.fspath(source),
+                remedy=f"jid.{reader}.load(path) reads it",
+            ) from None
+        raise
+
+
+def _of_ours(path: Path) -> str:
+    """What a file holds that jointid wrote and that is no recording; empty for any other file."""
+    try:
+        return f"a result ({class_of_kind(path)._KIND})"
+    except InputError:
+        return "a joint" if path.suffix == ".toml" and path.is_file() else ""

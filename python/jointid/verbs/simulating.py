@@ -1,0 +1,206 @@
+"""`simulate`: a joint in closed loop, or a servo along its logs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, overload
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.joint.joint import Joint
+from jointid.joint.link import Link
+from jointid.recording.recording import Recording
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.servo.rolling_out import STEP, Rollout, rollout
+from jointid.simulation import simulation
+from jointid.simulation.arguments import Controller
+from jointid.simulation.plant import Bristle
+from jointid.simulation.simulated_recording import SimulatedRecording
+from jointid.simulation.trajectory import Trajectory
+from jointid.verbs.signatures import shows
+from jointid.verbs.subjects import OtherKind, ask, other_kind
+
+if TYPE_CHECKING:
+    from jointid.servo.estimate import ServoEstimate
+
+
+@overload
+def simulate(
+    subject: Joint | Estimate | ServoEstimate,
+    controller: Controller,
+    trajectory: Trajectory,
+    *,
+    duration: float | None = None,
+    control_period: float = 1e-3,
+    sample_period: float | None = None,
+    integration_step: float | None = None,
+    sensors: _core.Sensors | None = None,
+    payload: Link | float = 0.0,
+    bristle: Bristle | None = None,
+    position: float | None = None,
+    velocity: float = 0.0,
+    seed: int = 0,
+    name: str = "",
+) -> SimulatedRecording: ...
+
+
+@overload
+def simulate(
+    subject: Joint | ServoEstimate,
+    *,
+    recordings: Recording | Sequence[Recording],
+    step: float = STEP,
+    threads: int = 0,
+) -> Rollout: ...
+
+
+@shows(simulation.simulate, others={"step": STEP, "threads": 0})
+def simulate(
+    subject: Any,
+    controller: Any = None,
+    trajectory: Any = None,
+    *,
+    recordings: Any = None,
+    **of_servos: Any,
+) -> Any:
+    """Simulate a joint that a controller moves along a trajectory, or a servo along its logs.
+
+    Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command
+    is held over each control period. Same arguments, same bits.
+
+    With `recordings`, the closed loop of a servo is simulated from their initial states and compared with their
+    positions. Only the reference, the supply and when the motor is driven are taken from the log; where the position
+    loop is not known, the logged duty instead of the reference.
+
+    Parameters
+    ----------
+    subject : Joint, Estimate or ServoEstimate
+        With a value for each parameter of its model: see `Joint.with_parameters`. Its link, if it
+        has a sensor and ``gravity="none"``, hangs behind the sensor; a link without inertia is a
+        point mass. A servo has values of torque constant, resistance, inertia and friction.
+    controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
+        Not of a servo along its logs, as all that follows but `step` and `threads`.
+    trajectory : Trajectory
+        For `OpenLoop` it is the torque.
+    duration : float, optional
+        [s]. Default: the trajectory's.
+    control_period : float
+        Between commands [s]. Default 0.001.
+    sample_period : float, optional
+        Between recorded samples [s], a whole number of control periods. Default: one. The recorded
+        torque is then the mean of the commands until the next sample.
+    integration_step : float, optional
+        [s]; a whole number of them is a control period. Default: half of it.
+    sensors : Sensors, optional
+        Default: exact signals.
+    payload : Link or float
+        A payload on the joint in addition to its own link, behind the sensor; a number is a constant
+        torque [N·m] against positive motion. Default 0.
+    bristle : Bristle, optional
+        Makes friction dynamic (Dahl, LuGre). Default: static.
+    position, velocity : float, optional
+        At the start [rad], [rad/s]. Default: the trajectory's position, at rest.
+    seed : int
+        Of the sensors' noise. Default 0.
+    name : str
+        Of the recording. Default ``""``.
+
+    Other Parameters
+    ----------------
+    recordings : Recording or sequence of Recording
+        Servo: the logs, as for `identify`.
+    step : float
+        Servo: longest integration step [s]. Default 1 ms.
+    threads : int
+        Servo: 0 (default): all. The results do not depend on it, to the last bit.
+
+    Returns
+    -------
+    SimulatedRecording or Rollout
+        Signals as the sensors measured them, the held torque, the reference; `truth` has the true
+        parameters, `truth.signals` the true signals. Unless the sensors show an exact velocity,
+        it is derived from the position, and what the controller had is in
+        ``truth.signals["control_velocity"]``. ``metadata["saturations"]`` counts the control
+        periods in which the torque limit cut the command. A `Rollout` is of a servo along its logs.
+
+    Raises
+    ------
+    InputError
+        An argument that cannot be used, a term of the model that a simulation does not have, a loop
+        that is not stable, a signal that is missing, or another subject than a joint or a servo.
+    KeyboardInterrupt
+        Ctrl-C, within 0.1 s.
+
+    Examples
+    --------
+    A joint:
+
+    >>> run = jid.simulate(known, jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0))
+    >>> len(run), run.truth["viscous"]
+    (2000, 20.0)
+    >>> sensors = jid.Sensors(encoder_counts=8000, velocity="difference", torque_noise=0.5)
+    >>> law, motion = jid.Pd(stiffness=8000.0, damping=400.0), jid.Trajectory.thesis(duration=2.0)
+    >>> run = jid.simulate(known, law, motion, sensors=sensors)
+
+    A servo along its logs:
+
+    >>> found = jid.identify(servo_runs[1:], servo, draws=0)
+    >>> predicted = jid.simulate(found, recordings=servo_runs[:1])
+    >>> len(predicted.runs)
+    1
+    """
+    kind = None if isinstance(subject, Estimate) else other_kind(subject)
+    if kind is not None and kind != "servo estimate":
+        raise InputError(
+            "simulate takes one joint or servo",
+            argument="subject",
+            value=subject,
+            remedy=_REMEDIES[kind],
+        )
+    if recordings is None and _are_recordings(controller) and trajectory is None:
+        controller, recordings = None, controller
+    if recordings is not None:
+        return _along(subject, controller, trajectory, recordings, of_servos)
+    joint = subject.identified if kind == "servo estimate" else subject
+    joint = joint.joint if isinstance(joint, Estimate) else joint
+    for name, value in (("controller", controller), ("trajectory", trajectory)):
+        if value is None:
+            raise InputError(
+                "simulate of a joint needs a controller and a trajectory",
+                argument=name,
+                remedy="give recordings to simulate a servo along its logs",
+            )
+    return ask(
+        "simulate", "a joint", simulation.simulate, joint, controller, trajectory, **of_servos
+    )
+
+
+def _along(
+    subject: Any, controller: object, trajectory: object, recordings: Any, options: dict[str, Any]
+) -> Rollout:
+    """Return a servo's closed loop along its logs."""
+    if isinstance(subject, Estimate) or (isinstance(subject, Joint) and subject.voltage is None):
+        raise InputError(
+            "simulate along recordings is of a servo, a joint with a voltage",
+            argument="recordings",
+            remedy="give a controller and a trajectory instead",
+        )
+    both = {"controller": controller, "trajectory": trajectory}
+    options = {name: value for name, value in both.items() if value is not None} | options
+    word = "a servo along recordings"
+    found: Rollout = ask("simulate", word, rollout, subject, recordings, **options)
+    return found
+
+
+def _are_recordings(value: object) -> bool:
+    several = value if isinstance(value, list | tuple) else (value,)
+    return bool(several) and all(isinstance(each, Recording | RobotRecording) for each in several)
+
+
+_REMEDIES: dict[OtherKind, str] = {
+    "robot": "give a jid.Joint with the values of one of its joints",
+    "robot estimate": "found.predict(recording) returns its torque, "
+    "and a jid.Joint with the values of one of its joints is simulated",
+    "joint estimates": "choose one of them, as in found[NAME]",
+}
