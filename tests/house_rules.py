@@ -312,7 +312,7 @@ FOLDERS: dict[str, Folder] = {
                 "study",
                 "excitation",
                 "plot",
-                "report",
+                *("report", "report/renderers"),
                 "exports",
                 "verbs",
                 "identification/warnings",

@@ -263,4 +263,4 @@ def test_no_output_is_written_over_an_input(
 
 def test_a_report_is_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", "run.csv", "--report", str(tmp_path / "report.pdf")]) == 2
-    assert "report.pdf: a report is an HTML page" in capsys.readouterr().err
+    assert "report.pdf: a report ends in one of .html, " in capsys.readouterr().err

@@ -90,7 +90,9 @@ def test_a_file_of_another_kind_is_named(
     servo = tmp_path / "servo.json"
     servo.write_text('{"schema": 1, "kind": "jointid servo"}', encoding="utf-8")
     line = ["report", str(servo), "--output", str(tmp_path / "page.html")]
-    assert "this is a servo's estimate" in answer(line, capsys)[1]
+    assert "servo.json: joint: this is missing" in answer(line, capsys)[1]
+    with pytest.raises(jid.InputError, match="this is a servo's estimate"):
+        jid.Estimate.load(servo)
     with pytest.raises(jid.InputError, match="the estimates of several joints"):
         jid.Estimate.load(arm)
 

@@ -123,7 +123,7 @@ def test_a_joint_file_for_each_joint(
         (("identify", "--joints", "all", "--selftest"), "this is for one joint"),
         (("identify", "--joints", "all", "--bootstrap"), "this is for one joint"),
         (("identify", "--joints", "all", "--save", "x.toml"), "saved as .json"),
-        (("identify", "--joints", "all", "--report", "x.txt"), "HTML"),
+        (("identify", "--joints", "all", "--report", "x.pdf"), "a report ends in one of .html"),
         (("identify", "--joints", "all", "--gear-ratio", "1,x"), "numbers such as"),
         (("identify", "--joints", "2", "--gear-ratio", "1,2"), "one ratio is expected"),
     ],
@@ -161,11 +161,14 @@ def test_one_of_several_estimates(
     found = jid.identify_joints(jid.load_robot(arm), couplings=False)
     found.save(saved := tmp_path / "robot.json")
     header, page = tmp_path / "friction.h", tmp_path / "page.html"
-    for command in (("export", saved, "--to", header), ("report", saved, "--output", page)):
-        code, _, error = ran(capsys, *command)
-        assert code == 2
-        assert "estimates of 2 joints (1, 2)" in error
-        assert "load with --joints 1 (or another joint)" in error
+    exported, reported = ("export", saved, "--to", header), ("report", saved, "--output", page)
+    code, _, error = ran(capsys, *exported)
+    assert code == 2
+    assert "estimates of 2 joints (1, 2)" in error
+    assert "load with --joints 1 (or another joint)" in error
+    assert ran(capsys, *reported)[0] == 0
+    assert '<div id="of-2">' in page.read_text(encoding="utf-8")
+    for command in (exported, reported):
         assert ran(capsys, *command, "--joints", "2")[0] == 0
         code, _, error = ran(capsys, *command, "--joints", "7")
         assert (code, "--joints 7: there is no such joint" in error) == (2, True)

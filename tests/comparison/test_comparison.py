@@ -324,8 +324,8 @@ def test_report_json_and_html(comparison: jid.Comparison) -> None:
     estimate = jid.Estimate.from_json(json.dumps(document["estimate"]))
     assert estimate.parameters["static"].value == comparison.estimate.parameters["static"].value
     page = comparison._repr_html_()
-    assert page.count("<tr>") == 3
-    assert "<b>Use stribeck.</b>" in page
+    assert page.count("<tr ") == 3
+    assert "<b>Use stribeck: usable.</b>" in page
     assert "winner stribeck" in repr(comparison)
 
 

@@ -139,7 +139,7 @@ def test_every_table_shows_them(estimate: jid.Estimate) -> None:
             assert formula in text
         value, stderr = found["breakaway"].value, found["breakaway"].stderr
         assert stderr is not None
-        assert f"<td>{rounded(value, stderr)} ± " in text or number(value) in text
+        assert f">{rounded(value, stderr)} ± " in text or number(value) in text
     saved = json.loads(estimate.to_json())["derived"]["breakaway"]
     assert saved["value"] == found["breakaway"].value
     assert saved["stderr"] == found["breakaway"].stderr

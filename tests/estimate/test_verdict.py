@@ -337,7 +337,8 @@ def test_the_page_begins_with_it() -> None:
     page = report_page(with_findings(*found))
     assert '<p class="verdict usable-with-care"><b>Usable with care.</b></p>' in page
     assert re.search(r"<b>compensation: usable with care, to ± [\d.]+ %</b>: static \(above", page)
-    assert '<b>Because </b>reason 0. <a href="#findings">All 5 reasons</a>.' in page
+    assert '<b>Because </b>reason 0. <a href="#findings">All findings</a>.' in page
+    assert all(f"reason {n} (c{n})" in page for n in range(5))
 
 
 def test_text_and_numbers_have_it() -> None:

@@ -158,7 +158,7 @@ def test_the_result_as_text_page_and_json(home: jid.Estimate) -> None:
     test = home.selftest(trials=1, seed=2)
     assert "trial 1: the estimate itself" in test.report()
     assert test.verdict in test.report()
-    assert test._repr_html_().count("<tr>") == 1 + len(test.rows)
+    assert test._repr_html_().count("<tr ") == 1 + len(test.rows)
     document = json.loads(test.to_json())
     assert document["passed"] is True
     assert document["rows"][0]["parameter"] == test.rows[0].parameter

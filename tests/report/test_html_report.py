@@ -39,7 +39,7 @@ def test_a_reason_has_its_advice_and_its_picture(robot: jid.Estimate) -> None:
     page = report_page(robot, lambda action: f"<{action.kind}>")
     reason = page[: page.index('id="parameters"')]
     assert "<b> do: </b>&lt;record&gt;." in reason
-    assert '<a href="#findings">' in reason
+    assert '<a href="#findings">All findings</a>' in reason
     findings = page.partition('id="findings"')[2]
     assert '<a href="#windows">picture</a>' in findings
 
@@ -47,7 +47,8 @@ def test_a_reason_has_its_advice_and_its_picture(robot: jid.Estimate) -> None:
 def test_values_are_written_as_exactly_as_they_are_known(robot: jid.Estimate) -> None:
     page = report_page(robot)
     assert robot["inertia"].value == pytest.approx(2027.5, abs=0.1)
-    assert '<th scope="row">inertia</th><td>2030 ± 160 kg·m²</td>' in page
+    cell = '<td role="cell" data-label="value ± std. error">2030 ± 160 kg·m²</td>'
+    assert f'<th scope="row" role="rowheader">inertia</th>{cell}' in page
     copied = tomllib.loads(code(page)[0])["parameters"]
     values = {name: p.value for name, p in robot.parameters.items()}
     assert {name: each["value"] for name, each in copied.items()} == values
@@ -57,7 +58,7 @@ def test_the_page_says_what_was_recorded(robot: jid.Estimate) -> None:
     section = report_page(robot).partition('id="recording"')[2].partition("</details>")[0]
     run = robot.settings["recordings"][0]
     assert f"kr300_joint1 ({run['fingerprint']})" in section
-    assert '<th scope="row">samples</th><td>2501</td>' in section
+    assert '>samples</th><td role="cell">2501</td>' in section
     low, high = robot.windows.velocity.min(), robot.windows.velocity.max()
     assert f"{low:.3g} to {high:.3g} rad/s" in section
 

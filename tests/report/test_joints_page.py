@@ -26,8 +26,10 @@ def found() -> jid.JointEstimates:
 
 def test_every_joint_has_its_section(found: jid.JointEstimates) -> None:
     page = report_page(found)
-    for name in ("a-b", "wrist"):
-        assert f'id="of-{name}"' in page
+    for number, name in enumerate(("a&lt;b", "wrist"), 1):
+        assert f'<a href="#of-{number}">{name}</a>' in page
+        assert f'<div id="of-{number}">' in page
+    assert ">failed</td>" in page
     # Of each joint a small friction map, and folded its map, its windows and its residual.
     assert page.count("<svg ") == 2 * 4
     assert "joint idle failed: joint idle" in page

@@ -70,7 +70,7 @@ def test_the_page_says_what_a_session_is_asked(ring: Commissioning) -> None:
     page = report_page(ring)
     assert "An emulated joint on an emulated drive: no hardware moved." in page
     assert f"The tracking error fell by a factor of {ring.improvement:.1f}" in page
-    for name in ("tracking", "limits", "timing", "drive", "identified", "of-cycle-1-friction-map"):
+    for name in ("tracking", "limits", "timing", "drive", "identified", "of-1-friction-map"):
         assert f'id="{name}"' in page
     assert "No run was stopped by a limit." in page
     assert "The drive confirmed that the motor is off." in page
@@ -131,8 +131,6 @@ def test_a_stopped_session_has_a_page_that_says_why(
     assert "Next: find out why the limit was reached" in top
     assert "The drive confirmed that the motor is off." in page
     limits = page.partition('id="limits"')[2].partition("</table>")[0]
-    assert (
-        '<th scope="row">tracking error</th><td>0.002006 rad</td><td>0.002 rad</td><td>100 %</td>'
-        in limits
-    )
+    cells = re.findall(r"<td[^>]*>(.*?)</td>", limits.partition(">tracking error</th>")[2])
+    assert cells[:3] == ["0.002006 rad", "0.002 rad", "100 %"]
     assert 'id="timing"' in page

@@ -86,7 +86,7 @@ def test_the_page_on_reports_runs(
 ) -> None:
     run_python_blocks(read("docs/reports.md"), tmp_path, monkeypatch)
     assert capsys.readouterr().out == "usable\n"
-    assert "<b>Use stribeck.</b>" in (tmp_path / "models.html").read_text(encoding="utf-8")
+    assert "<b>Use stribeck: " in (tmp_path / "models.html").read_text(encoding="utf-8")
     assert (tmp_path / "joint.html").is_file()
     for name in re.findall(r"pictures/report_\w+\.png", read("docs/reports.md")):
         assert (ROOT / "docs" / name).stat().st_size < 150_000

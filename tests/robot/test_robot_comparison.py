@@ -108,7 +108,7 @@ def test_text_and_json_say_the_same(found: jid.RobotComparison) -> None:
     assert document["models"] == dict(found.models)
     again = jid.RobotEstimate.from_json(json.dumps(document["estimate"]))
     assert again.report(verbose=True) == found.estimate.report(verbose=True)
-    assert f"<b>Use {found.winner.name}.</b>" in found._repr_html_()
+    assert f"<b>Use {found.winner.name}: " in found._repr_html_()
 
 
 @pytest.mark.parametrize(

@@ -23,20 +23,6 @@ def require_path(argument: str, value: object) -> Path:
     return Path(value)
 
 
-def require_page(argument: str, value: object) -> Path:
-    """Return the file name of a page as a path; what writes it refuses a folder.
-
-    Raises
-    ------
-    InputError
-        It is no file name, or does not end in .html.
-    """
-    path = require_path(argument, value)
-    if path.suffix.lower() not in (".html", ".htm") and not path.is_dir():
-        raise InputError("a report is an HTML page (.html)", argument=argument, value=path)
-    return path
-
-
 def require_mapping(argument: str, value: object, example: str) -> Mapping[Any, Any]:
     """Return a value that is a mapping; `example` shows a correct one in the message.
 

@@ -37,7 +37,7 @@ _EMPTY = frozenset(("br", "img", "meta"))
 _ATTRIBUTES = frozenset(
     (
         *("alt", "charset", "class", "colspan", "content", "href", "id", "lang", "name", "src"),
-        *("d", "role", "viewBox", "x", "y", "scope", "tabindex", "aria-label", "aria-hidden"),
+        *("d", "role", "viewBox", "x", "y", "scope", "tabindex", "aria-label", "data-label"),
     )
 )
 # A page of ours needs no other file: pictures are inside, links stay on the page.

@@ -59,6 +59,8 @@ class Overview:
     level : str
         Of the answer: "usable", "usable with care", "not usable", or "" where it is no verdict.
     parameters : tuple of Quantity
+        Rows of the main table: values and what follows from them; of a comparison its models, of a rollout its runs,
+        of a study its cells.
     fit : tuple of (str, str)
         How well the result explains the data: label and text.
     facts : tuple of (str, str)

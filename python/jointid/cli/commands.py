@@ -25,13 +25,15 @@ from jointid.cli.requirement import required
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from jointid.base.result import Result
     from jointid.comparison.result import Comparison
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.recording.recording import Recording
-    from jointid.robot.result.result import RobotEstimate
 
 
 def demo(arguments: argparse.Namespace) -> None:
@@ -216,31 +218,37 @@ def compare(arguments: argparse.Namespace) -> int:
 
 
 def report(arguments: argparse.Namespace) -> None:
-    """Write the HTML report of a saved estimate."""
+    """Write the page of a saved result."""
     import json
 
-    from jointid.cli.robot import saved_robot
-    from jointid.joints.reading import load_estimate
     from jointid.report.saving import save_report
 
     check_page("output", arguments.output)
-    robot = saved_robot(arguments.estimate)
-    estimate: Estimate | RobotEstimate
-    if robot is None:
-        estimate = load_estimate(arguments.estimate, arguments.joints)
-        page = save_report(estimate, arguments.output, action=ADVICE.of_action)
-    else:
-        if arguments.joints is not None:
-            raise InputError(
-                "the page of a robot shows all joints", argument="joints", value=arguments.joints
-            )
-        estimate = robot
-        page = save_report(robot, arguments.output, action=ADVICE.of_action)
+    result = _saved(arguments.estimate, arguments.joints)
+    page = save_report(result, arguments.output, action=ADVICE.of_action)
     if arguments.json:
-        summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
+        found = [each for each in result.overview.findings if each.severity != "info"]
+        summary = {"report": str(page), "warnings": [each.code for each in found]}
         print(json.dumps(summary, indent=1, ensure_ascii=False))
     else:
         print(f"report: {page}")
+
+
+def _saved(path: Path, joint: str | None) -> Result:
+    """The result that a file holds, of any kind; of several joints one where one is named."""
+    from jointid.base.result import Result
+    from jointid.joints.reading import load_estimate
+    from jointid.verbs.kept_kinds import class_of_kind
+
+    try:
+        kind = class_of_kind(path)
+    except InputError:
+        return load_estimate(path, joint)  # says what is wrong
+    if kind.__name__ in ("Estimate", "JointEstimates") and joint is not None:
+        return load_estimate(path, joint)
+    if joint is not None:
+        raise InputError("the page of a robot shows all joints", argument="joints", value=joint)
+    return Result.load(path)
 
 
 def _write(

@@ -7,7 +7,6 @@ import errno
 import os
 from pathlib import Path
 
-from jointid.base.argument_checks import require_page
 from jointid.base.errors import InputError
 from jointid.base.files import new_beside
 
@@ -88,15 +87,17 @@ def check_distinct(arguments: argparse.Namespace) -> None:
 
 
 def check_page(argument: str, path: Path | None) -> None:
-    """Refuse a page that is no .html, or in a folder that does not exist.
+    """Refuse a page of a format that is not written, or in a folder that does not exist.
 
     Raises
     ------
     InputError
         Another extension, or no such folder.
     """
-    if path is not None:
-        require_page(argument, path)
+    if path is not None and not path.is_dir():
+        from jointid.report.renderers import ending_of_page
+
+        ending_of_page(argument, path)
     check_folder(argument, path)
 
 

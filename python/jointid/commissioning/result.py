@@ -77,10 +77,12 @@ class Commissioning(Result):
         return Overview(
             title=f"{name}: session of {runs} run{'s' * (runs > 1)}",
             footer="" if estimate is None else made_by(estimate.settings),
-            answer=tuple(said),
+            answer=(
+                *said,
+                *([f"The motion: {self.motion_warning}."] if self.motion_warning else []),
+            ),
             level=level,
             parameters=tuple(map(quantity_of, estimate.parameters.values())) if estimate else (),
-            facts=(("motion", self.motion_warning),) if self.motion_warning else (),
             findings=estimate.findings if estimate else (),
             inner={f"cycle {len(self.estimates)}": estimate} if estimate else {},
         )

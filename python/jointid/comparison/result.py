@@ -207,7 +207,11 @@ class Comparison(KeptResult):
     def _advice(self) -> str:
         """Which model to use, in a sentence."""
         blocking = [each for each in self.estimate.findings if each.severity == "blocking"]
-        return f"Use none: {blocking[0].cause}." if blocking else f"Use {self.winner}."
+        return (
+            f"Use none: {blocking[0].cause}."
+            if blocking
+            else f"Use {self.winner}: {self.estimate.verdict.level}."
+        )
 
     def _said(self) -> list[str]:
         """What to know of the winner's values, a line each: whether they are usable, and its warnings."""

@@ -97,6 +97,7 @@ class Bootstrap(Result):
                     value=p.value,
                     error=p.stderr,
                     unit=p.unit,
+                    meaning=f"95 % interval {p.interval[0]:.5g} … {p.interval[1]:.5g}",
                     remark="" if p.ratio is None else f"{p.ratio:.2f} of the reported error",
                 )
                 for p in self.parameters.values()

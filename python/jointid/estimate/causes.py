@@ -209,13 +209,13 @@ class Causes(Result):
         tried = self.excluded
         return Overview(
             title="causes of the misfit",
-            answer=tuple(str(cause) for cause in self.found) or (_NOTHING,),
+            answer=tuple(map(_sentence, self.found)) or (_NOTHING,),
             parameters=tuple(
                 Quantity(
                     name=cause.name,
-                    value=100.0 * cause.share,
+                    value=float(f"{100.0 * cause.share:.2g}"),
                     unit="% of the misfit",
-                    meaning=cause.meaning,
+                    meaning=str(cause),
                     remark="" if cause in self.found else "harmless",
                 )
                 for cause in (*self.found, *self.harmless)
@@ -280,6 +280,12 @@ def _document(cause: Cause) -> dict[str, Any]:
         "alike": cause.alike,
         "advice": [str(each) for each in cause.advice],
     }
+
+
+def _sentence(cause: Cause) -> str:
+    """The cause, and what to do about it."""
+    advice = "; or ".join(filter(None, map(str, cause.advice)))
+    return f"{cause.name}: {cause}{f'; do: {advice}' if advice else ''}."
 
 
 def _rebuilt(values: dict[str, Any]) -> Cause:

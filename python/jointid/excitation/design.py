@@ -137,7 +137,10 @@ class Design(DesignFields, KeptResult):
         from jointid.base.schema import Plain, TableOf, read_json
         from jointid.excitation.design_file import read_design
 
-        return read_design(TableOf(Plain()).read(read_json(require_text(text)), ""), cls)
+        document = TableOf(Plain()).read(read_json(require_text(text)), "")
+        if "design" not in document and "trajectory" not in document:
+            raise InputError("a design is expected, a file that Design.save writes")
+        return read_design(document, cls)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a file (.toml) that a session, `simulate` and `load_design` read, or .json; return its path.

@@ -108,7 +108,8 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
             for name, estimate in self.items()
             for row in estimate_rows(estimate)
         ]
-        return data_frame(rows, index=["joint", "name"])
+        frame = data_frame(rows)
+        return frame.set_index(["joint", "name"]) if rows else frame
 
     def __str__(self) -> str:
         return self.report()

@@ -81,8 +81,8 @@ class OnlineEstimate(Result):
         unknown = ", ".join(self.undetermined)
         does = f"do not determine {unknown}" if unknown else "determine all free parameters"
         return Overview(
-            title=f"{self.joint.name or 'joint'}: friction, on line",
-            answer=(f"the last seconds {does}",),
+            title=f"{self.joint.name or 'joint'}: friction, online",
+            answer=(f"The last seconds {does}.",),
             parameters=tuple(map(quantity_of, self.parameters.values())),
             fit=(("penalty", f"{self.penalty:.4g}"),),
             facts=(

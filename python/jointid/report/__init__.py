@@ -1,1 +1,1 @@
-"""The HTML report of an estimate."""
+"""Reports of results: pages made of sections, in several formats."""

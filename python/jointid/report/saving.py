@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
-from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
 from jointid.problem.recordings import listed
 from jointid.report.page.extras import Extras
 from jointid.report.pages import page_of
-from jointid.report.renderers import RENDERERS
+from jointid.report.renderers import RENDERERS, ending_of_page
 
 if TYPE_CHECKING:
     from jointid.base.result import Result
@@ -36,8 +35,8 @@ def report_page(
     result : Result
     action, recordings, rollout
         See `save_report`.
-    ending : {".html", ".md", ".txt"}
-        The format. Default HTML.
+    ending : str
+        The format, as `RENDERERS` names it. Default HTML.
 
     Returns
     -------
@@ -96,6 +95,7 @@ def save_report(
     'report.html'
     """
     target = require_path("path", path)
-    ending = ".html" if target.is_dir() else ending_of(target, tuple(RENDERERS))
+    # Whatever writes it refuses a folder.
+    ending = ".html" if target.is_dir() else ending_of_page("path", target)
     write_whole(target, report_page(result, action, recordings, rollout, ending).encode())
     return target

@@ -64,7 +64,7 @@ class ServoComparison(KeptResult):
         return Overview(
             title=f"{self.estimate.joint.name or 'servo'}: {len(self.models)} models compared",
             answer=(
-                f"Use {self.best}.",
+                f"Use {self.best}: {self.estimate.verdict.level}.",
                 "Its closed loop is nearest to the runs that were held out.",
             ),
             level=self.estimate.verdict.level,

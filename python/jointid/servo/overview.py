@@ -17,7 +17,8 @@ def overview_of(estimate: ServoEstimateRecord) -> Overview:
     named = (*SETTINGS.optional, *SETTINGS.fields)
     return Overview(
         title=f"{estimate.joint.name or 'servo'}: motor and friction",
-        footer=f"From {len(estimate.runs)} runs without a torque signal; errors by a bootstrap over the runs.",
+        footer=f"From {len(estimate.runs)} runs without a torque signal"
+        f"{'; errors by a bootstrap over the runs' * bool(len(estimate.draws))}.",
         verdict=judged_servo(estimate),
         parameters=tuple(quantity_of(p) for p in estimate.parameters.values()),
         fit=tuple(quality(estimate)),

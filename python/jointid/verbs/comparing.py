@@ -88,7 +88,8 @@ def compare(
 
     - Of a joint, the balance of held-out windows decides. A model that the data do not support cannot win: its
       estimate from all data has the warning `model_too_rich`, or a parameter on a bound.
-    - Of a servo, the closed loop of held-out runs decides, simulated. A servo is what it is in `identify`.
+    - Of a servo, the closed loop of held-out runs decides, simulated: the smallest median error wins. A servo is what
+      it is in `identify`.
     - Of a robot, the held-out torque of all joints decides. Candidates are the inertias of the links with each model.
 
     Options are the same for all models. Delays that are chosen are chosen from all data; windows are by default the

@@ -284,11 +284,17 @@ def _of_joint(
         parts = {name: options.get(name) for name in ("topic", "group", "unpacked")}
         stated = named_extra(options.get("extra"))
         options = options | {"extra": servo_columns(path, joint.voltage, stated, **parts)}
-    found = function(path, **options)
+    ratio = {} if joint.gear_ratio == 1.0 else {"gear_ratio": joint.gear_ratio}
+    try:
+        found = function(path, **options)
+    except InputError as error:
+        if error.argument != "gear_ratio" or not ratio or "gear_ratio" in options:
+            raise
+        return function(path, **ratio, **options)
     first = found if isinstance(found, Recording) else found[0]
-    if first.metadata.get("side") != MOTOR or joint.gear_ratio == 1.0 or "gear_ratio" in options:
+    if first.metadata.get("side") != MOTOR or not ratio or "gear_ratio" in options:
         return found
-    return function(path, gear_ratio=joint.gear_ratio, **options)
+    return function(path, **ratio, **options)
 
 
 def _said(function: Callable[..., Any], source: object, *arguments: Any, **options: Any) -> Any:

@@ -19,7 +19,7 @@ from jointid.simulation.plant import Bristle
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 from jointid.verbs.signatures import shows
-from jointid.verbs.subjects import OtherKind, ask, other_kind
+from jointid.verbs.subjects import OtherKind, ask, other_kind, second
 
 if TYPE_CHECKING:
     from jointid.servo.estimate import ServoEstimate
@@ -57,7 +57,7 @@ def simulate(
 
 @shows(simulation.simulate, others={"step": STEP, "threads": 0})
 def simulate(
-    subject: Any,
+    subject: Any = None,
     controller: Any = None,
     trajectory: Any = None,
     *,
@@ -150,6 +150,7 @@ def simulate(
     >>> len(predicted.runs)
     1
     """
+    subject = second(subject, of_servos, "joint", "estimate")
     kind = None if isinstance(subject, Estimate) else other_kind(subject)
     if kind is not None and kind != "servo estimate":
         raise InputError(

@@ -131,20 +131,29 @@ def _item(item: Item) -> Html:
 
 
 def _table(table: Table, heading: str) -> Html:
-    head = [element("th", name, scope="col") if name else element("td") for name in table.head]
+    head = [
+        element("th", name, scope="col", role="columnheader") if name else element("td")
+        for name in table.head
+    ]
+    # Roles, and labels for the narrow screen, where each row is a card: it has no columns then.
+    labels = table.head[1:] or ("",) * max((len(row) for row in table.rows), default=0)
     rows = [
         element(
             "tr",
-            element("th", _run(first), scope="row"),
-            *(element("td", _run(cell)) for cell in cells),
+            element("th", _run(first), scope="row", role="rowheader"),
+            *(
+                element("td", _run(cell), role="cell", **({"data_label": label} if label else {}))
+                for label, cell in zip(labels, cells, strict=False)
+            ),
+            role="row",
         )
         for first, *cells in table.rows
     ]
-    parts = [element("tbody", *rows)]
+    parts = [element("tbody", *rows, role="rowgroup")]
     if head:
-        parts.insert(0, element("thead", element("tr", *head)))
+        parts.insert(0, element("thead", element("tr", *head, role="row"), role="rowgroup"))
     look = "numbers" if table.numbers else "values" if head else "facts"
-    made = element("table", *parts, class_=look)
+    made = element("table", *parts, class_=look, role="table")
     widest = max((len(row) for row in (*table.rows, table.head)), default=0)
     if widest <= _NARROW:
         return made

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from jointid.report.page.content import (
     Answer,
     Block,
-    Bold,
     Code,
     Figure,
     Items,
@@ -65,7 +64,9 @@ def _block(block: Block) -> list[str]:
         case Code(text):
             return ["```", text, "```"]
         case Multiples(pictures):
-            return [f"*{_plain(picture.title)}: {_plain(picture.caption)}*" for picture in pictures]
+            return [
+                f"- *{_plain(picture.title)}: {_plain(picture.caption)}*" for picture in pictures
+            ]
 
 
 def _table(table: Table) -> list[str]:
@@ -81,15 +82,24 @@ def _line(cells: Iterable[str]) -> str:
 
 
 def _runs(runs: Iterable[Run]) -> str:
-    return "".join(map(_run, runs))
+    return " ".join("".join(map(_run, runs)).split())
 
 
 def _run(run: Run) -> str:
-    if isinstance(run, Bold):
-        return f"**{_plain(run.text)}**"
-    return _plain(run.text if isinstance(run, Link) else run)
+    if isinstance(run, Link):
+        return ""  # the part that it leads to follows
+    if isinstance(run, str):
+        return _escaped(run)
+    # Markdown takes stars for bold next to a letter only.
+    inner = run.text.strip()
+    before, _, after = run.text.partition(inner)
+    return f"{before}**{_escaped(inner)}**{after}"
 
 
 def _plain(text: str) -> str:
     """A text on one line in which nothing is Markdown's."""
-    return _SYNTAX.sub(r"\\\1", " ".join(text.split()))
+    return " ".join(_escaped(text).split())
+
+
+def _escaped(text: str) -> str:
+    return _SYNTAX.sub(r"\\\1", text)

@@ -13,6 +13,7 @@ from jointid.report.page.content import (
     Code,
     Figure,
     Items,
+    Link,
     Multiples,
     Page,
     Paragraph,
@@ -79,4 +80,6 @@ def _indented(text: str) -> list[str]:
 
 
 def _text(runs: Iterable[Run]) -> str:
-    return "".join(run if isinstance(run, str) else run.text for run in runs)
+    # A link's words say nothing without it: the part that it leads to follows.
+    texts = (run if isinstance(run, str) else run.text for run in runs if not isinstance(run, Link))
+    return " ".join("".join(texts).split())

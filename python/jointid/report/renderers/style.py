@@ -12,15 +12,16 @@ h1 {{ font-size: 1.4rem; margin: .6rem 0; }} h2 {{ font-size: 1.1rem; margin: 1.
 h3, h4 {{ font-size: 1rem; margin: 1.1rem 0 .4rem; }}
 p, ul.lines, figcaption, .caption {{ max-width: 56rem; }} p {{ margin: .5rem 0; }}
 a {{ color: var(--link); }} .muted, figcaption, .caption, footer {{ color: var(--muted); font-size: .87rem; }}
-table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .5rem 0; max-width: 100%; }}
+table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .5rem 0; max-width: 100%;
+ overflow-wrap: break-word; }}
 .wide {{ overflow-x: auto; }} .wide table {{ overflow-wrap: normal; max-width: none; font-size: .92rem; }}
 th, td {{ padding: .2rem .7rem .2rem 0; border-bottom: 1px solid var(--grid); text-align: left; vertical-align: top; }}
 tbody th {{ font-weight: normal; overflow-wrap: break-word; }} table.values td:nth-child(2) {{ white-space: nowrap; }}
 table.numbers td, table.numbers th:not(:first-child) {{ text-align: right; }}
-.wide td, .wide thead th {{ white-space: nowrap; }} .wide td:last-child {{ white-space: normal; min-width: 9rem; }}
+.wide td, .wide thead th {{ white-space: nowrap; }} .wide td:last-child {{ white-space: normal; }}
 pre {{ overflow-x: auto; background: var(--well); padding: .6rem .8rem; font-size: .85rem; line-height: 1.4; }}
 figure {{ margin: .5rem 0; }}
-ul.lines {{ padding-left: 1.2rem; margin: .4rem 0; }} ul.lines li {{ margin-bottom: .25rem; }}
+ul.lines {{ padding-left: 1.2rem; margin: .4rem 0; }} ul.lines li {{ margin-bottom: .45rem; }}
 .below {{ font-size: .92rem; }} li.blocking b {{ color: var(--alarm); }} li.warning b {{ color: var(--fifth); }}
 li .below b {{ color: inherit; }}
 p.verdict {{ font-size: 1.15rem; margin: .3rem 0; }} p.not-usable {{ color: var(--alarm); }}
@@ -29,6 +30,15 @@ p.usable-with-care {{ color: var(--fifth); }} p.usable {{ color: var(--third); }
 .halves h2 {{ margin-top: .8rem; }}
 .wide th:first-child {{ position: sticky; left: 0; background: var(--ground); }}
 @media (min-width: 700px) {{ .multiples {{ grid-template-columns: minmax(0, 1fr) minmax(0, 1fr); }} }}
+@media (min-width: 700px) and (max-width: 999px) {{ .multiples svg text {{ font-size: 170px; }} }}
+@media (max-width: 640px) {{
+ table.values, table.values tbody {{ display: block; width: 100%; }} table.values thead {{ display: none; }}
+ table.values tr {{ display: flex; flex-wrap: wrap; justify-content: space-between; column-gap: .7rem;
+ border-bottom: 1px solid var(--grid); padding: .25rem 0; }}
+ table.values th, table.values td {{ border: 0; padding: 0; white-space: normal; min-width: 0; }}
+ table.values td:nth-child(2) {{ margin-left: auto; }} table.values td:empty {{ display: none; }}
+ table.values td:nth-child(n+3) {{ flex-basis: 100%; color: var(--muted); font-size: .87rem; }}
+ table.values td:nth-child(n+3)::before {{ content: attr(data-label); margin-right: .4rem; }} }}
 @media (min-width: 1000px) {{
  .halves {{ grid-template-columns: minmax(0, 1fr) minmax(0, 1fr); }} }}
 details {{ border-top: 1px solid var(--grid); }} details:last-of-type {{ border-bottom: 1px solid var(--grid); }}

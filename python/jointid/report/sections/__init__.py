@@ -10,7 +10,7 @@ from jointid.base.result import KINDS
 
 _VALUED = ("estimate", "servo", "self-test", "bootstrap", "online", "causes")
 _COMPARED = ("comparison", "robot comparison", "servo comparison")
-_JUDGED = ("estimate", "joints", "robot", "servo", "online")
+_JUDGED = ("estimate", "joints", "robot", "servo")
 
 SECTIONS: dict[str, tuple[str, ...]] = {
     "answer": KINDS,
@@ -26,8 +26,8 @@ SECTIONS: dict[str, tuple[str, ...]] = {
     "tracking": ("commissioning",),
     "session": ("commissioning",),
     "rollouts": ("rollout", "servo"),
-    "findings": _JUDGED,
     "friction_of_joints": ("joints", "robot"),
+    "findings": _JUDGED,
     "couplings": ("joints",),
     "windows": ("estimate",),
     "signals": ("estimate",),

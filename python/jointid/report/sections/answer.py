@@ -42,7 +42,7 @@ def content(_result: Result, extras: Extras) -> list[Part]:
 def verdict_blocks(
     verdict: Verdict, findings: Sequence[Finding] = (), extras: Extras | None = None
 ) -> list[Block]:
-    """Whether the values may be used, for what, and the finding that speaks most against it."""
+    """Whether the values may be used, for what, and why not without care."""
     blocks: list[Block] = [Answer(f"{verdict.level.capitalize()}.", verdict.level)]
     uses = verdict.uses.values()
     if len({use.level for use in uses}) > 1 or any(use.parameters for use in uses):
@@ -53,27 +53,25 @@ def verdict_blocks(
         blocks.append(Items(tuple(lines)))
     else:
         blocks += [paragraph(f"{line.strip().capitalize()}.") for line in purposes(verdict)]
-    reason = _reason(verdict, findings, extras)
-    return [*blocks, reason] if reason else blocks
+    return [*blocks, *_reasons(verdict, findings, extras)]
 
 
-def _reason(verdict: Verdict, findings: Sequence[Finding], extras: Extras | None) -> Block | None:
-    """The first reason, and a link to the others."""
-    if not verdict.reasons:
-        return None
-    first = verdict.reasons[0]
-    found = next((each for each in findings if each.title == first), None)
-    runs: list[Run] = [Bold("Because "), f"{first.rstrip('.')}."]
-    if found is not None and extras is not None:
-        advice = next(filter(None, map(extras.action, found.advice)), "")
-        runs += [Bold(" do: "), f"{advice}."] if advice else []
-    more = len(verdict.reasons) - 1
-    if findings and extras is not None:
-        words = f"All {more + 1} reasons" if more else "Details"
-        runs += [" ", Link(words, f"{extras.prefix}findings"), "."]
-    elif more:
-        runs.append(f" And {more} more.")
-    return Paragraph(tuple(runs))
+def _reasons(verdict: Verdict, findings: Sequence[Finding], extras: Extras | None) -> list[Block]:
+    """The first reason with what to do about it, and each other one that is not among the findings."""
+    titles = {found.title: found for found in findings}
+    blocks: list[Block] = []
+    for number, reason in enumerate(verdict.reasons):
+        if number and reason in titles:
+            continue
+        runs: list[Run] = [Bold("Because "), f"{reason.rstrip('.')}."]
+        found = titles.get(reason)
+        if found is not None and extras is not None:
+            advice = next(filter(None, map(extras.action, found.advice)), "")
+            runs += [Bold(" do: "), f"{advice}."] if advice else []
+        if not number and findings and extras is not None:
+            runs += [" ", Link("All findings", f"{extras.prefix}findings"), "."]
+        blocks.append(Paragraph(tuple(runs)))
+    return blocks
 
 
 def _named(parameters: tuple[str, ...]) -> list[str]:

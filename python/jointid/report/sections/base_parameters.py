@@ -5,19 +5,20 @@ from __future__ import annotations
 from typing import cast
 
 from jointid.base.result import Result
+from jointid.estimate.overview import quantity_of
 from jointid.report.page.content import Part, Table, paragraph
 from jointid.report.page.extras import Extras
+from jointid.report.page.wording import value_cell
 from jointid.robot.result.result import RobotEstimate
-from jointid.robot.result.tables import base_rows
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
     """The table; nothing where the inertia was not identified."""
-    rows = base_rows(cast("RobotEstimate", result))
-    if not rows:
+    found = cast("RobotEstimate", result).base_parameters.values()
+    if not found:
         return []
     table = Table(
-        tuple((name, f"{value} ± {error} {unit}") for value, error, unit, name in rows),
+        tuple((p.name, value_cell(quantity_of(p, p.name))) for p in found),
         ("combination", "value ± std. error"),
     )
     said = paragraph(

@@ -9,7 +9,7 @@ from jointid.panels.study import study_pictures
 from jointid.report.page.content import Figure, Part, Table, paragraph
 from jointid.report.page.extras import Extras
 from jointid.study.study_result import Study
-from jointid.study.summary import Summary, summary_texts
+from jointid.study.summary import Summary, summary_notes, summary_texts
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
@@ -17,11 +17,12 @@ def content(result: Result, extras: Extras) -> list[Part]:
     study = cast("Study", result)
     summary = study.summary()
     head, rows = summary_texts(summary)
+    said = (_meaning(summary), *summary_notes(summary))
     figures = tuple(map(Figure, study_pictures(study)))
     table = Table(tuple(map(tuple, rows)), tuple(head))
     return [
         Part("", figures),
-        Part("Each cell", (table, paragraph(_meaning(summary))), f"{extras.prefix}cells"),
+        Part("Each cell", (table, *map(paragraph, said)), f"{extras.prefix}cells"),
     ]
 
 

@@ -15,15 +15,15 @@ def content(result: Result, extras: Extras) -> list[Part]:
     """Each inner result under its name; several are folded."""
     inner = extras.overview.inner
     parts = []
-    for name, each in inner.items():
-        prefix = f"{extras.prefix}{slug(name)}-"
-        shown = extras.parts_of(each, replace(extras, prefix=prefix, recordings=()))
+    for number, (name, each) in enumerate(inner.items()):
+        place = place_of(number, extras)
+        shown = extras.parts_of(each, replace(extras, prefix=f"{place}-", recordings=()))
         look: Look = "folded" if kind_of(result) == "joints" else "open"
         heading = _HEADING.get(kind_of(result), "Identified with {}").format(name)
-        parts.append(Part(heading, (), f"{extras.prefix}{slug(name)}", look, tuple(shown)))
+        parts.append(Part(heading, (), place, look, tuple(shown)))
     return parts
 
 
-def slug(name: str) -> str:
-    """A name as part of a link."""
-    return f"of-{''.join(letter if letter.isalnum() else '-' for letter in name)}"
+def place_of(number: int, extras: Extras) -> str:
+    """The name of the part that shows an inner result, by its number: names of joints may look alike in a link."""
+    return f"{extras.prefix}of-{number + 1}"

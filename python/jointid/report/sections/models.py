@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import cast
+from collections.abc import Mapping
+from typing import Any, cast
 
 from jointid.base.result import Result, kind_of
 from jointid.comparison.result import Comparison
@@ -35,11 +36,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
 
 def _of_joint(result: Result) -> tuple[list[Block], list[Block], Picture]:
     comparison = cast("Comparison", result)
-    below: list[Block] = [paragraph(comparison.setting(), muted=True)]
-    left = comparison.settings["left_out"].items()
-    if left:
-        lines = tuple(Item((f"{model}: {reason}",)) for model, reason in left)
-        below += [paragraph("Not compared:"), Items(lines)]
+    below = [paragraph(comparison.setting(), muted=True), *_left_out(comparison.settings)]
     rows = tuple(
         (
             f"{row.model}, {row.parameters} parameters",
@@ -49,6 +46,15 @@ def _of_joint(result: Result) -> tuple[list[Block], list[Block], Picture]:
         for row in comparison.rows
     )
     return [Table(rows, _HEAD)], below, held_out(comparison)
+
+
+def _left_out(settings: Mapping[str, Any]) -> list[Block]:
+    """What could not be compared, with the reasons."""
+    left = settings["left_out"].items()
+    if not left:
+        return []
+    lines = tuple(Item((f"{model}: {reason}",)) for model, reason in left)
+    return [paragraph("Not compared:"), Items(lines)]
 
 
 def _of_robot(result: Result) -> tuple[list[Block], list[Block], Picture]:
@@ -66,6 +72,7 @@ def _of_robot(result: Result) -> tuple[list[Block], list[Block], Picture]:
         paragraph("Held-out residual of each joint:"),
         joints,
         paragraph(found.setting(), muted=True),
+        *_left_out(found.settings),
     ]
     return [Table(rows, _HEAD)], below, held_out_robot(found)
 

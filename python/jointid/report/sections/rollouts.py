@@ -39,7 +39,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
                 run.name,
                 f"{math.degrees(run.error):.2f}",
                 f"{math.degrees(run.spread):.2f}",
-                ", ".join(["bistable"] * run.bistable + ["duty as logged"] * (not run.closed)),
+                run.remark,
             )
             for run in runs
         ),

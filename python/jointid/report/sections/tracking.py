@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from jointid.base.result import Result
+from jointid.estimate.overview import quantity_of
 from jointid.panels.session import tracking
-from jointid.report.page.content import Figure, Part, paragraph, table_of
+from jointid.report.page.content import Figure, Part, Table, paragraph, table_of
 from jointid.report.page.extras import Extras
+from jointid.report.page.wording import value_cell
 
 if TYPE_CHECKING:
     from jointid.commissioning.result import Commissioning
@@ -15,16 +17,28 @@ if TYPE_CHECKING:
 
 def content(result: Result, extras: Extras) -> list[Part]:
     """Picture and table of the runs; what was assumed and what was identified."""
-    from jointid.commissioning.result import parameter_rows, run_rows
+    from jointid.commissioning.result import run_rows
 
     session = cast("Commissioning", result)
     what = paragraph("By the encoder, without the first sixth of each run.", muted=True)
     prefix = extras.prefix
-    parts = [
-        Part("Tracking error", (Figure(tracking(session)),), f"{prefix}tracking", "half"),
-        Part("Runs", (table_of(run_rows(session)), what), f"{prefix}runs", "half"),
-    ]
+    parts = [Part("Tracking error", (Figure(tracking(session)),), f"{prefix}tracking", "half")]
     if session.estimates:
-        table = table_of(parameter_rows(session))
-        parts.append(Part("Assumed and identified", (table,), f"{prefix}identified"))
-    return parts
+        table = _identified(session)
+        parts.append(Part("Assumed and identified", (table,), f"{prefix}identified", "half"))
+    return [*parts, Part("Runs", (table_of(run_rows(session)), what), f"{prefix}runs")]
+
+
+def _identified(session: Commissioning) -> Table:
+    """What was assumed and what the last cycle found, with the truth of an emulated joint."""
+    from jointid.commissioning.result import parameter_rows
+
+    head, *rows = parameter_rows(session)
+    found = session.estimates[-1].parameters
+    named = ["identified", "assumed", *(["truth", "error"] if session.truth else [])]
+    kept = [1, *((len(head) - 2, len(head) - 1) if session.truth else ())]
+    cells = []
+    for name, *others in rows:
+        assumed, *truth = (others[column - 1] for column in kept)
+        cells.append((name, value_cell(quantity_of(found[name])), assumed, *truth))
+    return Table(tuple(cells), ("parameter", *named))

@@ -19,16 +19,15 @@ if TYPE_CHECKING:
 def content(result: Result, extras: Extras) -> list[Part]:
     """The tables."""
     parameters = cast("Estimate | ServoEstimate", result).parameters
-    blocks: list[Block] = [
-        _intervals([p for p in parameters.values() if p.vary]),
-        paragraph(
-            "Halved, doubled: change of each value with windows of half and twice the length; about one standard "
-            "error is usual.",
-            muted=True,
-        ),
-    ]
+    found = [p for p in parameters.values() if p.vary]
+    blocks: list[Block] = [_intervals(found)]
     if kind_of(result) == "estimate":
         blocks += [
+            _other_windows(found),
+            paragraph(
+                "Change of each value with windows of half and twice the length; about one standard error is usual.",
+                muted=True,
+            ),
             _correlation(cast("Estimate", result)),
             paragraph(
                 "Correlation of the estimates, offsets at the mean reading. Near ±1, two parameters look the same in "
@@ -46,14 +45,21 @@ def _intervals(parameters: list[ParameterEstimate]) -> Table:
         parts = (
             f"{two_digits(size)} {name.replace('_', ' ')}" for name, size in p.systematic.items()
         )
-        shifts = ("–" if s is None else f"{s:+.3g}" for s in (p.shift_halved, p.shift_doubled))
-        texts = (interval, ", ".join(parts) or "–", *shifts, p.unit, p.meaning)
+        texts = (f"{interval} {p.unit}".rstrip(), ", ".join(parts) or "–", p.meaning)
         rows.append((shown_name(p.name), *texts))
-    head = (
-        *("parameter", "95 % interval", "systematic parts", "halved", "doubled"),
-        *("unit", "meaning"),
+    return Table(tuple(rows), ("parameter", "95 % interval", "systematic parts", "meaning"))
+
+
+def _other_windows(parameters: list[ParameterEstimate]) -> Table:
+    rows = tuple(
+        (
+            shown_name(p.name),
+            *("–" if s is None else f"{s:+.3g}" for s in (p.shift_halved, p.shift_doubled)),
+            p.unit,
+        )
+        for p in parameters
     )
-    return Table(tuple(rows), head)
+    return Table(rows, ("parameter", "windows halved", "doubled", "unit"))
 
 
 def _correlation(estimate: Estimate) -> Table:

@@ -4,22 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from jointid.base.result import Result
+from jointid.base.result import Result, kind_of
 from jointid.report.page.content import Block, Part, Run, Table, paragraph
 from jointid.report.page.extras import Extras
 from jointid.report.page.wording import value_cell
 
+_EXPLAINED = (
+    "estimate",
+    "servo",
+    "online",
+)  # the uncertainty says what their parameters are, or a joint file
 
-def content(_result: Result, extras: Extras) -> list[Part]:
+
+def content(result: Result, extras: Extras) -> list[Part]:
     """The table of the values; columns that no value fills are left out."""
     quantities = extras.overview.parameters
     if not quantities:
         return []
+    scattered = any(each.error for each in quantities)
     columns = {
-        "value ± std. error": [value_cell(each) for each in quantities],
+        "value ± std. error" if scattered else "value": [value_cell(each) for each in quantities],
         "± systematic": [each.systematic for each in quantities],
         "remark": [each.remark for each in quantities],
     }
+    if kind_of(result) not in _EXPLAINED:
+        columns["meaning"] = [each.meaning for each in quantities]
     shown = {name: cells for name, cells in columns.items() if any(cells)}
     rows: list[tuple[Run, ...]] = [
         (each.name, *cells) for each, *cells in zip(quantities, *shown.values(), strict=True)

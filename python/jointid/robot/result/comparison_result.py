@@ -60,7 +60,7 @@ class RobotComparison(KeptResult):
         return Overview(
             title=f"{self.estimate.robot.name or 'robot'}: {len(self.rows)} models compared",
             footer=made_by(self.estimate),
-            answer=(f"Use {self.winner.name}.", self.reason),
+            answer=(f"Use {self.winner.name}: {self.estimate.verdict.level}.", self.reason),
             level=self.estimate.verdict.level,
             parameters=tuple(
                 Quantity(
