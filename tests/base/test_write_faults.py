@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import takewhile
 from pathlib import Path
 from threading import Timer
 
@@ -39,7 +40,6 @@ _SCENARIOS = {
     "study table": (2, 0, 7),
     "study": (2, 0, 7),
     "report": (0, 0, 25),
-    "servo report": (2, 0, 7),
     "model": (2, 0, 7),
     "header": (2, 0, 7),
     "run": (0, 0, 32),
@@ -128,7 +128,7 @@ class Driver:
         timer = Timer(7200.0 if _ALL else 600.0, process.kill)
         timer.start()
         try:
-            lines = list(iter(process.stdout.readline, "\n")) if process.poll() is None else []
+            lines = list(takewhile(lambda line: line != "\n", process.stdout))
         finally:
             timer.cancel()
         return [line.rstrip("\n") for line in lines]
