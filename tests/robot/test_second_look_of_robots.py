@@ -102,7 +102,7 @@ def test_late_stamps_with_lost_rows_are_right_or_not_usable(
 
 def test_stamps_that_hide_all_motion_are_refused(run: jid.RobotRecording, robot: jid.Robot) -> None:
     with pytest.raises(jid.InputError, match=r"noise of its velocity.*time stamps"):
-        jid.identify_robot(late(run, 0.06, 2e-4, seed=3), robot)
+        jid.identify_robot(late(run, 0.06, 2e-3, seed=3), robot)
 
 
 def test_a_handling_that_is_wrong_is_caught(

@@ -32,9 +32,21 @@ def test_samples_that_were_uneven_keep_their_stamps() -> None:
     assert on_even_clock(recording) is recording
 
 
-def test_lost_samples_keep_their_stamps() -> None:
-    time = np.delete(np.arange(4000) * 1e-3, np.s_[1500:1800])
-    late = time + np.random.default_rng(0).exponential(1e-4, time.size)
-    position = np.column_stack([np.sin(2.0 * time), np.cos(3.0 * time)])
+def test_lost_samples_leave_jumps_of_whole_periods() -> None:
+    number = np.delete(np.arange(4000), np.s_[1500:1800])
+    late = number * 1e-3 + np.random.default_rng(0).exponential(1e-4, number.size)
+    position = np.column_stack([np.sin(2e-3 * number), np.cos(3e-3 * number)])
     recording = jid.RobotRecording(time=np.maximum.accumulate(late), position=position)
+    clock = on_even_clock(recording).time
+    period = np.diff(clock).min()
+    assert period == pytest.approx(1e-3, rel=1e-4)
+    np.testing.assert_array_equal(np.rint(np.diff(clock) / period), np.diff(number))
+
+
+def test_a_clock_that_wanders_keeps_its_stamps() -> None:
+    rng = np.random.default_rng(0)
+    kept = rng.uniform(size=4000) > 0.05
+    time = np.cumsum(rng.uniform(0.5e-3, 1.5e-3, 4000))
+    position = np.column_stack([np.sin(2.0 * time), np.cos(3.0 * time)])
+    recording = jid.RobotRecording(time=time[kept], position=position[kept])
     assert on_even_clock(recording) is recording
