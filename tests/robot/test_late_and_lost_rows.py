@@ -11,7 +11,7 @@ import pytest
 import small_arm
 
 import jointid as jid
-from jointid.robot.motion.row_numbers import row_numbers
+from jointid.robot.motion.numbering import row_numbers
 from jointid.robot.motion.stamps import on_even_clock
 
 pytest.importorskip("pinocchio")

@@ -18,8 +18,8 @@ from jointid.joint.model import Model
 from jointid.problem.settings import MaskOptions
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance.held_out import blocks_of, part_of_balance, predicted_torque
-from jointid.robot.fit.aligning import aligned
 from jointid.robot.fit.attempt import Attempt, Request, fitted
+from jointid.robot.fit.velocity_choice import with_better_velocities
 from jointid.robot.identifying import identify_robot
 from jointid.robot.links.inertia_modes import MODES, Inertia
 from jointid.robot.links.models import MODELS, PLAIN, SHAPED, friction_models, name_of
@@ -95,7 +95,8 @@ def compare_robot_models(
         **mask,
         further_modes=modes[1:],
     )
-    attempt = aligned(all_on_even_clocks(given), robot, request, options["shift"]).attempt
+    runs = all_on_even_clocks(given)
+    attempt = with_better_velocities(runs, robot, request, options["shift"]).alignment.attempt
     blocks = blocks_of(attempt.balance.rows, attempt.runs, count)
     rows, left_out = [], {}
     for mode in modes:

@@ -22,9 +22,10 @@ from jointid.robot.facts.asymmetry import asymmetry_findings
 from jointid.robot.facts.diagnosis import diagnosed
 from jointid.robot.facts.naming import turned_zeros
 from jointid.robot.facts.unexamined_causes import misfit_findings
-from jointid.robot.fit.aligning import aligned, delay_findings
+from jointid.robot.fit.aligning import delay_findings
 from jointid.robot.fit.attempt import Request, attempted
 from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
+from jointid.robot.fit.velocity_choice import velocity_findings, with_better_velocities
 from jointid.robot.links.inertia_modes import FREE, MODES, Inertia
 from jointid.robot.links.models import friction_models
 from jointid.robot.links.robot import Robot
@@ -115,7 +116,8 @@ def identify_robot(
         assumed = assumption_findings(runs, given, attempt)
         findings = (wrong, *(each for each in assumed if each.severity == "info"))
     else:
-        found = aligned(runs, robot, request, shift)
+        choice = with_better_velocities(runs, robot, request, shift)
+        request, found = choice.request, choice.alignment
         attempt = found.attempt
         estimate = attempt.estimate
         if inertia == FREE:
@@ -129,6 +131,7 @@ def identify_robot(
         findings = (
             *disagreement(check, slow_motion(signals)),
             *assumption_findings(runs, given, attempt),
+            *velocity_findings(choice, robot),
             *delay_findings(found),
             *diagnosis.findings,
             *impossible_links(estimate),
@@ -150,6 +153,7 @@ def identify_robot(
         "min_speed": [float(each) for each in request.slowest],
         **mask,
         "shift": shift_option(attempt.delay, robot),
+        "recorded_velocity": [robot.names[joint] for joint in request.recorded],
         "version": _core.__version__,
         "recordings": [run.name for run in runs],
     }

@@ -29,13 +29,13 @@ def with_shapes(
     lengths = np.concatenate([products.norms[:-1], shaped.norms, products.norms[-1:]])
     prior_product = prior.padded(len(joints)).scaled(lengths)
     scatter = found.solution.scatter
-    whole = _misfits(found.sums, prior_product, scatter, every)
+    whole = held_out_misfits(found.sums, prior_product, scatter, every)
     kept = []
     for place, joint in enumerate(joints):
         if found.at_bound[place]:
             continue
         without = np.delete(every, products.columns + place)
-        fall = (_misfits(found.sums, prior_product, scatter, without) - whole)[:, joint]
+        fall = (held_out_misfits(found.sums, prior_product, scatter, without) - whole)[:, joint]
         if fall.sum() > _CLEAR * float(np.std(fall, ddof=1)) * np.sqrt(FOLDS):
             kept.append(joint)
     return tuple(kept)
@@ -53,12 +53,14 @@ def certainty(products: Products, plain: Solution, prior: PriorRows) -> tuple[fl
     found = []
     for factor in _CERTAINTIES:
         prior_product = prior.tightened(factor).scaled(products.norms)
-        found.append(float(_misfits(products.sums, prior_product, plain.scatter, every).sum()))
+        found.append(
+            float(held_out_misfits(products.sums, prior_product, plain.scatter, every).sum())
+        )
     factor = _CERTAINTIES[int(np.argmin(found))]
     return factor, prior.tightened(factor)
 
 
-def _misfits(
+def held_out_misfits(
     sums: Array, prior_product: Array, scatter: Array, columns: NDArray[np.int64]
 ) -> Array:
     """Weighted squared residuals of each stretch and joint, with the values that the other stretches give."""

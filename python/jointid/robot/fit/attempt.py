@@ -44,6 +44,9 @@ class Request:
     windows: float | None
     slowest: Array  # (n,), least speeds
     mask_standstill: bool
+    recorded: tuple[
+        int, ...
+    ] = ()  # joints by the velocity in the recording, not by the derived one
     further_modes: tuple[str, ...] = ()  # further modes of inertia that the balance is to hold
 
 
@@ -75,7 +78,7 @@ def attempted(
     def motion(place: int) -> Motion:
         number, low, high = pieces[place]
         part = part_of(runs[number], low, high)
-        return Motion.of(part, robot, request.slowest, request.mask_standstill)
+        return Motion.of(part, robot, request.slowest, request.mask_standstill, request.recorded)
 
     excerpts = {place: motion(place) for place in firsts}
     total = sum(run.duration for run in runs)

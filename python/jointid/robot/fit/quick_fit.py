@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance.balance import Balance, balance_of
-from jointid.robot.balance.inertia import basis_of, inertia_columns
+from jointid.robot.balance.inertia import InertiaColumns, basis_of, inertia_columns
 from jointid.robot.balance.products import Products
 from jointid.robot.balance.solving import PriorRows, solved
 from jointid.robot.links.inertia_modes import URDF
@@ -79,17 +79,43 @@ def quick_fit_of(
     rows = balance.rows
     if not rows.torque.size:
         return None
+    system = linear_system(balance, robot, mode)
+    products, table = system.products(balance), system.table
+    solution = solved(products, system.least, PriorRows.nothing(products.columns))
+    values = solution.values * (products.norms[-1] / products.norms[:-1])
+    pairs = zip(system.kept, solution.at_bound, strict=False)
+    held = [balance.labels[place] for place, at in pairs if at]
+    residual = table[:, -1] - table[:, :-1] @ values
+    return QuickFit(balance=balance, residual=residual, held=tuple(held))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinearSystem:
+    """A balance with linear friction and the inertias of a mode."""
+
+    columns: InertiaColumns
+    kept: list[int]  # the balance's columns of friction
+    table: Array  # (rows, columns), the target last
+    least: Array  # lower bounds of the parameters
+
+    def products(self, balance: Balance) -> Products:
+        """Return the products of its columns."""
+        blocks = [self.table[place] for place in balance.places]
+        return Products.of(blocks, list(balance.places), balance.rows)
+
+
+def linear_system(balance: Balance, robot: Robot, mode: str) -> LinearSystem:
+    """Return the columns of linear friction and of a mode's inertias; the balance must hold the mode."""
     columns = inertia_columns(robot, mode)
     # A rotor's inertia that no motion separates from the links' would make the columns dependent.
     kept = balance.columns_of((PLAIN,) * robot.n, columns.dropped)
-    target = rows.torque - columns.known(balance)
-    table = np.column_stack([balance.matrix[:, kept], columns.columns(balance), target])
-    products = Products.of([table[place] for place in balance.places], list(balance.places), rows)
-    least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
-    solution = solved(products, least, PriorRows.nothing(products.columns))
-    values = solution.values * (products.norms[-1] / products.norms[:-1])
-    held = [balance.labels[place] for place, at in zip(kept, solution.at_bound, strict=False) if at]
-    return QuickFit(balance=balance, residual=target - table[:, :-1] @ values, held=tuple(held))
+    target = balance.rows.torque - columns.known(balance)
+    return LinearSystem(
+        columns=columns,
+        kept=kept,
+        table=np.column_stack([balance.matrix[:, kept], columns.columns(balance), target]),
+        least=np.append(balance.least[kept], np.full(len(columns.names), -np.inf)),
+    )
 
 
 def thinned(motion: Motion) -> Motion:

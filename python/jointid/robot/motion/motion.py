@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +22,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _UNKNOWNS = 6  # of a joint's balance, for the length of its windows
+_SLOW = 0.3  # [s]: over so much, positions are surer than a recorded velocity
 _STILL = 8.0  # standard deviations that the velocity of a short standstill reaches, smoothed with the motion beside it
 
 
@@ -46,9 +49,17 @@ class Motion:
 
     @classmethod
     def of(
-        cls, recording: RobotRecording, robot: Robot, min_speed: Array, mask_standstill: bool = True
+        cls,
+        recording: RobotRecording,
+        robot: Robot,
+        min_speed: Array,
+        mask_standstill: bool = True,
+        recorded: Collection[int] = (),
     ) -> Motion:
-        """Return the motion of a recording; below its `min_speed` [rad/s or m/s] a joint's friction is not used."""
+        """Return the motion of a recording; below its `min_speed` [rad/s or m/s] a joint's friction is not used.
+
+        Velocities are derived from positions, except of the joints `recorded`.
+        """
         coupling = robot.couplings
         position, torque, at_motor = signals_of(recording, robot)
         found = [_derived(recording, row, robot.names[k]) for k, row in enumerate(position)]
@@ -56,6 +67,13 @@ class Motion:
         velocity = np.array(
             [quiet_velocity(each.velocity, own) for each, own in zip(found, noise, strict=True)]
         )
+        if recorded:
+            rows = recorded_velocity(recording, robot, at_motor)
+            for joint in recorded if rows is not None else ():
+                assert rows is not None
+                velocity[joint] = rows[joint]
+                noise[joint] = _noise_of(recording, rows[joint], found[joint])
+                position[joint] = _integrated(recording.time, rows[joint], found[joint])
         if at_motor:
             back = np.linalg.inv(coupling)
             own, own_noise = (position, velocity), noise
@@ -100,6 +118,45 @@ def _fast(velocity: Array, noise: Array) -> Flags:
     """Intervals that are certainly no short standstill, which noise hides; friction has any value there."""
     fast = np.abs(velocity) >= _STILL * noise
     return np.asarray(fast[:, 1:] & fast[:, :-1])
+
+
+def recorded_velocity(recording: RobotRecording, robot: Robot, at_motor: bool) -> Array | None:
+    """The velocities in a recording, one row a joint, of motors divided by the gear ratios; None if one is missing."""
+    columns = robot.columns_of(recording)
+    velocity = recording.velocity
+    if velocity is None or recording.velocity_derived or np.isnan(velocity[:, columns]).any():
+        return None
+    way = np.array(robot.directions or (1.0,) * robot.n)
+    found = way[:, None] * velocity[:, columns].T
+    if at_motor:
+        found = found / _ratios(recording, robot, columns)[:, None]
+    return np.ascontiguousarray(found)
+
+
+def _noise_of(recording: RobotRecording, velocity: Array, derived: Recording) -> Array:
+    """Standard deviation of a recorded velocity's noise, the same at each sample."""
+    after = [gap.index for gap in derived.gaps]
+    noise = _core.position_noise(recording.time, velocity, after, derived.sample_period)
+    return np.full(velocity.size, noise.sigma)
+
+
+def _integrated(time: Array, velocity: Array, derived: Recording) -> Array:
+    """Position as a recorded velocity moves it from sample to sample, near the recorded one over longer times.
+
+    The mask and the travel between samples follow it: a coarse position stands still and jumps.
+    """
+    found = np.array(derived.position)
+    half = max(1, round(0.5 * _SLOW / derived.sample_period))
+    edges = [0, *(gap.index + 1 for gap in derived.gaps), time.size]
+    for first, end in itertools.pairwise(edges):
+        mine = slice(first, end)
+        means = 0.5 * (velocity[mine][1:] + velocity[mine][:-1])
+        travelled = np.concatenate([[0.0], np.cumsum(means * np.diff(time[mine]))])
+        sums = np.concatenate([[0.0], np.cumsum(found[mine] - travelled)])
+        place = np.arange(end - first)
+        reach = np.minimum(half, np.minimum(place, end - first - 1 - place))
+        found[mine] = travelled + (sums[place + reach + 1] - sums[place - reach]) / (2 * reach + 1)
+    return found
 
 
 def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:

@@ -16,7 +16,7 @@ from jointid.problem.low_pass import low_passed, reach
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.links.momentum import columns_of
 from jointid.robot.links.robot import Robot
-from jointid.robot.motion.motion import part_of, signals_of
+from jointid.robot.motion.motion import part_of, recorded_velocity, signals_of
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -105,15 +105,10 @@ def _stretch(
 
 def velocity_of(run: RobotRecording, robot: Robot, at_motor: bool) -> Array | None:
     """The recorded velocity at the joints."""
-    columns = robot.columns_of(run)
-    if run.velocity is None or run.velocity_derived or np.isnan(run.velocity[:, columns]).any():
-        return None
-    way = np.array(robot.directions or (1.0,) * robot.n)
-    found = np.array(way[:, None] * run.velocity[:, columns].T)
-    if at_motor:
-        ratios = np.array(robot.gear_ratios or run.gear_ratio)
-        found = np.linalg.solve(robot.couplings, found / ratios[:, None])
-    return found
+    found = recorded_velocity(run, robot, at_motor)
+    if found is None or not at_motor:
+        return found
+    return np.asarray(np.linalg.solve(robot.couplings, found))
 
 
 def link_columns(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.motion.row_numbers import row_numbers, share_of_stamps
+from jointid.robot.motion.numbering import row_numbers, share_of_stamps
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

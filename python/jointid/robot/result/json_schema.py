@@ -71,6 +71,7 @@ _SETTINGS = Record(
         "mask_standstill": Flag(),
         "recordings": ListOf(OrNull(Text()), 1),
     },
+    {"recorded_velocity": ListOf(Text())},
     other=Plain(),
 )
 ROBOT_ESTIMATE: Kind = Record(

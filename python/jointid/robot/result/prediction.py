@@ -47,6 +47,11 @@ def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> R
         robot,
         np.array(settings["min_speed"]),
         bool(settings["mask_standstill"]),
+        [
+            joint
+            for joint, name in enumerate(robot.names)
+            if name in settings.get("recorded_velocity", ())
+        ],
     )
     whole = estimate.inertial.reshape(-1, 1)
     balance = balance_of(robot, [motion], float(settings["window_duration"]), whole)

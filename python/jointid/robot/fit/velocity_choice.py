@@ -1,0 +1,163 @@
+"""Which velocity of each joint is used: the one that is derived from positions, or the one in the recording.
+
+A recorded velocity may be late or filtered; a derived one suffers from wrong stamps and coarse positions. The torque
+balance decides: it is fitted with each, and predicts stretches of time that were held out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.balance.balance import Balance, balance_of
+from jointid.robot.balance.choice import held_out_misfits
+from jointid.robot.balance.inertia import basis_of
+from jointid.robot.balance.products import folds_of
+from jointid.robot.balance.solving import solved
+from jointid.robot.fit.aligning import Alignment, aligned
+from jointid.robot.fit.attempt import Attempt, Request
+from jointid.robot.fit.quick_fit import linear_system
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.motion import Motion, part_of, recorded_velocity
+from jointid.robot.motion.shifts import torque_shift, without_delay
+from jointid.robot.result.finding_types import TYPES, listed
+
+Array = NDArray[np.float64]
+
+_SURE = 3.0  # standard errors by which held-out stretches are better predicted
+_MATTERS = 0.1  # of the squared residual: a smaller gain changes no value
+_RUNS, _SAMPLES = 4, 40_000  # recordings and samples of each that are looked at
+_FEWEST = 8  # samples
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class VelocityChoice:
+    """An identification with the better velocities."""
+
+    request: Request
+    alignment: Alignment
+    # (n,), held-out residuals of the torque with derived and recorded velocities; None where these were not compared
+    derived: Array | None = None
+    recorded: Array | None = None
+
+
+def with_better_velocities(
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, shift: object
+) -> VelocityChoice:
+    """Return the identification on one clock, each joint with the velocity that predicts its torque better."""
+    every = tuple(range(robot.n))
+    at_motor = [(robot.side or run.side) == "motor" for run in recordings]
+    there = all(
+        recorded_velocity(run, robot, motor) is not None
+        for run, motor in zip(recordings, at_motor, strict=True)
+    )
+    try:
+        found = aligned(recordings, robot, request, shift)
+    except InputError:
+        if not there:
+            raise
+        request = replace(request, recorded=every)  # noise of the derived ones hides all motion
+        return VelocityChoice(request=request, alignment=aligned(recordings, robot, request, shift))
+    if not there:
+        return VelocityChoice(request=request, alignment=found)
+    attempt = found.attempt
+    stated = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
+    delays = [attempt.delay]
+    if np.any(stated != attempt.delay):
+        delays.append(stated)
+    # With its own delay each: that of a velocity which is as late as the torque is 0.
+    left = np.array([_left(recordings, attempt, request, delay) for delay in delays])
+    # (sources, folds, joints), by the delay that leaves least in all
+    totals = np.nansum(np.log(left), axis=(2, 3))
+    derived, recorded = left[np.argmin(totals, axis=0), [0, 1]]
+    gain = np.log(derived) - np.log(recorded)
+    error = np.std(gain, axis=0, ddof=1) / np.sqrt(len(gain))
+    mean = np.mean(gain, axis=0)
+    better = (mean > _SURE * error) & (mean > -np.log1p(-_MATTERS))
+    if np.any(better):
+        request = replace(request, recorded=tuple(np.flatnonzero(better).tolist()))
+        found = aligned(recordings, robot, request, shift)
+    return VelocityChoice(
+        request=request,
+        alignment=found,
+        derived=np.sqrt(np.mean(derived, axis=0)),
+        recorded=np.sqrt(np.mean(recorded, axis=0)),
+    )
+
+
+def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]:
+    """The finding that says where the recorded velocity is used, and why."""
+    joints = choice.request.recorded
+    if not joints:
+        return
+    names = [robot.names[joint] for joint in joints]
+    if choice.derived is None or choice.recorded is None:
+        yield TYPES["recorded_velocity"].finding(
+            "the recorded velocity is used: that of the positions shows no motion above its noise",
+            Action("inspect", text="the time stamps and the positions' resolution"),
+            severity="warning",
+        )
+        return
+    shares = [
+        f"{name} {percent(float(choice.recorded[joint]))} instead of {percent(float(choice.derived[joint]))}"
+        for name, joint in zip(names, joints, strict=True)
+    ]
+    yield TYPES["recorded_velocity"].finding(
+        f"the recorded velocity of {listed(names)} is used: it explains the torque better",
+        Action("inspect", text="the time stamps and the positions' resolution"),
+        details="of held-out torque it leaves, instead of the velocity of the positions: "
+        + ", ".join(shares),
+        evidence={
+            f"{name}.{source}": Measured(float(values[joint]))
+            for name, joint in zip(names, joints, strict=True)
+            for source, values in (("derived", choice.derived), ("recorded", choice.recorded))
+        },
+    )
+
+
+def _left(
+    recordings: Sequence[RobotRecording], attempt: Attempt, request: Request, delay: Array
+) -> Array:
+    """Squared held-out residuals over the torque's power: (sources, folds, joints), derived and recorded."""
+    motions: list[list[Motion]] = [[], []]
+    for run in recordings[:_RUNS]:
+        part = without_delay(part_of(run, 0, min(run.samples, _SAMPLES)), attempt.robot, delay)
+        both = [
+            Motion.of(part, attempt.robot, request.slowest, request.mask_standstill, recorded)
+            for recorded in ((), tuple(range(attempt.robot.n)))
+        ]
+        # The same rows for both.
+        moving = both[0].moving | both[1].moving
+        motor_moving = both[0].motor_moving | both[1].motor_moving
+        for found, each in zip(motions, both, strict=True):
+            found.append(replace(each, moving=moving, motor_moving=motor_moving))
+    return np.array([_misfits(attempt, request.inertia, each) for each in motions])
+
+
+def _misfits(attempt: Attempt, mode: str, motions: Sequence[Motion]) -> Array:
+    robot = attempt.robot
+    balance = balance_of(robot, motions, attempt.duration, basis_of(robot, mode))
+    system = linear_system(balance, robot, mode)
+    products = system.products(balance)
+    prior = system.columns.prior_rows(len(system.kept))
+    scatter = solved(products, system.least, prior).scatter
+    every = np.arange(products.columns)
+    misfits = held_out_misfits(products.sums, prior.scaled(products.norms), scatter, every)
+    power = _powers(balance, robot.n, len(misfits))
+    left = misfits * (scatter * products.norms[-1]) ** 2
+    return np.where((power > 0.0) & (left > 0.0), left / np.where(power > 0.0, power, 1.0), np.nan)
+
+
+def _powers(balance: Balance, joints: int, folds: int) -> Array:
+    """Squared torque of each stretch and joint."""
+    key = folds_of(balance.rows) * joints + balance.rows.joint
+    power = np.bincount(key, balance.rows.torque**2, folds * joints)
+    return np.asarray(power, dtype=np.float64).reshape(folds, joints)
