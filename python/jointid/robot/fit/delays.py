@@ -59,7 +59,7 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
     The motions are some of the balance's pieces, by number.
     """
     rows = ExcerptRows(balance, fit, motions)
-    torque = _Shifted(rows, balance, motions)
+    torque = ShiftedTorque(motions, balance)
     n = fit.scatter.size
     measured = torque(np.zeros(n))
 
@@ -130,21 +130,23 @@ def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, F
     return value, float(np.sqrt(max(scatter, of_errors**2) + least**2)), alike
 
 
-class _Shifted:
+class ShiftedTorque:
     """Integrals of the torques of some pieces at any shift."""
 
-    def __init__(self, rows: ExcerptRows, balance: Balance, motions: Mapping[int, Motion]) -> None:
-        self._count, self._motions, self._summings = rows.kept.size, motions, balance.summings
+    def __init__(self, motions: Mapping[int, Motion], balance: Balance) -> None:
+        rows = balance.rows
+        kept = np.isin(rows.piece, list(motions))
+        joint, piece, self._window = rows.joint[kept], rows.piece[kept], rows.window[kept]
+        self._motions, self._summings = motions, balance.summings
         self._places = [
-            (piece, joint, rows.places(piece, joint))
-            for piece in motions
-            for joint in range(len(balance.places))
+            (number, each, np.flatnonzero((piece == number) & (joint == each)))
+            for number in motions
+            for each in range(len(balance.places))
         ]
-        self._window = rows.window
 
     def __call__(self, delay: Array) -> Array:
         """Return each row's integral if its joint's torque is late by this much."""
-        found = np.empty(self._count)
+        found = np.empty(self._window.size)
         for piece, joint, mine in self._places:
             motion, summing = self._motions[piece], self._summings[piece]
             signal = np.interp(motion.time + delay[joint], motion.time, motion.torque[joint])

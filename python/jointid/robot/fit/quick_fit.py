@@ -79,7 +79,7 @@ def quick_fit_of(
     rows = balance.rows
     if not rows.torque.size:
         return None
-    system = linear_system(balance, robot, mode)
+    system = linear_system(balance, inertia_columns(robot, mode))
     products, table = system.products(balance), system.table
     solution = solved(products, system.least, PriorRows.nothing(products.columns))
     values = solution.values * (products.norms[-1] / products.norms[:-1])
@@ -93,7 +93,6 @@ def quick_fit_of(
 class LinearSystem:
     """A balance with linear friction and the inertias of a mode."""
 
-    columns: InertiaColumns
     kept: list[int]  # the balance's columns of friction
     table: Array  # (rows, columns), the target last
     least: Array  # lower bounds of the parameters
@@ -104,14 +103,12 @@ class LinearSystem:
         return Products.of(blocks, list(balance.places), balance.rows)
 
 
-def linear_system(balance: Balance, robot: Robot, mode: str) -> LinearSystem:
-    """Return the columns of linear friction and of a mode's inertias; the balance must hold the mode."""
-    columns = inertia_columns(robot, mode)
+def linear_system(balance: Balance, columns: InertiaColumns) -> LinearSystem:
+    """Return the columns of linear friction and of inertias; the balance must hold these."""
     # A rotor's inertia that no motion separates from the links' would make the columns dependent.
-    kept = balance.columns_of((PLAIN,) * robot.n, columns.dropped)
+    kept = balance.columns_of((PLAIN,) * len(balance.places), columns.dropped)
     target = balance.rows.torque - columns.known(balance)
     return LinearSystem(
-        columns=columns,
         kept=kept,
         table=np.column_stack([balance.matrix[:, kept], columns.columns(balance), target]),
         least=np.append(balance.least[kept], np.full(len(columns.names), -np.inf)),

@@ -17,13 +17,14 @@ from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.balance.balance import Balance, balance_of
+from jointid.robot.balance.balance import Rows, balance_of
 from jointid.robot.balance.choice import held_out_misfits
-from jointid.robot.balance.inertia import basis_of
+from jointid.robot.balance.inertia import inertia_columns
 from jointid.robot.balance.products import folds_of
 from jointid.robot.balance.solving import solved
 from jointid.robot.fit.aligning import Alignment, aligned
 from jointid.robot.fit.attempt import Attempt, Request
+from jointid.robot.fit.delays import ShiftedTorque
 from jointid.robot.fit.quick_fit import linear_system
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.motion import Motion, part_of, recorded_velocity
@@ -34,8 +35,7 @@ Array = NDArray[np.float64]
 
 _SURE = 3.0  # standard errors by which held-out stretches are better predicted
 _MATTERS = 0.1  # of the squared residual: a smaller gain changes no value
-_RUNS, _SAMPLES = 4, 40_000  # recordings and samples of each that are looked at
-_FEWEST = 8  # samples
+_SAMPLES = 40_000  # of a recording that are looked at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -69,15 +69,14 @@ def with_better_velocities(
     if not there:
         return VelocityChoice(request=request, alignment=found)
     attempt = found.attempt
+    delays = [np.zeros(robot.n)]
     stated = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
-    delays = [attempt.delay]
     if np.any(stated != attempt.delay):
-        delays.append(stated)
+        delays.append(stated - attempt.delay)
+    left = _left(recordings, attempt, request, delays)
     # With its own delay each: that of a velocity which is as late as the torque is 0.
-    left = np.array([_left(recordings, attempt, request, delay) for delay in delays])
-    # (sources, folds, joints), by the delay that leaves least in all
     totals = np.nansum(np.log(left), axis=(2, 3))
-    derived, recorded = left[np.argmin(totals, axis=0), [0, 1]]
+    derived, recorded = left[[0, 1], np.argmin(totals, axis=1)]
     gain = np.log(derived) - np.log(recorded)
     error = np.std(gain, axis=0, ddof=1) / np.sqrt(len(gain))
     mean = np.mean(gain, axis=0)
@@ -124,40 +123,51 @@ def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]
 
 
 def _left(
-    recordings: Sequence[RobotRecording], attempt: Attempt, request: Request, delay: Array
+    recordings: Sequence[RobotRecording], attempt: Attempt, request: Request, delays: list[Array]
 ) -> Array:
-    """Squared held-out residuals over the torque's power: (sources, folds, joints), derived and recorded."""
-    motions: list[list[Motion]] = [[], []]
-    for run in recordings[:_RUNS]:
-        part = without_delay(part_of(run, 0, min(run.samples, _SAMPLES)), attempt.robot, delay)
-        both = [
-            Motion.of(part, attempt.robot, request.slowest, request.mask_standstill, recorded)
-            for recorded in ((), tuple(range(attempt.robot.n)))
-        ]
+    """Squared held-out residuals over the torque's power: (sources, delays, folds, joints), derived and recorded.
+
+    Delays are those of the torques beyond what was taken away [s].
+    """
+    robot, motions = attempt.robot, (list[Motion](), list[Motion]())
+    mask = (request.slowest, request.mask_standstill)
+    for piece, whole in attempt.excerpts.items():
+        run = without_delay(recordings[attempt.runs[piece]], robot, attempt.delay)
+        part = part_of(run, 0, min(whole.time.size, _SAMPLES))
+        first = whole if part.samples == whole.time.size else Motion.of(part, robot, *mask)
+        other = Motion.of(part, robot, *mask, range(robot.n))
         # The same rows for both.
-        moving = both[0].moving | both[1].moving
-        motor_moving = both[0].motor_moving | both[1].motor_moving
-        for found, each in zip(motions, both, strict=True):
+        moving = first.moving | other.moving
+        motor_moving = first.motor_moving | other.motor_moving
+        for found, each in zip(motions, (first, other), strict=True):
             found.append(replace(each, moving=moving, motor_moving=motor_moving))
-    return np.array([_misfits(attempt, request.inertia, each) for each in motions])
+    return np.array([_misfits(attempt, request.inertia, each, delays) for each in motions])
 
 
-def _misfits(attempt: Attempt, mode: str, motions: Sequence[Motion]) -> Array:
+def _misfits(attempt: Attempt, mode: str, motions: Sequence[Motion], delays: list[Array]) -> Array:
     robot = attempt.robot
-    balance = balance_of(robot, motions, attempt.duration, basis_of(robot, mode))
-    system = linear_system(balance, robot, mode)
-    products = system.products(balance)
-    prior = system.columns.prior_rows(len(system.kept))
-    scatter = solved(products, system.least, prior).scatter
-    every = np.arange(products.columns)
-    misfits = held_out_misfits(products.sums, prior.scaled(products.norms), scatter, every)
-    power = _powers(balance, robot.n, len(misfits))
-    left = misfits * (scatter * products.norms[-1]) ** 2
-    return np.where((power > 0.0) & (left > 0.0), left / np.where(power > 0.0, power, 1.0), np.nan)
+    columns = inertia_columns(robot, mode)
+    basis = np.column_stack([columns.given, columns.directions])
+    balance = balance_of(robot, motions, attempt.duration, basis)
+    shifted = ShiftedTorque(dict(enumerate(motions)), balance)
+    found = []
+    for delay in delays:
+        rows = replace(balance.rows, torque=shifted(delay))
+        system = linear_system(replace(balance, rows=rows), columns)
+        products = system.products(balance)
+        prior = columns.prior_rows(len(system.kept))
+        scatter = solved(products, system.least, prior).scatter
+        every = np.arange(products.columns)
+        misfits = held_out_misfits(products.sums, prior.scaled(products.norms), scatter, every)
+        left = misfits * (scatter * products.norms[-1]) ** 2
+        power = _powers(rows, robot.n, len(misfits))
+        there = (power > 0.0) & (left > 0.0)
+        found.append(np.where(there, left / np.where(there, power, 1.0), np.nan))
+    return np.array(found)
 
 
-def _powers(balance: Balance, joints: int, folds: int) -> Array:
+def _powers(rows: Rows, joints: int, folds: int) -> Array:
     """Squared torque of each stretch and joint."""
-    key = folds_of(balance.rows) * joints + balance.rows.joint
-    power = np.bincount(key, balance.rows.torque**2, folds * joints)
+    key = folds_of(rows) * joints + rows.joint
+    power = np.bincount(key, rows.torque**2, folds * joints)
     return np.asarray(power, dtype=np.float64).reshape(folds, joints)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Collection
 from dataclasses import dataclass
 
@@ -16,13 +15,13 @@ from jointid.recording.recording import Recording
 from jointid.recording.sides import MOTOR
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.links.robot import Robot
+from jointid.robot.motion.given_velocity import in_time, integrated, noise_of
 from jointid.robot.motion.loud_samples import quiet_velocity
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _UNKNOWNS = 6  # of a joint's balance, for the length of its windows
-_SLOW = 0.3  # [s]: over so much, positions are surer than a recorded velocity
 _STILL = 8.0  # standard deviations that the velocity of a short standstill reaches, smoothed with the motion beside it
 
 
@@ -71,9 +70,9 @@ class Motion:
             rows = recorded_velocity(recording, robot, at_motor)
             for joint in recorded if rows is not None else ():
                 assert rows is not None
-                velocity[joint] = rows[joint]
-                noise[joint] = _noise_of(recording, rows[joint], found[joint])
-                position[joint] = _integrated(recording.time, rows[joint], found[joint])
+                velocity[joint] = in_time(rows[joint], found[joint])
+                noise[joint] = noise_of(rows[joint], found[joint])
+                position[joint] = integrated(velocity[joint], found[joint])
         if at_motor:
             back = np.linalg.inv(coupling)
             own, own_noise = (position, velocity), noise
@@ -131,32 +130,6 @@ def recorded_velocity(recording: RobotRecording, robot: Robot, at_motor: bool) -
     if at_motor:
         found = found / _ratios(recording, robot, columns)[:, None]
     return np.ascontiguousarray(found)
-
-
-def _noise_of(recording: RobotRecording, velocity: Array, derived: Recording) -> Array:
-    """Standard deviation of a recorded velocity's noise, the same at each sample."""
-    after = [gap.index for gap in derived.gaps]
-    noise = _core.position_noise(recording.time, velocity, after, derived.sample_period)
-    return np.full(velocity.size, noise.sigma)
-
-
-def _integrated(time: Array, velocity: Array, derived: Recording) -> Array:
-    """Position as a recorded velocity moves it from sample to sample, near the recorded one over longer times.
-
-    The mask and the travel between samples follow it: a coarse position stands still and jumps.
-    """
-    found = np.array(derived.position)
-    half = max(1, round(0.5 * _SLOW / derived.sample_period))
-    edges = [0, *(gap.index + 1 for gap in derived.gaps), time.size]
-    for first, end in itertools.pairwise(edges):
-        mine = slice(first, end)
-        means = 0.5 * (velocity[mine][1:] + velocity[mine][:-1])
-        travelled = np.concatenate([[0.0], np.cumsum(means * np.diff(time[mine]))])
-        sums = np.concatenate([[0.0], np.cumsum(found[mine] - travelled)])
-        place = np.arange(end - first)
-        reach = np.minimum(half, np.minimum(place, end - first - 1 - place))
-        found[mine] = travelled + (sums[place + reach + 1] - sums[place - reach]) / (2 * reach + 1)
-    return found
 
 
 def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:
