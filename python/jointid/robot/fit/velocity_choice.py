@@ -33,6 +33,9 @@ from jointid.robot.result.finding_types import TYPES, listed
 
 Array = NDArray[np.float64]
 
+_NOISIER = (
+    10.0  # times the noise of the derived velocity, which by local bends errs more than its noise
+)
 _SURE = 3.0  # standard errors by which held-out stretches are better predicted
 _MATTERS = 0.1  # of the squared residual: a smaller gain changes no value
 _SAMPLES = 40_000  # of a recording that are looked at
@@ -69,11 +72,19 @@ def with_better_velocities(
     if not there:
         return VelocityChoice(request=request, alignment=found)
     attempt = found.attempt
+    derived_motions, recorded_motions, compared = _motions(recordings, attempt, request)
+    if not compared:
+        return VelocityChoice(request=request, alignment=found)
     delays = [np.zeros(robot.n)]
     stated = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
     if np.any(stated != attempt.delay):
         delays.append(stated - attempt.delay)
-    left = _left(recordings, attempt, request, delays)
+    left = np.array(
+        [
+            _misfits(attempt, request.inertia, motions, delays)
+            for motions in (derived_motions, recorded_motions)
+        ]
+    )
     # With its own delay each: that of a velocity which is as late as the torque is 0.
     totals = np.nansum(np.log(left), axis=(2, 3))
     derived, recorded = left[[0, 1], np.argmin(totals, axis=1)]
@@ -81,8 +92,9 @@ def with_better_velocities(
     error = np.std(gain, axis=0, ddof=1) / np.sqrt(len(gain))
     mean = np.mean(gain, axis=0)
     better = (mean > _SURE * error) & (mean > -np.log1p(-_MATTERS))
-    if np.any(better):
-        request = replace(request, recorded=tuple(np.flatnonzero(better).tolist()))
+    chosen = tuple(joint for joint in compared if better[joint])
+    if chosen:
+        request = replace(request, recorded=chosen)
         found = aligned(recordings, robot, request, shift)
     return VelocityChoice(
         request=request,
@@ -122,26 +134,37 @@ def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]
     )
 
 
-def _left(
-    recordings: Sequence[RobotRecording], attempt: Attempt, request: Request, delays: list[Array]
-) -> Array:
-    """Squared held-out residuals over the torque's power: (sources, delays, folds, joints), derived and recorded.
+def _motions(
+    recordings: Sequence[RobotRecording], attempt: Attempt, request: Request
+) -> tuple[list[Motion], list[Motion], tuple[int, ...]]:
+    """Motions with derived velocities, with recorded ones of some joints, and these joints.
 
-    Delays are those of the torques beyond what was taken away [s].
+    They are those whose recorded velocity is not far noisier than the derived one.
     """
-    robot, motions = attempt.robot, (list[Motion](), list[Motion]())
-    mask = (request.slowest, request.mask_standstill)
+    robot, mask = attempt.robot, (request.slowest, request.mask_standstill)
+    parts, derived = [], []
     for piece, whole in attempt.excerpts.items():
         run = without_delay(recordings[attempt.runs[piece]], robot, attempt.delay)
         part = part_of(run, 0, min(whole.time.size, _SAMPLES))
-        first = whole if part.samples == whole.time.size else Motion.of(part, robot, *mask)
-        other = Motion.of(part, robot, *mask, range(robot.n))
-        # The same rows for both.
-        moving = first.moving | other.moving
-        motor_moving = first.motor_moving | other.motor_moving
-        for found, each in zip(motions, (first, other), strict=True):
-            found.append(replace(each, moving=moving, motor_moving=motor_moving))
-    return np.array([_misfits(attempt, request.inertia, each, delays) for each in motions])
+        parts.append(part)
+        same = part.samples == whole.time.size
+        derived.append(whole if same else Motion.of(part, robot, *mask))
+    every = tuple(range(robot.n))
+    recorded = [Motion.of(part, robot, *mask, every) for part in parts]
+    noises = [
+        np.mean([each.velocity_noise for each in motions], axis=0)
+        for motions in (derived, recorded)
+    ]
+    compared = tuple(np.flatnonzero(noises[1] < _NOISIER * noises[0]).tolist())
+    if compared and compared != every:
+        recorded = [Motion.of(part, robot, *mask, compared) for part in parts]
+    # The same rows for both.
+    for place, (first, other) in enumerate(zip(derived, recorded, strict=True)):
+        flags = {
+            name: getattr(first, name) | getattr(other, name) for name in ("moving", "motor_moving")
+        }
+        derived[place], recorded[place] = replace(first, **flags), replace(other, **flags)
+    return derived, recorded, compared
 
 
 def _misfits(attempt: Attempt, mode: str, motions: Sequence[Motion], delays: list[Array]) -> Array:
