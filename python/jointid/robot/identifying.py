@@ -51,8 +51,8 @@ def identify_robot(
 
     The torque of each joint is integrated over windows. So is what moves the links and holds them against gravity:
     the change of the joints' momenta, and the forces of motion and gravity, which need positions and velocities only.
-    The rest is friction. All joints are solved at once, each weighted by its own residual. Velocities are always
-    derived from the positions.
+    The rest is friction. All joints are solved at once, each weighted by its own residual. Velocities are
+    derived from the positions, or a joint's is taken from the recording where the balance is better with it.
 
     Parameters
     ----------

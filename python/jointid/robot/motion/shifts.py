@@ -37,8 +37,8 @@ def torque_shift(shift: object, robot: Robot) -> Array:
             )
         if signal != "torque":
             raise InputError(
-                "only the torque of a robot can have a delay removed; velocities are always derived from the "
-                "positions",
+                "only the torque of a robot can have a delay removed; a recorded velocity is moved to the "
+                "positions' clock by itself",
                 argument="shift",
                 value=signal,
                 remedy="leave it out",
