@@ -80,7 +80,7 @@ def test_one_factor_is_named_with_its_remedy(
     def tried(*_: object) -> None:
         raise AssertionError("no delay or fact is tried")
 
-    monkeypatch.setattr(identifying, "aligned", tried)
+    monkeypatch.setattr(identifying, "with_better_velocities", tried)
     monkeypatch.setattr(identifying, "diagnosed", tried)
     wrong = changed(run, lambda torque: torque * np.array(factors))
     robot = jid.Robot.from_urdf(path)

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _UNKNOWNS = 6  # of a joint's balance, for the length of its windows
+_UNSEEN = 0.015  # [s]: between samples further apart, a reversal is left out
 _STILL = 8.0  # standard deviations that the velocity of a short standstill reaches, smoothed with the motion beside it
 
 
@@ -95,8 +96,9 @@ class Motion:
         for k in np.flatnonzero(robot.coupled):
             of_motors[k] = masked.moving(masked.core(own[0][k], own[1][k], torque[k], min_speed[k]))
         if mask_standstill:
-            of_joints &= _fast(velocity, noise)
-            of_motors &= _fast(own[1], own_noise)
+            coarse = np.diff(recording.time) > _UNSEEN
+            of_joints &= _fast(velocity, noise, coarse)
+            of_motors &= _fast(own[1], own_noise, coarse)
         return cls(
             time=recording.time,
             position=position,
@@ -113,10 +115,14 @@ class Motion:
         )
 
 
-def _fast(velocity: Array, noise: Array) -> Flags:
-    """Intervals that are certainly no short standstill, which noise hides; friction has any value there."""
+def _fast(velocity: Array, noise: Array, coarse: Flags) -> Flags:
+    """Intervals that are certainly no short standstill, which noise hides, and no reversal in a coarse interval.
+
+    Friction has any value there; the torque's jump at a reversal between two samples far apart is not seen.
+    """
     fast = np.abs(velocity) >= _STILL * noise
-    return np.asarray(fast[:, 1:] & fast[:, :-1])
+    reversal = velocity[:, 1:] * velocity[:, :-1] < 0.0
+    return np.asarray(fast[:, 1:] & fast[:, :-1] & ~(reversal & coarse))
 
 
 def recorded_velocity(recording: RobotRecording, robot: Robot, at_motor: bool) -> Array | None:
