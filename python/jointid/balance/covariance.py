@@ -1,5 +1,7 @@
 """Uncertainty of a least-squares estimate: covariance, correlations and the least determined direction."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,6 +46,20 @@ class Covariance:
     correlation: Array
     condition: float
     weakest: Array
+
+    def without_last(self) -> "Covariance":
+        """Return that of all parameters but the last, which stays unknown."""
+        inner, across = self.information[:-1, :-1], self.information[:-1, -1]
+        own = float(self.information[-1, -1])
+        return replace(
+            self,
+            matrix=self.matrix[:-1, :-1],
+            information=inner - np.outer(across, across) / own if own > 0.0 else inner,
+            stderr=self.stderr[:-1],
+            freedom=self.freedom[:-1],
+            correlation=self.correlation[:-1, :-1],
+            weakest=self.weakest[:-1],
+        )
 
 
 class Triangle:

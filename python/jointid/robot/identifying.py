@@ -22,16 +22,16 @@ from jointid.robot.facts.asymmetry import asymmetry_findings
 from jointid.robot.facts.diagnosis import diagnosed
 from jointid.robot.facts.naming import turned_zeros
 from jointid.robot.facts.unexamined_causes import misfit_findings
-from jointid.robot.fit.aligning import delay_findings
-from jointid.robot.fit.attempt import Request, attempted
+from jointid.robot.fit.aligning import aligned, delay_findings
+from jointid.robot.fit.attempt import Attempt, Request, attempted
 from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
 from jointid.robot.fit.velocity_choice import velocity_findings, with_better_velocities
 from jointid.robot.links.inertia_modes import FREE, MODES, Inertia
 from jointid.robot.links.models import friction_models
 from jointid.robot.links.robot import Robot
-from jointid.robot.motion.plain_motion import plain_signals
+from jointid.robot.motion.plain_motion import PlainSignals, plain_signals
 from jointid.robot.motion.request import least_speeds, recordings_of
-from jointid.robot.motion.shifts import shift_option, torque_shift
+from jointid.robot.motion.shifts import requested_delay, shift_option, without_delay
 from jointid.robot.motion.stamps import all_on_even_clocks
 from jointid.robot.options import RobotOptions
 from jointid.robot.result.cross_check import CrossCheck
@@ -102,36 +102,46 @@ def identify_robot(
         **mask,
     )
     shift = options["shift"]
-    requested_delay = None if shift is None else torque_shift(shift, robot)
-    signals = plain_signals(recorded, robot)
+    stated_delay = requested_delay(shift, robot)
     runs, given = all_on_even_clocks(recorded), robot
+    driven = None if robot.drive is None else aligned(runs, robot, request, shift)
+    signals = _signals(recorded, robot, None if driven is None else driven.attempt)
     wrong = wrong_torques(recorded, signals, robot)
     if (
         wrong is not None
     ):  # neither delays nor facts are tried: all that they show would follow from this
-        attempt = attempted(
-            runs, robot, request, np.zeros(robot.n) if requested_delay is None else requested_delay
+        attempt = (
+            attempted(
+                runs, robot, request, np.zeros(robot.n) if stated_delay is None else stated_delay
+            )
+            if driven is None
+            else driven.attempt
         )
         estimate, check = attempt.estimate, CrossCheck(reason="see the blocking finding")
         assumed = assumption_findings(runs, given, attempt)
         findings = (wrong, *(each for each in assumed if each.severity == "info"))
     else:
-        choice = with_better_velocities(runs, robot, request, shift)
-        request, found = choice.request, choice.alignment
+        choice = None
+        if driven is None:
+            choice = with_better_velocities(runs, robot, request, shift)
+            request, found = choice.request, choice.alignment
+        else:
+            found = driven
         attempt = found.attempt
         estimate = attempt.estimate
         if inertia == FREE:
             estimate = with_possible_bodies(estimate, attempt.fit)
         diagnosis = diagnosed(runs, given, request, attempt)
-        check = cross_checked(signals, attempt, request, requested_delay)
+        check = cross_checked(signals, attempt, request, stated_delay)
         if check.agrees is False and diagnosis.corrected is not attempt:
-            other = plain_signals(diagnosis.recordings, diagnosis.corrected.robot)
-            again = cross_checked(other, diagnosis.corrected, request, requested_delay)
+            corrected = diagnosis.corrected
+            other = _signals(diagnosis.recordings, corrected.robot, corrected)
+            again = cross_checked(other, corrected, request, stated_delay)
             check = replace(check, explained=bool(again.agrees))
         findings = (
             *disagreement(check, slow_motion(signals)),
             *assumption_findings(runs, given, attempt),
-            *velocity_findings(choice, robot),
+            *([] if choice is None else velocity_findings(choice, robot)),
             *delay_findings(found),
             *diagnosis.findings,
             *impossible_links(estimate),
@@ -164,3 +174,12 @@ def identify_robot(
         settings=settings,
         seconds=time.perf_counter() - started,
     )
+
+
+def _signals(
+    recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt | None
+) -> list[PlainSignals]:
+    """What is checked, as recorded; of a drive with the command's delay: without it, nobody knows the torques."""
+    if robot.drive is not None and attempt is not None:
+        recordings = [without_delay(run, robot, attempt.delay) for run in recordings]
+    return plain_signals(recordings, robot)

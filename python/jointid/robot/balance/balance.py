@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 _LEAST = 0.2  # of a window that has to be usable
+_STEP = 5e-4  # [s], for the torque's change with the delay of commands
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -48,6 +49,8 @@ class Balance:
     inertia: Array  # (rows, directions), by changes of the inertial parameters
     basis: Array  # (10 n, directions), these changes, of all links' inertial parameters
     known: Array  # (rows,), integral of the torque of given rotor inertias
+    # (rows,), change of the torque's integral with the delay of commands [N·m]; 0 where no delay is looked for
+    by_delay: Array
     standing: Array  # (n,), share of the time that each joint's balance leaves out
     samples: int
     velocity_noise: Array  # (n,)
@@ -94,6 +97,7 @@ def balance_of(robot: Robot, motions: Iterable[Motion], duration: float, basis: 
         inertia=np.concatenate([part.inertia for part in parts]),
         basis=basis,
         known=np.concatenate([part.known for part in parts]),
+        by_delay=np.concatenate([part.by_delay for part in parts]),
         standing=np.average([part.standing for part in parts], axis=0, weights=time),
         samples=sum(part.samples for part in parts),
         velocity_noise=np.mean([part.velocity_noise for part in parts], axis=0),
@@ -114,7 +118,8 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Arr
         if value is not None
     }
     starts, stops = motion.time[windows.edges[:-1]], motion.time[windows.edges[1:]]
-    rows, matrices, inertias, known = [], [], [], []
+    by_delay = _by_delay(robot, motion)
+    rows, matrices, inertias, known, late = [], [], [], [], []
     for joint in range(robot.n):
         used = summing(joint, summing.step)
         kept = np.flatnonzero(used >= _LEAST * duration)
@@ -131,6 +136,8 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Arr
         travel = summing(joint, np.diff(motion.position[joint]))[kept]
         pushed = torque_integrals(motion.torque[joint], summing.step, motion.torque_held)
         torque = summing(joint, pushed)[kept]
+        change = torque_integrals(by_delay[joint], summing.step, motion.torque_held)
+        late.append(summing(joint, change)[kept])
         rows.append(
             Rows(
                 joint=np.full(kept.size, joint),
@@ -164,12 +171,21 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Arr
         inertia=np.concatenate(inertias)[order],
         basis=basis,
         known=np.concatenate(known)[order],
+        by_delay=np.concatenate(late)[order],
         standing=1.0 - summing.usable @ summing.step / total,
         samples=motion.time.size,
         velocity_noise=motion.velocity_noise,
         summings=(summing,),
         places=(),
     )
+
+
+def _by_delay(robot: Robot, motion: Motion) -> Array:
+    """How torques change with the delay of commands, where it is looked for; (n, samples)."""
+    if robot.drive is None or robot.drive.delay is not None:
+        return np.zeros_like(motion.torque)
+    step = np.full(robot.n, _STEP)
+    return (motion.torque_late_by(step) - motion.torque_late_by(-step)) / (2.0 * _STEP)
 
 
 __all__ = ["Balance", "Column", "Rows", "balance_of"]

@@ -92,12 +92,20 @@ class Fit:
         )
 
     def covariance(self, balance: Balance) -> Covariance:
-        """Return the covariance of the free parameters, clustered over segments of motion."""
+        """Return the covariance of the free parameters, clustered over segments of motion.
+
+        A delay of commands that is not known counts as one more parameter.
+        """
         rows = balance.rows
         weight = 1.0 / self.scatter[rows.joint]
-        return parameter_covariance(
-            self.jacobian[:, ~self.at_bound] * weight[:, None],
+        columns = self.jacobian[:, ~self.at_bound]
+        late = balance.by_delay.any()
+        if late:
+            columns = np.column_stack([columns, balance.by_delay])
+        found = parameter_covariance(
+            columns * weight[:, None],
             self.residual * weight,
             None,
             segments=time_segments(rows.start, rows.stop, rows.piece),
         )
+        return found.without_last() if late else found

@@ -38,8 +38,14 @@ def cross_checked(
     request: Request,
     requested_delay: Array | None,
 ) -> CrossCheck:
-    """Return the second look at signals as they were recorded, with the delay of the torques that a call names [s]."""
+    """Return the second look at signals as they were recorded, with the delay of the torques that a call names [s].
+
+    A drive's signals are without the delay of its commands: nothing else is late.
+    """
     robot, estimate = attempt.robot, attempt.estimate
+    delay, other = requested_delay, attempt.delay
+    if robot.drive is not None:
+        delay, other = None, np.zeros(robot.n)
     if not signals:
         return CrossCheck(reason="the recording is too short")
     joints = list(estimate.joints.values())
@@ -49,8 +55,8 @@ def cross_checked(
         estimate.inertia,
         np.maximum([_past_shape(joint) for joint in joints], request.slowest),
         [joint.model for joint in joints],
-        np.zeros(robot.n) if requested_delay is None else requested_delay,
-        attempt.delay,
+        np.zeros(robot.n) if delay is None else delay,
+        other,
     )
     if not look.matrix:
         return CrossCheck(reason="no joint moves fast enough for long enough")

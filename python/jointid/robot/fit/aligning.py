@@ -13,15 +13,16 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import rounded, two_digits
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.fit.attempt import Attempt, Request, attempted
-from jointid.robot.fit.delays import TorqueDelay, torque_delay
+from jointid.robot.fit.delays import TorqueDelay, coarse_delay, torque_delay
 from jointid.robot.links.robot import Robot
-from jointid.robot.motion.shifts import shift_option, torque_shift
+from jointid.robot.motion.shifts import requested_delay, shift_option
 from jointid.robot.result.finding_types import TYPES
 
 Array = NDArray[np.float64]
 
 _TURNS = 3
 _SMALL = 2e-4  # [s]: what is left is not worth another identification
+_SMALL_OF_COMMAND = 2e-5  # [s]: it is held, and its delay is seen more sharply
 _NORMAL = 1.96  # standard errors of a 95 % interval
 _HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
 
@@ -42,12 +43,17 @@ def aligned(
 
     Without a `shift`, the delays that are certain are taken away.
     """
-    delay = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
+    delay = requested_delay(shift, robot)
+    free = delay is None
+    delay = np.zeros(robot.n) if delay is None else delay
     attempt = attempted(recordings, robot, request, delay)
+    if free and robot.drive is not None:
+        delay = np.full(robot.n, coarse_delay(attempt.balance, attempt.fit, attempt.excerpts))
+        attempt = attempted(recordings, robot, request, delay)
     left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
-    for _ in range(_TURNS if shift is None else 0):
+    for _ in range(_TURNS if free else 0):
         step = left.taken if left.certain else _short(delay, left)
-        if np.abs(step).max() < _SMALL:
+        if np.abs(step).max() < (_SMALL if robot.drive is None else _SMALL_OF_COMMAND):
             break
         if np.any(delay + step < -_period(attempt)):
             # A torque does not come before its motion: then the position is late, as a coarse one is.
@@ -55,7 +61,7 @@ def aligned(
         delay = delay + step
         attempt = attempted(recordings, robot, request, delay)
         left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
-    return Alignment(attempt=attempt, left=left, chosen=shift is None)
+    return Alignment(attempt=attempt, left=left, chosen=free)
 
 
 def delay_findings(found: Alignment) -> Iterator[Finding]:
@@ -63,7 +69,7 @@ def delay_findings(found: Alignment) -> Iterator[Finding]:
     attempt, left = found.attempt, found.left
     if found.chosen and attempt.delay.any():
         yield _delay_finding("delay_removed", attempt.delay, found)
-    if left.certain and np.abs(left.taken).max() >= _SMALL:
+    if left.certain and np.abs(left.taken).max() >= _SMALL and (found.chosen or left.sure):
         yield _delay_finding("signal_lag", np.zeros_like(left.taken), found)
 
 
@@ -81,9 +87,8 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
         value = float(away[joint]) + rest
         low, high = (1e3 * (abs(value) + sign * _NORMAL * error) for sign in (-1, 1))
         of_joint = "" if alike else f" of {names[joint]}"
-        side = "late" if value > 0.0 else "early"
         size = f"{rounded(1e3 * abs(value), 1e3 * error)} ± {two_digits(1e3 * error)} ms"
-        titles.append(f"the torque{of_joint} is {side} by {size}")
+        titles.append(_how_late(attempt.robot, of_joint, value, size, bool(away.any())))
         details.append(
             f"{f'{names[joint]}: ' * (not alike)}{abs(value) / period:.1f} sample periods against the position, with "
             f"95 % between {low:.2f} and {high:.2f} ms"
@@ -98,10 +103,18 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
     whole = attempt.delay + left.taken
     advice: tuple[Action, ...] = ()
     early = -float(whole[0]) / period
-    if alike and abs(early - 0.5) < _HALF and not next(iter(attempt.excerpts.values())).torque_held:
+    logged = attempt.robot.drive is None
+    if (
+        logged
+        and alike
+        and abs(early - 0.5) < _HALF
+        and not next(iter(attempt.excerpts.values())).torque_held
+    ):
         text = "if the torque is a command that is held between samples"
         advice = (Action("call", {"torque_hold": "zoh"}, text=text, function="load_robot"),)
-    if away.any():
+    if away.any() and attempt.robot.drive is not None:
+        details.append("it is counted as one more unknown in the errors of all values")
+    elif away.any():
         details.append("it was shifted before the identification")
     elif found.chosen:
         details.append("the position is late or coarse, the torque early, or the gear is elastic")
@@ -118,6 +131,14 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
     return TYPES[code].finding(
         titles[0] + more, *advice, details="; ".join([*titles[1:], *details]), evidence=evidence
     )
+
+
+def _how_late(robot: Robot, of_joint: str, value: float, size: str, removed: bool) -> str:
+    if robot.drive is not None and not removed:
+        return f"the wanted position{of_joint} acts {size} {'later' if value > 0.0 else 'earlier'} than stated"
+    if robot.drive is not None:
+        return f"the wanted position{of_joint} acts {size} {'after' if value > 0.0 else 'before'} its row"
+    return f"the torque{of_joint} is {'late' if value > 0.0 else 'early'} by {size}"
 
 
 def _short(delay: Array, left: TorqueDelay) -> Array:

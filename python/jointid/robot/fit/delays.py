@@ -27,6 +27,7 @@ _FAR, _FAR_ERRORS = 5e-4, 3.0  # [s] and standard errors, from where the slope w
 _NEAR = 2e-5  # [s], the last step
 _STEP = 5e-4  # [s], for the torque's change with the shift
 _LONGEST_STEP, _LONGEST = 4e-3, 0.05  # [s]
+_COARSE = 2.5e-3  # [s]
 _FINEST = 1e-4  # [s]: no joint's delay is surer than this against the others'
 _SMALL = 3e-4  # [s]; a shorter delay is left alone
 _WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
@@ -51,6 +52,11 @@ class TorqueDelay:
     taken: Array
     # whether any of it is, and held-out stretches of motion are better explained without it
     certain: bool
+
+    @property
+    def sure(self) -> bool:
+        """Whether chance alone hardly makes it."""
+        return abs(self.value) > _SURE * self.stderr
 
 
 def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> TorqueDelay:
@@ -94,17 +100,28 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
     joints = delay + own
     first = next(iter(motions.values()))
     period = float(np.median(np.diff(first.time)))
-    value, stderr, alike = _common(joints, errors, _WITHIN_SAMPLE * period)
+    driven = first.driven is not None
+    value, stderr, alike = _common(joints, errors, 0.0 if driven else _WITHIN_SAMPLE * period)
     taken = np.zeros(n)
     # A torque that is held comes with its sample: what seems earlier by less than one is noise of the positions.
     small = period if value < 0.0 and first.torque_held else _SMALL
-    if abs(value) > max(small, _SURE * stderr) and 2 * np.count_nonzero(alike) > n:
+    # A command is always late by something, and what is left of it looks like friction and inertia.
+    if (driven or abs(value) > max(small, _SURE * stderr)) and 2 * np.count_nonzero(alike) > n:
         taken[:] = value
     alone = ~alike & (np.abs(joints) > np.maximum(_APART, _SURE_OF_ONE * errors))
     taken[alone] = joints[alone]
-    better = taken.any() and rows.share((torque(taken) - measured)[:, None]).certainty > _BETTER
+    better = (
+        taken.any()
+        and not driven
+        and rows.share((torque(taken) - measured)[:, None]).certainty > _BETTER
+    )
     return TorqueDelay(
-        value=value, stderr=stderr, joints=joints, errors=errors, taken=taken, certain=bool(better)
+        value=value,
+        stderr=stderr,
+        joints=joints,
+        errors=errors,
+        taken=taken,
+        certain=bool(better or driven),
     )
 
 
@@ -130,6 +147,19 @@ def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, F
     return value, float(np.sqrt(max(scatter, of_errors**2) + least**2)), alike
 
 
+def coarse_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> float:
+    """Return the delay of all commands that leaves least, of a grid: far from it, no slope leads there."""
+    rows = ExcerptRows(balance, fit, motions, free=True)
+    torque, n = ShiftedTorque(motions, balance), fit.scatter.size
+    residual = rows.rest(fit.residual[rows.kept])
+    measured = torque(np.zeros(n))
+    grid = np.arange(-_COARSE, _LONGEST + _COARSE, _COARSE)
+    left = [
+        np.sum((residual + rows.rest(torque(np.full(n, late)) - measured)) ** 2) for late in grid
+    ]
+    return float(grid[int(np.argmin(left))])
+
+
 class ShiftedTorque:
     """Integrals of the torques of some pieces at any shift."""
 
@@ -146,10 +176,11 @@ class ShiftedTorque:
 
     def __call__(self, delay: Array) -> Array:
         """Return each row's integral if its joint's torque is late by this much."""
-        found = np.empty(self._window.size)
+        found, last = np.empty(self._window.size), None
         for piece, joint, mine in self._places:
             motion, summing = self._motions[piece], self._summings[piece]
-            signal = np.interp(motion.time + delay[joint], motion.time, motion.torque[joint])
-            pushed = torque_integrals(signal, summing.step, motion.torque_held)
+            if piece != last:
+                torques, last = motion.torque_late_by(delay), piece
+            pushed = torque_integrals(torques[joint], summing.step, motion.torque_held)
             found[mine] = summing(joint, pushed)[self._window[mine]]
         return found

@@ -134,4 +134,5 @@ def thinned(motion: Motion) -> Motion:
         moving=moving(motion.moving),
         motor_moving=moving(motion.motor_moving),
         torque_held=motion.torque_held and every == 1,
+        driven=None,
     )

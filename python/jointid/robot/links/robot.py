@@ -20,6 +20,7 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.links.facts import read_facts
 from jointid.robot.links.link_tree import LinkTree
 from jointid.robot.links.models import friction_models
+from jointid.robot.links.position_drive import PositionDrive
 
 Array = NDArray[np.float64]
 
@@ -56,6 +57,8 @@ class Robot:
         1, or -1 where the recording counts positions and torques against the URDF's axis; None: 1.
     models : tuple of str or None
         Friction models that are identified where a call names none, one a joint; None: "auto".
+    drive : PositionDrive or None
+        The loop that makes torques of wanted positions; None: torques are recorded.
     """
 
     tree: LinkTree
@@ -69,6 +72,7 @@ class Robot:
     torque_scales: tuple[float, ...] | None = None
     directions: tuple[float, ...] | None = None
     models: tuple[str, ...] | None = None
+    drive: PositionDrive | None = None
 
     @classmethod
     def from_urdf(
@@ -85,6 +89,7 @@ class Robot:
         torque_scales: Sequence[float] | None = None,
         directions: Sequence[float] | None = None,
         models: Mapping[str, Model | str] | None = None,
+        drive: Mapping[str, object] | None = None,
         facts: str | os.PathLike[str] | None = None,
     ) -> Self:
         """Return the robot that a URDF describes.
@@ -123,6 +128,13 @@ class Robot:
         models : mapping, optional
             Friction models by joints' names, as `identify` takes them: what it uses where it is given none. In a
             file of facts, ``model`` in a table ``[joints.NAME]``. Default: "auto".
+        drive : mapping, optional
+            Where no torque is recorded but the wanted position: the loop that makes torques of it, on the recording's
+            side. ``kp`` [N·m/rad] and ``kd`` [N·m·s/rad], one for all joints or one for each; ``"free"``: a ``kp`` that
+            is identified from what the links weigh, a ``kd`` that is part of the viscous coefficient. Further
+            ``torque_limits`` [N·m] (default: none), ``hold``, "zoh" (default) if a wanted position holds until the
+            next row, "linear" if it moves evenly, and ``delay`` from a row to its effect [s] (default: found).
+            Default: torques are recorded.
         facts : path-like, optional
             A TOML file with any of these arguments but `path`, ``zero_offsets_deg`` among them; arguments that are
             given win. A rotor inertia that is identified is ``"free"`` there.
@@ -152,6 +164,7 @@ class Robot:
                 "torque_scales": torque_scales,
                 "directions": directions,
                 "models": models,
+                "drive": drive,
             }
             stated = {name: value for name, value in given.items() if value is not None}
             place = require_path("facts", facts)
@@ -186,6 +199,7 @@ class Robot:
             torque_scales=_factors("torque_scales", torque_scales, n),
             directions=_factors("directions", directions, n),
             models=None if models is None else _models(models, tree.names),
+            drive=None if drive is None else _drive(drive, n, couplings),
         )
 
     @property
@@ -251,6 +265,16 @@ def _models(models: Mapping[str, Model | str], names: Sequence[str]) -> tuple[st
         raise InputError(
             error.reason, argument="models", value=error.value, remedy=error.remedy
         ) from None
+
+
+def _drive(drive: object, n: int, couplings: object) -> PositionDrive:
+    if couplings is not None:
+        raise InputError(
+            "a position drive of motors that turn with several joints is not modelled",
+            argument="drive",
+            remedy="record torques",
+        )
+    return PositionDrive.of(drive, n)
 
 
 def _number(name: str) -> int:

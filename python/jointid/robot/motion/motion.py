@@ -14,9 +14,12 @@ from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 from jointid.recording.sides import MOTOR
 from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.links.position_drive import facts_of_drive
 from jointid.robot.links.robot import Robot
+from jointid.robot.motion.driven import Driven, is_held
 from jointid.robot.motion.given_velocity import in_time, integrated, noise_of
 from jointid.robot.motion.loud_samples import quiet_velocity
+from jointid.robot.motion.reversals import away_from_reversals
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -46,6 +49,7 @@ class Motion:
     at_motor: bool  # whether positions were recorded at the motors
     # whether a torque holds from its sample to the next one, as a command does; otherwise it is straight between them
     torque_held: bool = False
+    driven: Driven | None = None  # what makes the torque of wanted positions; None: it was recorded
 
     @classmethod
     def of(
@@ -99,6 +103,9 @@ class Motion:
             coarse = np.diff(recording.time) > _UNSEEN
             of_joints &= _fast(velocity, noise, coarse)
             of_motors &= _fast(own[1], own_noise, coarse)
+        if mask_standstill and robot.drive is not None:
+            of_joints = away_from_reversals(of_joints, velocity)
+            of_motors = away_from_reversals(of_motors, own[1])
         return cls(
             time=recording.time,
             position=position,
@@ -110,9 +117,20 @@ class Motion:
             moving=of_joints,
             motor_moving=of_motors,
             at_motor=at_motor,
-            torque_held=recording.torque_hold == "zoh",
+            torque_held=is_held(recording, robot),
+            driven=_driven(recording, robot),
             noise_window=np.array([masked.noise_window(each) for each in joints]),
         )
+
+    def torque_late_by(self, delay: Array) -> Array:
+        """Return the torques, (n, samples), without delays of theirs; of a drive, with delays of its command [s]."""
+        if self.driven is not None:
+            return self.driven.torque(delay)
+        late = [
+            np.interp(self.time + each, self.time, row)
+            for each, row in zip(delay, self.torque, strict=True)
+        ]
+        return np.array(late)
 
 
 def _fast(velocity: Array, noise: Array, coarse: Flags) -> Flags:
@@ -158,12 +176,22 @@ def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, b
     way = np.array(robot.directions or (1.0,) * robot.n)
     factor = way * np.array(robot.torque_scales or (1.0,) * robot.n)
     position = np.ascontiguousarray(way[:, None] * recording.position[:, columns].T)
-    torque, motor_torque = recording.torque, recording.motor_torque
     at_motor = (robot.side or recording.side) == MOTOR
+    driven = _driven(recording, robot)
+    if driven is not None:
+        if at_motor:
+            position = position / _ratios(recording, robot, columns)[:, None]
+        return position, driven.torque(), at_motor
+    torque, motor_torque = recording.torque, recording.motor_torque
     if at_motor and torque is not None:
         torque, motor_torque = None, torque
     if torque is None and motor_torque is None:
-        raise InputError("the recording has no torque", argument="recordings", value=recording.name)
+        raise InputError(
+            "the recording has no torque",
+            argument="recordings",
+            value=recording.name,
+            remedy=() if recording.reference is None else facts_of_drive(robot.names),
+        )
     ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
     recorded = torque if torque is not None else motor_torque
     assert recorded is not None
@@ -181,6 +209,18 @@ def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, b
     else:
         joint_torque = robot.couplings.T @ (recorded[:, columns].T * (factor * ratios)[:, None])
     return (position / ratios[:, None] if at_motor else position), joint_torque, at_motor
+
+
+def _driven(recording: RobotRecording, robot: Robot) -> Driven | None:
+    """What a position drive makes of wanted positions, at the joints."""
+    if robot.drive is None:
+        return None
+    columns = robot.columns_of(recording)
+    factor = np.array(robot.directions or (1.0,) * robot.n)
+    factor = factor * np.array(robot.torque_scales or (1.0,) * robot.n)
+    if (robot.side or recording.side) == MOTOR:
+        factor = factor * _ratios(recording, robot, columns)
+    return Driven.of(recording, robot.drive, columns, factor)
 
 
 def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Array:

@@ -16,6 +16,7 @@ from jointid.problem.low_pass import low_passed, reach
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.links.momentum import columns_of
 from jointid.robot.links.robot import Robot
+from jointid.robot.motion.driven import is_held
 from jointid.robot.motion.motion import part_of, recorded_velocity, signals_of
 
 Array = NDArray[np.float64]
@@ -77,7 +78,7 @@ def _stretch(
     if at_motor:
         position = np.asarray(np.linalg.solve(robot.couplings, position), dtype=np.float64)
     clock = np.arange(run.time[0], run.time[-1], step)
-    held = 0.5 * step if run.torque_hold == "zoh" else 0.0
+    held = 0.5 * step if is_held(run, robot) else 0.0
     width = round(period / _FINER / step)
 
     def even(rows: Array, late: float = 0.0) -> Array:

@@ -12,6 +12,7 @@ from jointid.base.errors import InputError
 from jointid.recording.shifting import SHIFTED, checked_shift
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.links.robot import Robot
+from jointid.robot.motion.driven import earlier
 
 Array = NDArray[np.float64]
 
@@ -20,14 +21,37 @@ Shift = Mapping[str, float | Sequence[float] | Mapping[str, float]]
 
 _DRIVE = ("torque", "motor_torque")
 _FEWEST = 8  # samples
+COMMAND = "reference"
+
+
+def requested_delay(shift: object, robot: Robot) -> Array | None:
+    """Return the delay of each joint that a call or a drive states [s]; None where it is to be found."""
+    if shift is not None:
+        return torque_shift(shift, robot)
+    if robot.drive is not None and robot.drive.delay is not None:
+        return np.array(robot.drive.delay)
+    return None
 
 
 def torque_shift(shift: object, robot: Robot) -> Array:
-    """Return the torque's delay of each joint [s] from a `shift` of `identify`, or name what is wrong with it."""
+    """Return the torque's delay of each joint [s] from a `shift` of `identify`, or name what is wrong with it.
+
+    With a drive that makes the torque, it is that of the wanted position's effect.
+    """
     if not isinstance(shift, Mapping):
         checked_shift(shift)
     assert isinstance(shift, Mapping)
+    moved = _moved(robot)
     for signal in shift:
+        if signal == moved:
+            continue
+        if moved == COMMAND:
+            raise InputError(
+                "no torque was recorded; how late the wanted positions act is the delay of this robot",
+                argument="shift",
+                value=signal,
+                remedy=f"pass shift={{'{COMMAND}': seconds}}",
+            )
         if signal not in SHIFTED:
             raise InputError(
                 "there is no such signal; only the torque of a robot can have a delay removed",
@@ -35,15 +59,14 @@ def torque_shift(shift: object, robot: Robot) -> Array:
                 value=signal,
                 remedy="pass shift={'torque': seconds}",
             )
-        if signal != "torque":
-            raise InputError(
-                "only the torque of a robot can have a delay removed; a recorded velocity is moved to the "
-                "positions' clock by itself",
-                argument="shift",
-                value=signal,
-                remedy="leave it out",
-            )
-    given: Any = shift.get("torque", 0.0)
+        raise InputError(
+            "only the torque of a robot can have a delay removed; a recorded velocity is moved to the positions' "
+            "clock by itself",
+            argument="shift",
+            value=signal,
+            remedy="leave it out",
+        )
+    given: Any = shift.get(moved, 0.0)
     if isinstance(given, Mapping):
         for name in given:
             if name not in robot.names:
@@ -53,11 +76,16 @@ def torque_shift(shift: object, robot: Robot) -> Array:
         if len(given) != robot.n:
             raise InputError(
                 f"one for all or one for each of the {robot.n} joints is expected",
-                argument="shift.torque",
+                argument=f"shift.{moved}",
                 value=given,
             )
         return np.array([checked_shift({"torque": each}).get("torque", 0.0) for each in given])
     return np.full(robot.n, checked_shift({"torque": given}).get("torque", 0.0))
+
+
+def _moved(robot: Robot) -> str:
+    """The signal that is late."""
+    return "torque" if robot.drive is None else COMMAND
 
 
 def shift_option(delay: Array, robot: Robot) -> dict[str, float | dict[str, float]]:
@@ -65,32 +93,38 @@ def shift_option(delay: Array, robot: Robot) -> dict[str, float | dict[str, floa
     if not delay.any():
         return {}
     if np.all(delay == delay[0]):
-        return {"torque": round(float(delay[0]), 7)}
+        return {_moved(robot): round(float(delay[0]), 7)}
     named = zip(robot.names, delay.tolist(), strict=True)
-    return {"torque": {name: round(each, 7) for name, each in named if each}}
+    return {_moved(robot): {name: round(each, 7) for name, each in named if each}}
 
 
 def without_delay(recording: RobotRecording, robot: Robot, delay: Array) -> RobotRecording:
     """Return a recording with torques moved to the positions' clock; delays [s] are of motors' torques, where recorded.
 
-    Torques are interpolated linearly between their samples, which for a held torque is the mean over the interval.
-    Samples at the ends, where a moved torque is not known, are left out.
+    Of a robot with a drive, wanted positions are moved to where they act. Torques are interpolated linearly between
+    their samples, which for a held torque is the mean over the interval. Samples at the ends, where a moved signal is
+    not known, are left out.
     """
     if not delay.any():
         return recording
-    time = recording.time
-    kept = (time + delay.min() >= time[0]) & (time + delay.max() <= time[-1])
+    time, shift = recording.time, delay if robot.drive is None else -delay
+    kept = (time + shift.min() >= time[0]) & (time + shift.max() <= time[-1])
     if np.count_nonzero(kept) < _FEWEST:
         raise InputError(
             "the recording is shorter than this delay", argument="shift", value=delay.tolist()
         )
     fields = recording.fields()
-    for signal in _DRIVE:
+    for signal in _DRIVE if robot.drive is None else (COMMAND,):
         if fields.get(signal) is None:
             continue
         values = np.array(fields[signal])
         for joint, column in enumerate(robot.columns_of(recording)):
-            values[:, column] = np.interp(time + delay[joint], time, values[:, column])
+            row = values[:, column]
+            values[:, column] = (
+                np.interp(time + delay[joint], time, row)
+                if robot.drive is None
+                else earlier(time, row, delay[joint])
+            )
         fields[signal] = values
     for signal in recording.signals:
         fields[signal] = fields[signal][kept]

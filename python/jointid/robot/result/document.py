@@ -73,4 +73,5 @@ def robot_document(robot: Robot) -> dict[str, Any]:
         "torque_scales": plain(robot.torque_scales),
         "directions": plain(robot.directions),
         "side": robot.side,
+        **({} if robot.drive is None else {"drive": robot.drive.document()}),
     }

@@ -150,13 +150,15 @@ TYPES = {
         ),
         FindingType(
             code="signal_lag",
-            meaning="the torque is late or early against the position, and was not shifted",
+            meaning="the torque is late or early against the position, and was not shifted; of a robot with a drive, "
+            "what its wanted positions make of it",
             advice="state `shift`, or check filters and clocks",
         ),
         FindingType(
             code="delay_removed",
             severity="info",
-            meaning="the torque was late or early against the position, and was shifted back before the identification",
+            meaning="the torque was late or early against the position, and shifted back before the identification; "
+            "of a robot with a drive, how long after its row a wanted position acts",
             advice="nothing, or state `shift`",
         ),
         FindingType(

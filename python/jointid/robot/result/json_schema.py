@@ -4,6 +4,7 @@ from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Recor
 from jointid.estimate.json_schema import FINDING, MATRIX, PARAMETER, RESIDUALS, VERDICT, WINDOWS
 from jointid.robot.links.inertia_modes import MODES
 from jointid.robot.links.models import MODELS, modelled
+from jointid.robot.links.position_drive import HOLDS
 
 _MOST = 1000  # joints
 _ANY = Number(infinite=True, undefined=True)
@@ -30,6 +31,11 @@ _LINK = Record(
         "rotor_inertia": OrNull(Number(low=0.0, high=1e12)),
     }
 )
+_STIFFNESS = ListOf(Number(low=0.0, high=1e12))
+_DRIVE = Record(
+    {"kp": _STIFFNESS, "kd": _STIFFNESS, "hold": Text(known=HOLDS)},
+    {"torque_limits": _STIFFNESS, "delay": ListOf(Number(low=0.0, high=1.0))},
+)
 _ROBOT = Record(
     {
         "joints": ListOf(_LINK, 1, _MOST),
@@ -39,7 +45,11 @@ _ROBOT = Record(
         "zero_offsets": OrNull(ListOf(_SIZE)),
         "side": OrNull(Text(known=("joint", "motor"))),
     },
-    {"torque_scales": OrNull(ListOf(_SIZE)), "directions": OrNull(ListOf(_SIZE))},
+    {
+        "torque_scales": OrNull(ListOf(_SIZE)),
+        "directions": OrNull(ListOf(_SIZE)),
+        "drive": OrNull(_DRIVE),
+    },
 )
 _SAID = OrNull(Number(infinite=True, undefined=True))
 _CROSS_CHECK = Record(

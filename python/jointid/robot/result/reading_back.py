@@ -21,6 +21,7 @@ from jointid.problem.window_table import WindowTable
 from jointid.robot.links.link_tree import LinkTree
 from jointid.robot.links.models import is_asymmetric, terms_of
 from jointid.robot.links.parameters import DIFFERENCE, FRICTION, MOTOR_TERMS, PARAMETERS
+from jointid.robot.links.position_drive import PositionDrive
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.shifts import torque_shift
 from jointid.robot.result.cross_check import Compared, CrossCheck
@@ -134,11 +135,21 @@ def _robot(d: Mapping[str, Any], name: str) -> Robot:
         name=name,
         torque_scales=_factors(d, "torque_scales"),
         directions=_factors(d, "directions"),
+        drive=_drive(d),
     )
 
 
 def _factors(d: Mapping[str, Any], key: str) -> tuple[float, ...] | None:
     return None if d.get(key) is None else tuple(d[key])
+
+
+def _drive(d: Mapping[str, Any]) -> PositionDrive | None:
+    if d.get("drive") is None:
+        return None
+    try:
+        return PositionDrive.of(d["drive"], len(d["joints"]))
+    except InputError as error:
+        raise error.at("robot") from None
 
 
 def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

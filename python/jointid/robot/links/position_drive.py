@@ -1,0 +1,175 @@
+"""The loop that drives each joint of a robot from wanted positions, where no torque is logged."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Self, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.argument_checks import is_finite
+from jointid.base.errors import InputError
+from jointid.joint.checks import suggestion
+from jointid.recording.signals import TorqueHold
+
+Array = NDArray[np.float64]
+
+FREE = "free"
+HOLDS = get_args(TorqueHold)
+KEYS = ("kp", "kd", "torque_limits", "hold", "delay")
+_LONGEST = 0.5  # [s]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PositionDrive:
+    """Torque = kp · (wanted position - position) - kd · velocity, within its limits; on the side of the recording.
+
+    The loop runs in the motor, without a pause. The wanted position reaches it some time after its row, and holds until
+    the next one.
+    """
+
+    # [N·m/rad or N/m], one a joint; None: identified, from what the links weigh
+    kp: tuple[float | None, ...]
+    # [N·m·s/rad or N·s/m]; 0 where it is not known: it is then part of the viscous coefficient
+    kd: tuple[float, ...]
+    torque_limits: tuple[float, ...] | None = None  # [N·m or N]
+    hold: str = "zoh"  # "linear": the wanted position moves evenly from row to row
+    delay: tuple[float, ...] | None = None  # [s], from a row to its effect; None: found
+
+    @classmethod
+    def of(cls, drive: object, count: int) -> Self:
+        """Return the drive of so many joints from a mapping, with one value for all joints or one for each."""
+        if not isinstance(drive, Mapping):
+            raise InputError(
+                f"a table with {' and '.join(KEYS[:2])} is expected", argument="drive", value=drive
+            )
+        for key in drive:
+            if key not in KEYS:
+                raise InputError(
+                    f"there is no such key; {suggestion(str(key), KEYS)}", argument=f"drive.{key}"
+                )
+        for key in KEYS[:2]:
+            if key not in drive:
+                raise InputError(
+                    'one number for all joints, one for each, or "free" is expected',
+                    argument=f"drive.{key}",
+                )
+        kp = _values(drive, "kp", count)
+        kd = _values(drive, "kd", count)
+        if any(p is None and d for p, d in zip(kp, kd, strict=True)):
+            raise InputError(
+                'where kp is "free", kd is "free", too: the viscous coefficient contains it',
+                argument="drive.kd",
+                value=drive["kd"],
+            )
+        limits, delay = drive.get("torque_limits"), drive.get("delay", FREE)
+        hold = drive.get("hold", "zoh")
+        if hold not in HOLDS:
+            raise InputError(
+                f"{' or '.join(HOLDS)} is expected",
+                argument="drive.hold",
+                value=hold,
+            )
+        return cls(
+            kp=kp,
+            kd=tuple(each or 0.0 for each in kd),
+            torque_limits=None if limits is None else _numbers(drive, "torque_limits", count),
+            hold=hold,
+            delay=None if delay == FREE else _numbers(drive, "delay", count, _LONGEST),
+        )
+
+    def torque_of_command(self, wanted: Array) -> Array:
+        """The part of the torque that a late command moves, as a mean until the next sample; (n, samples).
+
+        A held command makes a ripple that velocities from sampled positions do not have. So the mean is that of the
+        torque without the ripple, and not the held value: the difference looks like inertia, kp · (row's period)² / 12.
+        """
+        return self._stiffness * (
+            _bent(wanted, 1.0 / 12.0) if self.hold == "zoh" else _means(wanted)
+        )
+
+    def torque_of_state(self, time: Array, position: Array) -> Array:
+        """The rest of the torque, meant over each interval: exact for the damping, which needs no velocity."""
+        slope = np.diff(position, axis=1, append=position[:, -1:]) / np.diff(
+            time, append=2.0 * time[-1] - time[-2]
+        )
+        return -self._stiffness * _means(position) - np.array(self.kd)[:, None] * slope
+
+    @property
+    def _stiffness(self) -> Array:
+        return np.array([each or 0.0 for each in self.kp])[:, None]
+
+    def limited(self, torque: Array) -> Array:
+        """Torques within the limits."""
+        if self.torque_limits is None:
+            return torque
+        most = np.array(self.torque_limits)[:, None]
+        return np.clip(torque, -most, most)
+
+    def document(self) -> dict[str, Any]:
+        """The drive in JSON's types, as `of` takes it."""
+        found: dict[str, Any] = {
+            "kp": [FREE if each is None else each for each in self.kp],
+            "kd": list(self.kd),
+            "hold": self.hold,
+        }
+        if self.torque_limits is not None:
+            found["torque_limits"] = list(self.torque_limits)
+        if self.delay is not None:
+            found["delay"] = list(self.delay)
+        return found
+
+
+def _means(rows: Array) -> Array:
+    """Means over the intervals of a smooth signal; the last is that sample's."""
+    bent = _bent(rows, -1.0 / 12.0)
+    following = np.concatenate([bent[:, 1:], rows[:, -1:]], axis=1)
+    return np.asarray(0.5 * (bent + following))
+
+
+def _bent(rows: Array, share: float) -> Array:
+    """Rows with a share of their second differences."""
+    found = rows.copy()
+    found[:, 1:-1] += share * np.diff(rows, 2, axis=1)
+    return found
+
+
+def _values(drive: Mapping[str, Any], key: str, count: int) -> tuple[float | None, ...]:
+    """Numbers, or None where "free" stands."""
+    each = drive[key]
+    if isinstance(each, str) or is_finite(each):
+        each = [each] * count
+    wrong = not isinstance(each, Sequence | np.ndarray) or len(each) != count
+    if wrong or not all(v == FREE or (is_finite(v) and v >= 0.0) for v in each):
+        raise InputError(
+            f'0 or more is expected, or "free", for all joints or for each of the {count}',
+            argument=f"drive.{key}",
+            value=drive[key],
+        )
+    return tuple(None if v == FREE else float(v) for v in each)
+
+
+def _numbers(
+    drive: Mapping[str, Any], key: str, count: int, most: float | None = None
+) -> tuple[float, ...]:
+    found = _values(drive, key, count)
+    numbers = tuple(each for each in found if each is not None)
+    if len(numbers) < count or (most is not None and max(numbers) > most):
+        raise InputError(
+            f"numbers are expected{'' if most is None else f', at most {most:g} s'}",
+            argument=f"drive.{key}",
+            value=drive[key],
+        )
+    return numbers
+
+
+def facts_of_drive(names: Sequence[str]) -> str:
+    """Return the line of a facts file that gives joints a position drive, and what to write there."""
+    order = ", ".join(names)
+    return (
+        "state the loop that makes torques of its wanted positions, in a facts file above its tables: "
+        f"drive = {{kp = {[20.0] * len(names)}, kd = {[1.0] * len(names)}}}, with the robot's own numbers for {order} "
+        '[N·m/rad, N·m·s/rad], or one for all; where they are not known: drive = {kp = "free", kd = "free"}'
+    )

@@ -1,0 +1,77 @@
+"""Torques that a position drive makes of wanted positions, and how they change with the delay of these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.errors import InputError
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.links.position_drive import PositionDrive
+from jointid.robot.links.robot import Robot
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Driven:
+    """The parts of a drive's torques on the recording's side; each value is a mean until the next sample."""
+
+    drive: PositionDrive
+    time: Array
+    command: Array  # (n, samples), what follows the wanted position, on the recording's side
+    state: Array  # the rest, there
+    factor: Array  # (n,), to the torque at the joint
+
+    @classmethod
+    def of(
+        cls, recording: RobotRecording, drive: PositionDrive, columns: list[int], factor: Array
+    ) -> Self:
+        """Return the parts of some columns of a recording."""
+        wanted = recording.reference
+        if wanted is None or not np.all(np.isfinite(wanted[:, columns])):
+            raise InputError(
+                "the drive needs the wanted position of each joint",
+                argument="recordings",
+                value=recording.name,
+                remedy="name the columns of the wanted positions as the signal reference",
+            )
+        position = recording.position[:, columns].T
+        return cls(
+            drive=drive,
+            time=recording.time,
+            command=drive.torque_of_command(wanted[:, columns].T),
+            state=drive.torque_of_state(recording.time, position),
+            factor=factor,
+        )
+
+    def torque(self, delay: Array | None = None) -> Array:
+        """Return the torques at the joints, (n, samples), if the wanted positions act by further delays later [s]."""
+        command = self.command
+        if delay is not None:
+            command = np.array(
+                [earlier(self.time, row, late) for late, row in zip(delay, command, strict=True)]
+            )
+        return self.factor[:, None] * self.drive.limited(command + self.state)
+
+
+def earlier(time: Array, values: Array, late: float) -> Array:
+    """Return the values of a smooth signal some time before each sample [s], by cubics through four samples."""
+    place = np.interp(time - late, time, np.arange(time.size, dtype=np.float64))
+    first = np.clip(np.floor(place).astype(np.int64) - 1, 0, time.size - 4)
+    x = place - first
+    weights = (
+        -(x - 1.0) * (x - 2.0) * (x - 3.0) / 6.0,
+        x * (x - 2.0) * (x - 3.0) / 2.0,
+        -x * (x - 1.0) * (x - 3.0) / 2.0,
+        x * (x - 1.0) * (x - 2.0) / 6.0,
+    )
+    return np.asarray(sum(weight * values[first + k] for k, weight in enumerate(weights)))
+
+
+def is_held(recording: RobotRecording, robot: Robot) -> bool:
+    """Whether a torque is the mean until the next sample, as one that is held."""
+    return robot.drive is not None or recording.torque_hold == "zoh"

@@ -1,0 +1,128 @@
+"""Robots without a torque signal: wanted positions and the gains of the loop, against MuJoCo's dynamics."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pd_driven
+import pytest
+from numpy.typing import NDArray
+from pd_driven import ARM_TRUTH, LEG_TRUTH, Truth
+
+import jointid as jid
+
+pytest.importorskip("mujoco")
+Array = NDArray[np.float64]
+
+NAMES = ("rotor_inertia", "coulomb", "viscous")
+DELAYS = (0.0, 0.0021, 0.0074, 0.0163, 0.004)
+LEG_DRIVE: dict[str, Any] = {"kp": 20, "kd": 1.5}
+
+
+def errors(found: jid.RobotEstimate, truth: Truth) -> Array:
+    """Relative errors of armature, Coulomb and viscous friction, (joints, 3)."""
+    true = np.array([truth.armature, truth.coulomb, truth.viscous]).T
+    values = [[each.parameters[name].value for name in NAMES] for each in found.joints.values()]
+    return np.asarray(np.array(values) / true - 1.0)
+
+
+def drive_of(truth: Truth) -> dict[str, Any]:
+    """The gains as facts."""
+    return {"kp": truth.kp.tolist(), "kd": truth.kd.tolist()}
+
+
+@pytest.mark.parametrize(("truth", "seed", "delay"), [(LEG_TRUTH, 1, 0.0021), (ARM_TRUTH, 2, 0.0)])
+def test_gains_stand_for_a_torque(tmp_path: Path, truth: Truth, seed: int, delay: float) -> None:
+    path, log = pd_driven.driven(truth, tmp_path, seed, delay=delay, duration=10.0)
+    robot = jid.Robot.from_urdf(path, drive=drive_of(truth))
+    found = jid.identify(log, robot)
+    assert np.abs(errors(found, truth)).max() < 0.02
+    assert found.settings["shift"].get("reference", 0.0) == pytest.approx(delay, abs=2e-4)
+    assert found.verdict.level == "usable"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("truth", [LEG_TRUTH, ARM_TRUTH])
+def test_twenty_motions(tmp_path: Path, truth: Truth) -> None:
+    every, late, inside = [], [], []
+    for seed in range(20):
+        delay = DELAYS[seed % len(DELAYS)]
+        path, log = pd_driven.driven(truth, tmp_path, seed, delay=delay)
+        found = jid.identify(log, jid.Robot.from_urdf(path, drive=drive_of(truth)))
+        every.append(errors(found, truth))
+        late.append(found.settings["shift"].get("reference", 0.0) - delay)
+        assert found.verdict.level == "usable", (seed, str(found.verdict))
+        for row, joint in zip(every[-1], found.joints.values(), strict=True):
+            for error, name in zip(row, NAMES, strict=True):
+                p = joint.parameters[name]
+                assert p.interval is not None
+                true = p.value / (1.0 + error)
+                inside.append(p.interval[0] <= true <= p.interval[1])
+    far = np.abs(np.array(every))
+    assert np.median(far, axis=0).max() < 0.03
+    assert far.max() < 0.06
+    assert np.abs(late).max() < 1e-3
+    assert np.mean(inside) > 0.5
+
+
+def test_a_limit_of_the_torque_is_respected(tmp_path: Path) -> None:
+    path, log = pd_driven.driven(ARM_TRUTH, tmp_path, 3, duration=10.0, limit=9.0)
+    limited = drive_of(ARM_TRUTH) | {"torque_limits": 9.0}
+    found = jid.identify(log, jid.Robot.from_urdf(path, drive=limited))
+    other = jid.identify(log, jid.Robot.from_urdf(path, drive=drive_of(ARM_TRUTH)))
+    assert np.abs(errors(found, ARM_TRUTH)).max() < 0.05
+    assert found.relative_residual < 0.2 * other.relative_residual
+
+
+def test_the_error_without_gains_says_what_the_facts_need(tmp_path: Path) -> None:
+    path, log = pd_driven.driven(LEG_TRUTH, tmp_path, 1, duration=2.0)
+    with pytest.raises(jid.InputError, match="the recording has no torque") as caught:
+        jid.identify(log, jid.Robot.from_urdf(path))
+    text = str(caught.value)
+    line = text[text.index("drive = {") : text.index("}") + 1]
+    (tmp_path / "facts.toml").write_text(line, encoding="utf-8")
+    robot = jid.Robot.from_urdf(path, facts=tmp_path / "facts.toml")
+    assert robot.drive is not None
+    assert robot.drive.kp == (20.0, 20.0, 20.0)
+    assert jid.identify(log, robot).joints.keys() == {"hip", "thigh", "calf"}
+
+
+def test_it_is_saved_with_the_estimate(tmp_path: Path) -> None:
+    path, log = pd_driven.driven(LEG_TRUTH, tmp_path, 1, duration=6.0, delay=0.004)
+    robot = jid.Robot.from_urdf(path, drive=LEG_DRIVE | {"torque_limits": [24, 24, 45]})
+    found = jid.identify(log, robot)
+    again = jid.RobotEstimate.load(found.save(tmp_path / "leg.json"))
+    assert again.robot.drive == robot.drive
+    assert again.predict(log).relative_residual == pytest.approx(found.relative_residual, rel=0.2)
+
+
+def test_a_stated_delay_is_taken_and_a_wrong_one_named(tmp_path: Path) -> None:
+    path, log = pd_driven.driven(LEG_TRUTH, tmp_path, 2, duration=10.0, delay=0.004)
+    right = jid.identify(log, jid.Robot.from_urdf(path, drive=LEG_DRIVE | {"delay": 0.004}))
+    assert right.settings["shift"] == {"reference": 0.004}
+    assert not [each for each in right.findings if each.code == "signal_lag"]
+    wrong = jid.identify(log, jid.Robot.from_urdf(path, drive=LEG_DRIVE | {"delay": 0.008}))
+    assert "earlier than stated" in next(e.title for e in wrong.findings if e.code == "signal_lag")
+
+
+@pytest.mark.parametrize(
+    ("drive", "argument"),
+    [
+        (3.0, "drive"),
+        ({"kp": 20}, "drive.kd"),
+        ({"kp": [20, 20], "kd": 1}, "drive.kp"),
+        ({"kp": -1, "kd": 1}, "drive.kp"),
+        ({"kp": "free", "kd": 1}, "drive.kd"),
+        ({"kp": 20, "kd": 1, "hold": "foh"}, "drive.hold"),
+        ({"kp": 20, "kd": 1, "delay": 2.0}, "drive.delay"),
+        ({"kp": 20, "kd": 1, "ki": 2.0}, "drive.ki"),
+    ],
+)
+def test_a_drive_that_cannot_be_is_refused(tmp_path: Path, drive: Any, argument: str) -> None:
+    path = tmp_path / "leg.urdf"
+    path.write_text(pd_driven.LEG, encoding="utf-8")
+    with pytest.raises(jid.InputError) as caught:
+        jid.Robot.from_urdf(path, drive=drive)
+    assert caught.value.argument == argument
