@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +68,21 @@ def test_twenty_motions(tmp_path: Path, truth: Truth) -> None:
     assert np.mean(inside) > 0.5
 
 
+@pytest.mark.parametrize(("truth", "delay"), [(LEG_TRUTH, 0.0074), (ARM_TRUTH, 0.0021)])
+def test_the_weight_of_links_tells_a_gain(tmp_path: Path, truth: Truth, delay: float) -> None:
+    path, log = pd_driven.driven(truth, tmp_path, 2, delay=delay, duration=10.0)
+    found = jid.identify(log, jid.Robot.from_urdf(path, drive={"kp": "free", "kd": "free"}))
+    both = replace(truth, viscous=truth.viscous + truth.kd)  # nothing divides the two
+    assert np.abs(errors(found, both)).max() < 0.03
+    gains = [joint.parameters["position_gain"] for joint in found.joints.values()]
+    assert [each.value for each in gains] == pytest.approx(truth.kp, rel=0.01)
+    assert all(each.unit == "N·m/rad" and (each.stderr or 9e9) < 0.01 * each.value for each in gains)
+    assert found.settings["shift"]["reference"] == pytest.approx(delay, abs=2e-4)
+    again = jid.RobotEstimate.load(found.save(tmp_path / "found.json"))
+    assert again.robot.drive == found.robot.drive
+    assert again.predict(log).relative_residual < 0.01
+
+
 def test_a_limit_of_the_torque_is_respected(tmp_path: Path) -> None:
     path, log = pd_driven.driven(ARM_TRUTH, tmp_path, 3, duration=10.0, limit=9.0)
     limited = drive_of(ARM_TRUTH) | {"torque_limits": 9.0}
@@ -115,6 +131,7 @@ def test_a_stated_delay_is_taken_and_a_wrong_one_named(tmp_path: Path) -> None:
         ({"kp": [20, 20], "kd": 1}, "drive.kp"),
         ({"kp": -1, "kd": 1}, "drive.kp"),
         ({"kp": "free", "kd": 1}, "drive.kd"),
+        ({"kp": "free", "kd": "free", "torque_limits": 5}, "drive.torque_limits"),
         ({"kp": 20, "kd": 1, "hold": "foh"}, "drive.hold"),
         ({"kp": 20, "kd": 1, "delay": 2.0}, "drive.delay"),
         ({"kp": 20, "kd": 1, "ki": 2.0}, "drive.ki"),

@@ -105,7 +105,9 @@ def identify_robot(
     stated_delay = requested_delay(shift, robot)
     runs, given = all_on_even_clocks(recorded), robot
     driven = None if robot.drive is None else aligned(runs, robot, request, shift)
-    signals = _signals(recorded, robot, None if driven is None else driven.attempt)
+    if driven is not None:
+        given = replace(robot, drive=driven.attempt.robot.drive)  # with the gains that were found
+    signals = _signals(recorded, given, None if driven is None else driven.attempt)
     wrong = wrong_torques(recorded, signals, robot)
     if (
         wrong is not None

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.balance.windows import Windows, direction_integrals, interval_means
+from jointid.balance.windows import Windows, direction_integrals, interval_means, torque_integrals
 from jointid.robot.links.parameters import (
     CONSTANT,
     DIFFERENCE,
     LINEAR_TERMS,
     MOTOR_TERMS,
+    POSITION_GAIN,
     VISCOUS,
     least_of,
 )
@@ -75,6 +76,11 @@ def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Colum
         if robot.rotor_inertias[joint] is None:
             values = rotor_values(joint, robot, motion, summing)
             found.append(Column(joint=joint, name="rotor_inertia", values=values, least=0.0))
+        if motion.of_unit_gain is not None and motion.of_unit_gain[joint].any():
+            # What the drive adds is taken from what the other parameters have to explain.
+            pushed = torque_integrals(motion.of_unit_gain[joint], summing.step, motion.torque_held)
+            values = {joint: summing(joint, -pushed)}
+            found.append(Column(joint=joint, name=POSITION_GAIN, values=values, least=0.0))
     return found
 
 

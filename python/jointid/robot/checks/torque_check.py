@@ -189,6 +189,8 @@ def _unsigned(
     recordings: Sequence[RobotRecording], robot: Robot, blocks: Mapping[int, Block]
 ) -> Finding | None:
     """Joints whose torque is never negative, although what moves them has to be."""
+    if robot.drive is not None:  # its torques do not come from the recording
+        return None
     lowest, highest = np.full(robot.n, np.inf), np.full(robot.n, -np.inf)
     for run in recordings:
         values = run.torque if run.torque is not None else run.motor_torque

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from jointid.robot.fit.conclusion import concluded
 from jointid.robot.fit.resampling import draws_of
 from jointid.robot.fit.zeros import Zeros, zeros_of
 from jointid.robot.links.models import PLAIN, SHAPED, is_asymmetric, modelled, name_of
+from jointid.robot.links.parameters import POSITION_GAIN
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.motion import Motion, part_of
 from jointid.robot.motion.request import duration_of
@@ -84,16 +85,20 @@ def attempted(
     total = sum(run.duration for run in runs)
     duration = duration_of(request.windows, list(excerpts.values()), total)
     zeros = None
-    if robot.zero_offsets is None:
+    gainless = robot.drive is not None and bool(robot.drive.free)
+    if robot.zero_offsets is None and not gainless:
         zeros = zeros_of(robot, list(excerpts.values()), duration)
         if zeros.found:
             robot = replace(robot, zero_offsets=zeros.offsets)
             excerpts = {place: motion(place) for place in firsts}
-    every = (
-        excerpts[place] if place in excerpts else motion(place) for place in range(len(pieces))
-    )
+
+    def every() -> Iterator[Motion]:
+        return (
+            excerpts[place] if place in excerpts else motion(place) for place in range(len(pieces))
+        )
+
     basis = np.hstack([basis_of(robot, mode) for mode in (request.inertia, *request.further_modes)])
-    balance = balance_of(robot, every, duration, basis)
+    balance = balance_of(robot, every(), duration, basis)
     if not balance.rows.torque.size:
         raise InputError(
             "no joint moves by more than the noise of its velocity",
@@ -101,7 +106,14 @@ def attempted(
             value=runs[0].name,
             remedy="if one does, look for late time stamps or lost rows",
         )
-    estimate, fit = _solved(robot, balance, request.inertia, duration, request.models, numbers)
+    fit, prior = fitted(robot, balance, request.inertia, request.models)
+    if robot.drive is not None and gainless:
+        robot = replace(robot, drive=robot.drive.with_gains(_gains(fit)))
+        excerpts = {place: motion(place) for place in firsts}
+        balance = balance_of(robot, every(), duration, basis)
+    covariance = fit.covariance(balance)
+    estimate = concluded(robot, balance, request.inertia, fit, covariance, duration, numbers)
+    estimate = replace(estimate, draws=draws_of(balance, fit, prior))
     return Attempt(
         robot=robot,
         delay=delay,
@@ -115,17 +127,14 @@ def attempted(
     )
 
 
-def _solved(
-    robot: Robot,
-    balance: Balance,
-    mode: str,
-    duration: float,
-    models: Sequence[str],
-    runs: Sequence[int],
-) -> tuple[RobotEstimate, Fit]:
-    fit, prior = fitted(robot, balance, mode, models)
-    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
-    return replace(estimate, draws=draws_of(balance, fit, prior)), fit
+def _gains(fit: Fit) -> dict[int, float]:
+    """The gains that were found, by joint."""
+    labels = zip(fit.labels, fit.values, strict=True)
+    return {
+        joint: float(value)
+        for (joint, name), value in labels
+        if name == POSITION_GAIN and joint is not None
+    }
 
 
 def fitted(

@@ -135,4 +135,5 @@ def thinned(motion: Motion) -> Motion:
         motor_moving=moving(motion.motor_moving),
         torque_held=motion.torque_held and every == 1,
         driven=None,
+        of_unit_gain=None if motion.of_unit_gain is None else motion.of_unit_gain[:, kept],
     )

@@ -13,6 +13,8 @@ CONSTANT, VISCOUS = (
     next(term for term in linear_terms(PLAIN) if term.basis == basis)
     for basis in ("constant", "linear")
 )
+POSITION_GAIN = "position_gain"
+"""Of a joint with a drive whose gain is not known."""
 DIFFERENCE = f"{VISCOUS.name}_difference"
 """Of joints with asymmetric friction; half the difference of the constant term is in the offset."""
 MOTOR_TERMS = {f"motor_{term.name}": term for term in linear_terms(PLAIN)}
@@ -34,6 +36,7 @@ def parameter_facts(*models: str) -> dict[str, tuple[str, str, str]]:
                 found.setdefault(shape.name, _facts(shape, shape.meaning))
     more = f"half of what {VISCOUS.meaning} is more in the positive than in the negative direction"
     scale = "factor on all inertial parameters of the link that the joint moves"
+    gain = "torque of the drive per error of position, from what the links weigh"
     return {
         **found,
         DIFFERENCE: _facts(VISCOUS, more),
@@ -44,6 +47,7 @@ def parameter_facts(*models: str) -> dict[str, tuple[str, str, str]]:
         "torque_offset": _facts(CONSTANT, "constant torque"),
         "rotor_inertia": ("inertia of the motor and its gear, at the joint", "kg·m²", "kg"),
         "inertia_scale": (scale, "", ""),
+        POSITION_GAIN: (gain, "N·m/rad", "N/m"),
     }
 
 
@@ -53,7 +57,9 @@ def _facts(row: _core.Term | _core.Shape, meaning: str) -> tuple[str, str, str]:
 
 PARAMETERS = tuple(parameter_facts(*MODELS))
 """Names of a joint's parameters, in the order of tables."""
-FRICTION = frozenset(PARAMETERS) - {"torque_offset", "rotor_inertia", "inertia_scale"}
+FRICTION = frozenset(PARAMETERS) - {
+    *("torque_offset", "rotor_inertia", "inertia_scale", POSITION_GAIN)
+}
 """Those that are friction."""
 SHAPES = frozenset(name for model in MODELS for term in terms_of(model) for name in term.shapes)
 JOINT_FRICTION = tuple(dict.fromkeys(term.name for term in LINEAR_TERMS.values()))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self, get_args
 
 import numpy as np
@@ -64,6 +64,13 @@ class PositionDrive:
                 argument="drive.kd",
                 value=drive["kd"],
             )
+        if None in kp and "torque_limits" in drive:
+            raise InputError(
+                'limits of the torque need a known kp, and it is "free"',
+                argument="drive.torque_limits",
+                value=drive["torque_limits"],
+                remedy="record motion that does not reach them",
+            )
         limits, delay = drive.get("torque_limits"), drive.get("delay", FREE)
         hold = drive.get("hold", "zoh")
         if hold not in HOLDS:
@@ -107,6 +114,20 @@ class PositionDrive:
             return torque
         most = np.array(self.torque_limits)[:, None]
         return np.clip(torque, -most, most)
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Joints with a gain that is identified."""
+        return tuple(joint for joint, each in enumerate(self.kp) if each is None)
+
+    def of_unit_gain(self) -> PositionDrive:
+        """The drive of what is identified alone, with gains of 1."""
+        kp = tuple(1.0 if each is None else 0.0 for each in self.kp)
+        return replace(self, kp=kp, kd=(0.0,) * len(kp), torque_limits=None)
+
+    def with_gains(self, gains: Mapping[int, float]) -> PositionDrive:
+        """The drive with the gains that were found."""
+        return replace(self, kp=tuple(gains.get(k, each) for k, each in enumerate(self.kp)))
 
     def document(self) -> dict[str, Any]:
         """The drive in JSON's types, as `of` takes it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,8 @@ class Motion:
     # whether a torque holds from its sample to the next one, as a command does; otherwise it is straight between them
     torque_held: bool = False
     driven: Driven | None = None  # what makes the torque of wanted positions; None: it was recorded
+    # (n, samples), torque per gain of the joints with a gain that is identified; None: there are none
+    of_unit_gain: Array | None = None
 
     @classmethod
     def of(
@@ -119,6 +121,7 @@ class Motion:
             at_motor=at_motor,
             torque_held=is_held(recording, robot),
             driven=_driven(recording, robot),
+            of_unit_gain=_of_unit_gain(recording, robot),
             noise_window=np.array([masked.noise_window(each) for each in joints]),
         )
 
@@ -221,6 +224,14 @@ def _driven(recording: RobotRecording, robot: Robot) -> Driven | None:
     if (robot.side or recording.side) == MOTOR:
         factor = factor * _ratios(recording, robot, columns)
     return Driven.of(recording, robot.drive, columns, factor)
+
+
+def _of_unit_gain(recording: RobotRecording, robot: Robot) -> Array | None:
+    if robot.drive is None or not robot.drive.free:
+        return None
+    unit = _driven(recording, replace(robot, drive=robot.drive.of_unit_gain()))
+    assert unit is not None
+    return unit.torque()
 
 
 def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Array:
