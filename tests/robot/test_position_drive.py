@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pd_driven
 import pytest
+import small_arm
 from numpy.typing import NDArray
 from pd_driven import ARM_TRUTH, LEG_TRUTH, Truth
 
@@ -76,11 +77,42 @@ def test_the_weight_of_links_tells_a_gain(tmp_path: Path, truth: Truth, delay: f
     assert np.abs(errors(found, both)).max() < 0.03
     gains = [joint.parameters["position_gain"] for joint in found.joints.values()]
     assert [each.value for each in gains] == pytest.approx(truth.kp, rel=0.01)
-    assert all(each.unit == "N·m/rad" and (each.stderr or 9e9) < 0.01 * each.value for each in gains)
+    assert all(
+        each.unit == "N·m/rad" and (each.stderr or 9e9) < 0.01 * each.value for each in gains
+    )
     assert found.settings["shift"]["reference"] == pytest.approx(delay, abs=2e-4)
     again = jid.RobotEstimate.load(found.save(tmp_path / "found.json"))
     assert again.robot.drive == found.robot.drive
     assert again.predict(log).relative_residual < 0.01
+
+
+@pytest.mark.parametrize(
+    ("gravity", "gains"), [((3.0, -4.0, 8.4546), True), ((1.95, 0.0, -9.6142), False)]
+)
+def test_the_links_weight_tells_where_gravity_pulls(
+    tmp_path: Path, gravity: tuple[float, float, float], gains: bool
+) -> None:
+    path, log = pd_driven.driven(ARM_TRUTH, tmp_path, 2, duration=10.0, gravity=gravity)
+    drive = drive_of(ARM_TRUTH) if gains else {"kp": "free", "kd": "free"}
+    robot = jid.Robot.from_urdf(path, drive=drive, gravity="free")
+    found = jid.identify(log, robot)
+    assert found.robot.tree.gravity == pytest.approx(gravity, abs=0.02)
+    assert np.abs(errors(found, ARM_TRUTH)[:, :2]).max() < 0.02
+    finding = next(each for each in found.findings if each.code == "gravity_found")
+    assert finding.severity == "info"
+    assert float(finding.evidence["error"].value) < 1e-3
+    again = jid.RobotEstimate.load(found.save(tmp_path / "found.json"))
+    assert again.robot.tree.gravity == pytest.approx(found.robot.tree.gravity)
+
+
+def test_gravity_of_a_robot_with_torques_is_found(tmp_path: Path) -> None:
+    path = small_arm.urdf(tmp_path)
+    robot = jid.Robot.from_urdf(path, gravity="free")
+    found = jid.identify(small_arm.recording(path), robot)
+    # Both axes are horizontal and parallel: gravity along them moves nothing.
+    assert found.robot.tree.gravity == pytest.approx((0.0, 0.0, -9.81), abs=0.05)
+    with pytest.raises(jid.InputError, match='3 numbers or "free"'):
+        jid.Robot.from_urdf(path, gravity="down")
 
 
 def test_a_limit_of_the_torque_is_respected(tmp_path: Path) -> None:

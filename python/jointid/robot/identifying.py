@@ -24,6 +24,7 @@ from jointid.robot.facts.naming import turned_zeros
 from jointid.robot.facts.unexamined_causes import misfit_findings
 from jointid.robot.fit.aligning import aligned, delay_findings
 from jointid.robot.fit.attempt import Attempt, Request, attempted
+from jointid.robot.fit.gravity import gravity_findings
 from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
 from jointid.robot.fit.velocity_choice import velocity_findings, with_better_velocities
 from jointid.robot.links.inertia_modes import FREE, MODES, Inertia
@@ -104,11 +105,13 @@ def identify_robot(
     shift = options["shift"]
     stated_delay = requested_delay(shift, robot)
     runs, given = all_on_even_clocks(recorded), robot
-    driven = None if robot.drive is None else aligned(runs, robot, request, shift)
-    if driven is not None:
-        given = replace(robot, drive=driven.attempt.robot.drive)  # with the gains that were found
-    signals = _signals(recorded, given, None if driven is None else driven.attempt)
-    wrong = wrong_torques(recorded, signals, robot)
+    first = None
+    if robot.drive is not None or robot.gravity_free:
+        first = aligned(runs, robot, request, shift)
+        # With the gains and the gravity that were found, without which nobody knows the torques.
+        given = replace(robot, drive=first.attempt.robot.drive, tree=first.attempt.robot.tree)
+    signals = _signals(recorded, given, None if first is None else first.attempt)
+    wrong = wrong_torques(recorded, signals, given)
     if (
         wrong is not None
     ):  # neither delays nor facts are tried: all that they show would follow from this
@@ -116,19 +119,19 @@ def identify_robot(
             attempted(
                 runs, robot, request, np.zeros(robot.n) if stated_delay is None else stated_delay
             )
-            if driven is None
-            else driven.attempt
+            if first is None
+            else first.attempt
         )
         estimate, check = attempt.estimate, CrossCheck(reason="see the blocking finding")
         assumed = assumption_findings(runs, given, attempt)
         findings = (wrong, *(each for each in assumed if each.severity == "info"))
     else:
         choice = None
-        if driven is None:
+        if first is None:
             choice = with_better_velocities(runs, robot, request, shift)
             request, found = choice.request, choice.alignment
         else:
-            found = driven
+            found = first
         attempt = found.attempt
         estimate = attempt.estimate
         if inertia == FREE:
@@ -145,6 +148,7 @@ def identify_robot(
             *assumption_findings(runs, given, attempt),
             *([] if choice is None else velocity_findings(choice, robot)),
             *delay_findings(found),
+            *gravity_findings(robot, attempt),
             *diagnosis.findings,
             *impossible_links(estimate),
         )

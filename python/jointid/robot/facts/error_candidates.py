@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance.inertia import moment_columns
-from jointid.robot.facts.perturbed import moved_zeros, tilted_gravity
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.fit.excerpt_rows import ExcerptRows, Share
+from jointid.robot.fit.perturbed import moved_zeros, tilted_gravity
 from jointid.robot.links.inertia_modes import FREE, SCALED
 from jointid.robot.links.robot import Robot
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from jointid.estimate.wording import rounded, two_digits
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.fit.attempt import Attempt, Request, attempted
 from jointid.robot.fit.delays import TorqueDelay, coarse_delay, torque_delay
+from jointid.robot.fit.gravity import found_gravity
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.shifts import requested_delay, shift_option
 from jointid.robot.result.finding_types import TYPES
@@ -23,6 +24,7 @@ Array = NDArray[np.float64]
 _TURNS = 3
 _SMALL = 2e-4  # [s]: what is left is not worth another identification
 _SMALL_OF_COMMAND = 2e-5  # [s]: it is held, and its delay is seen more sharply
+_LEVEL = 1e-4  # [rad]
 _NORMAL = 1.96  # standard errors of a 95 % interval
 _HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
 
@@ -47,6 +49,7 @@ def aligned(
     free = delay is None
     delay = np.zeros(robot.n) if delay is None else delay
     attempt = attempted(recordings, robot, request, delay)
+    robot, attempt = _levelled(recordings, robot, request, attempt)
     if free and robot.drive is not None:
         delay = np.full(robot.n, coarse_delay(attempt.balance, attempt.fit, attempt.excerpts))
         attempt = attempted(recordings, robot, request, delay)
@@ -60,8 +63,22 @@ def aligned(
             break
         delay = delay + step
         attempt = attempted(recordings, robot, request, delay)
+        robot, attempt = _levelled(recordings, robot, request, attempt)
         left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
     return Alignment(attempt=attempt, left=left, chosen=free)
+
+
+def _levelled(
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
+) -> tuple[Robot, Attempt]:
+    """The robot and its identification with the direction of gravity that is found, where it is free."""
+    for _ in range(_TURNS if robot.gravity_free else 0):
+        found = found_gravity(attempt)
+        if found.turn < _LEVEL:
+            break
+        robot = replace(robot, tree=found.robot.tree)
+        attempt = attempted(recordings, robot, request, attempt.delay)
+    return robot, attempt
 
 
 def delay_findings(found: Alignment) -> Iterator[Finding]:

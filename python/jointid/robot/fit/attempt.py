@@ -86,7 +86,7 @@ def attempted(
     duration = duration_of(request.windows, list(excerpts.values()), total)
     zeros = None
     gainless = robot.drive is not None and bool(robot.drive.free)
-    if robot.zero_offsets is None and not gainless:
+    if robot.zero_offsets is None and not gainless and not robot.gravity_free:
         zeros = zeros_of(robot, list(excerpts.values()), duration)
         if zeros.found:
             robot = replace(robot, zero_offsets=zeros.offsets)

@@ -59,6 +59,8 @@ class Robot:
         Friction models that are identified where a call names none, one a joint; None: "auto".
     drive : PositionDrive or None
         The loop that makes torques of wanted positions; None: torques are recorded.
+    gravity_free : bool
+        Whether the direction of gravity is identified.
     """
 
     tree: LinkTree
@@ -73,6 +75,7 @@ class Robot:
     directions: tuple[float, ...] | None = None
     models: tuple[str, ...] | None = None
     drive: PositionDrive | None = None
+    gravity_free: bool = False
 
     @classmethod
     def from_urdf(
@@ -85,7 +88,7 @@ class Robot:
         rotor_inertias: Sequence[float | None] | None = None,
         zero_offsets: Sequence[float] | None = None,
         side: str | None = None,
-        gravity: Sequence[float] | None = None,
+        gravity: Sequence[float] | str | None = None,
         torque_scales: Sequence[float] | None = None,
         directions: Sequence[float] | None = None,
         models: Mapping[str, Model | str] | None = None,
@@ -118,8 +121,9 @@ class Robot:
             URDF's inertias fit.
         side : {"joint", "motor"}, optional
             Where recordings have positions and torques. Default: as their headers say.
-        gravity : sequence of float, optional
-            In the base's frame [m/s²]. Default (0, 0, -9.81): the base stands upright.
+        gravity : sequence of float or "free", optional
+            In the base's frame [m/s²], or "free": its direction is identified, of a robot on a stand or hanging.
+            Default (0, 0, -9.81): the base stands upright.
         torque_scales : sequence of float, optional
             Factors by which the recorded torques are multiplied, one a joint (of its motor, where motors are recorded):
             the true torque constant over the assumed one; -1 turns a sign. Default: 1.
@@ -179,7 +183,11 @@ class Robot:
         file = require_path("path", path)
         if side not in (None, *SIDES):
             raise InputError(f"{' or '.join(SIDES)} is expected", argument="side", value=side)
-        down = _numbers("gravity", _GRAVITY if gravity is None else gravity, 3)
+        free = isinstance(gravity, str) and gravity == "free"
+        pull = _GRAVITY if gravity is None or free else gravity
+        if isinstance(pull, str):
+            raise InputError('3 numbers or "free" are expected', argument="gravity", value=gravity)
+        down = _numbers("gravity", pull, 3)
         tree = tree_of_urdf(file, joints, down)
         n = len(tree.names)
         ratios = None if gear_ratios is None else tuple(_numbers("gear_ratios", gear_ratios, n))
@@ -200,6 +208,7 @@ class Robot:
             directions=_factors("directions", directions, n),
             models=None if models is None else _models(models, tree.names),
             drive=None if drive is None else _drive(drive, n, couplings),
+            gravity_free=free,
         )
 
     @property

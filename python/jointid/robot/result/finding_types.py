@@ -170,6 +170,12 @@ TYPES = {
             advice="nothing, or check the time stamps and the positions' resolution",
         ),
         FindingType(
+            code="gravity_found",
+            severity="info",
+            meaning='the direction of gravity in the base\'s frame, of a robot with `gravity = "free"`',
+            advice="nothing, or state `gravity`",
+        ),
+        FindingType(
             code="unexamined_causes",
             meaning="the rest of the torque is not noise: neighbouring windows are alike, and no known cause explains "
             "most of it. The finding lists causes that are not examined for a robot, and makes the verdict "
