@@ -76,12 +76,18 @@ def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Colum
         if robot.rotor_inertias[joint] is None:
             values = rotor_values(joint, robot, motion, summing)
             found.append(Column(joint=joint, name="rotor_inertia", values=values, least=0.0))
-        if motion.of_unit_gain is not None and motion.of_unit_gain[joint].any():
+        if _gainless(motion, joint):
+            assert motion.of_unit_gain is not None
             # What the drive adds is taken from what the other parameters have to explain.
             pushed = torque_integrals(motion.of_unit_gain[joint], summing.step, motion.torque_held)
             values = {joint: summing(joint, -pushed)}
             found.append(Column(joint=joint, name=POSITION_GAIN, values=values, least=0.0))
     return found
+
+
+def _gainless(motion: Motion, joint: int) -> bool:
+    """Whether the gain of a joint's drive is identified."""
+    return motion.of_unit_gain is not None and bool(motion.of_unit_gain[joint].any())
 
 
 def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
@@ -97,7 +103,8 @@ def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
             for key, t in LINEAR_TERMS.items()
         ),
         column(DIFFERENCE, np.abs(travel)),
-        column("torque_offset", summing.step),
+        # Of a gain that is found from the weight at rest, an offset would take all of it away.
+        *((column("torque_offset", summing.step),) if not _gainless(motion, joint) else ()),
     ]
 
 

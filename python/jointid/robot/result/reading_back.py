@@ -20,7 +20,13 @@ from jointid.estimate.statistics import ResidualStatistics
 from jointid.problem.window_table import WindowTable
 from jointid.robot.links.link_tree import LinkTree
 from jointid.robot.links.models import is_asymmetric, terms_of
-from jointid.robot.links.parameters import DIFFERENCE, FRICTION, MOTOR_TERMS, PARAMETERS
+from jointid.robot.links.parameters import (
+    DIFFERENCE,
+    FRICTION,
+    MOTOR_TERMS,
+    PARAMETERS,
+    POSITION_GAIN,
+)
 from jointid.robot.links.position_drive import PositionDrive
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.shifts import torque_shift
@@ -190,7 +196,8 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
         if p["name"] != key:
             yield f"{place}.parameters.{key}.name", "this is not the name of the entry"
     terms = terms_of(d["model"])
-    for key in (*(term.name for term in terms if not term.shapes), "torque_offset"):
+    offset = () if POSITION_GAIN in held else ("torque_offset",)
+    for key in (*(term.name for term in terms if not term.shapes), *offset):
         if key not in held:
             yield f"{place}.parameters.{key}", "this is missing"
     for group in (MOTOR_TERMS, *((term.name, *term.shapes) for term in terms)):
