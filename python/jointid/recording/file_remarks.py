@@ -20,6 +20,9 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     ['times are those of the logger: the messages have no stamps']
     """
     found = []
+    others = metadata.get("joints_left_out")
+    if isinstance(others, Mapping) and others:
+        found.append(f"left out: {', '.join(f'{joint} ({why})' for joint, why in others.items())}")
     if metadata.get("incomplete"):
         found.append(str(metadata["incomplete"]))
     if "topic" in metadata and metadata.get("stamps") == "log time":

@@ -14,6 +14,7 @@ from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.sides import JOINT, at_joint, stated_sides
 from jointid.recording.signals import FloatArray, Kind, TorqueHold
+from jointid.recording.wide.clocks import on_one_clock
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
     JointTable,
@@ -54,7 +55,9 @@ def load_robot(
     path : path-like, or open file
         A file as `load` reads it, or one that `RobotRecording.save` wrote.
     joints : sequence of str or int, optional
-        Names or numbers of the joints, as the headers have them. Default, and "all": all that the headers name.
+        Names or numbers of the joints, as the headers have them. Default, and "all": all that the headers name; of a
+        log with several clocks, as of an arm and its gripper, those on the clock of most torques, and
+        ``metadata["joints_left_out"]`` names the others.
     columns : mapping of str to str, int or None, optional
         As in `load`; ``{joint}`` in a header stands for each joint's name:
         ``{"position": "motor_encoder_pos_{joint}_linkside_rad"}``.
@@ -134,7 +137,11 @@ def load_robot(
             raise error.at(f"joint {each}") from None
     if any("repeated_rows" in each.get("metadata", {}) for each in fields):
         fields = _once([contents(one) for one in tables], where)
-    _check_times(names, fields, table.source)
+    kept, left_out = on_one_clock(
+        names, fields, table.source, named=joints is not None and joints != "all"
+    )
+    names, tables = [names[k] for k in kept], [tables[k] for k in kept]
+    fields = [fields[k] for k in kept]
     each_side = [stated_sides(one.side, one.other_sides, side) for one in tables]
     sides = {own for own, _ in each_side}
     if whole is not None:  # its headers do not say the side
@@ -165,8 +172,14 @@ def load_robot(
         kind=first["kind"],
         torque_hold=first.get("torque_hold"),
         name=file_name(file, first, name),
-        metadata=first.get("metadata"),
+        metadata=_metadata(first, left_out),
     )
+
+
+def _metadata(first: Mapping[str, Any], left_out: Mapping[str, str]) -> Mapping[str, Any] | None:
+    """Return how the file was read, and which joints were not."""
+    found: Mapping[str, Any] | None = first.get("metadata")
+    return {**(found or {}), "joints_left_out": dict(left_out)} if left_out else found
 
 
 def _once(
@@ -201,18 +214,6 @@ def _at_joint(
             raise error.at(f"{one.header_place}, joint {name}") from None
         found.append({**held, **{key: there[key] for key in there if key != "metadata"}})
     return found
-
-
-def _check_times(names: Sequence[str], fields: Sequence[Mapping[str, Any]], place: str) -> None:
-    """Refuse joints that were logged at different times, as by two publishers on one topic."""
-    for each, held in zip(names, fields, strict=True):
-        if not np.array_equal(held["time"], fields[0]["time"]):
-            raise InputError(
-                f"{each} was logged at other times than {names[0]}",
-                argument="joints",
-                place=place,
-                remedy="load those that were logged together",
-            )
 
 
 def _wanted(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.links.robot import Robot
-from jointid.robot.result.finding_types import TYPES
+from jointid.robot.result.finding_types import TYPES, listed
 
 _FAR = 2.0  # times the URDF's range: no joint moves so far
 _MOVES = 0.01  # [rad or m]
@@ -36,10 +36,26 @@ def assumption_findings(
                 details=", ".join(f"{name} is {each}" for name, each in pairs),
             )
             break
+    yield from _left_out(recordings)
     yield from _locked(recordings, robot)
     if not np.any(robot.tree.gravity):
         yield TYPES["no_gravity"].finding("no gravity acts on this robot, as given")
     yield from _units(recordings, robot, attempt)
+
+
+def _left_out(recordings: Sequence[RobotRecording]) -> Iterator[Finding]:
+    """Joints of the log that are on another clock."""
+    others: dict[str, str] = {}
+    for run in recordings:
+        named = run.metadata.get("joints_left_out")
+        others |= (
+            {str(k): str(why) for k, why in named.items()} if isinstance(named, Mapping) else {}
+        )
+    if others:
+        yield TYPES["joints_left_out"].finding(
+            f"{listed([*others])} left out: logged at other times than the robot's joints",
+            details="; ".join(f"{name}: {why}" for name, why in others.items()),
+        )
 
 
 def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Finding]:

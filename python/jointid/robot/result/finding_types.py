@@ -239,6 +239,12 @@ TYPES = {
             advice="check the order",
         ),
         FindingType(
+            code="joints_left_out",
+            severity="info",
+            meaning="joints of the log are on another clock than those with torques, as a gripper's, and are not read",
+            advice="nothing, or name the joints with `joints`",
+        ),
+        FindingType(
             code="no_gravity",
             severity="info",
             meaning="no gravity acts on the robot, as given",
