@@ -125,7 +125,8 @@ def test_a_joint_file_for_each_joint(
         (("identify", "--joints", "all", "--save", "x.toml"), "saved as .json"),
         (("identify", "--joints", "all", "--report", "x.pdf"), "a report ends in one of .html"),
         (("identify", "--joints", "all", "--gear-ratio", "1,x"), "numbers such as"),
-        (("identify", "--joints", "2", "--gear-ratio", "1,2"), "one ratio is expected"),
+        (("identify", "--joints", "2", "--gear-ratio", "1,2"), "one gear ratio is expected"),
+        (("identify", "--joints", "2", "--torque-constant", "1,2"), "one torque constant is"),
     ],
 )
 def test_what_cannot_be_done(
@@ -206,11 +207,11 @@ def test_a_current_and_a_commanded_torque(
     values: list[npt.ArrayLike] = [robot.time, robot.position, torque / 10.0, torque]
     log = text_log(tmp_path / "ur.csv", headers, values)
     advised = "--column torque='target_moment_{joint}' (a commanded torque)"
-    for joints in (("1",), ("1", "--gear-ratio", "100"), ("all",), ("all", "--gear-ratio", "9")):
+    for joints in (("1",), ("1", "--gear-ratio", "100"), ("all",), ("all", "--gear-ratio", "9,9")):
         code, out, error = ran(capsys, "identify", log, "--joints", *joints)
         assert code == 2
         assert advised in out + error
-        assert "--torque-constant VALUE --gear-ratio RATIO (facts of motor and gear)" in out + error
+        assert "--torque-constant VALUE --gear-ratio RATIO (facts of motor and gear" in out + error
         column = ("--column", "torque=target_moment_{joint}")
         assert ran(capsys, "identify", log, "--joints", *joints, *column)[0] == 0
 
@@ -222,12 +223,12 @@ def test_a_torque_of_the_motor_needs_the_ratio(
     headers = ["time_s", "pos_1_rad", "pos_2_rad", "motor_torque_1_Nm", "motor_torque_2_Nm"]
     values: list[npt.ArrayLike] = [robot.time, robot.position, np.asarray(robot.torque) / 50.0]
     log = text_log(tmp_path / "kr.csv", headers, values)
-    for joints in ("2", "all"):
+    for joints, ratio in (("2", "50"), ("all", "50,50")):
         code, out, error = ran(capsys, "identify", log, "--joints", joints)
         assert code == 2
         assert "load with --gear-ratio RATIO (motor angle per joint angle" in out + error
         code, out, _ = ran(
-            capsys, "identify", log, "--joints", joints, "--gear-ratio", "50", "--json"
+            capsys, "identify", log, "--joints", joints, "--gear-ratio", ratio, "--json"
         )
         assert code == 0
         document = json.loads(out)

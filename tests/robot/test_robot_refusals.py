@@ -58,7 +58,14 @@ def test_a_urdf_on_which_pinocchio_ends_the_process(
 @pytest.mark.parametrize(
     ("facts", "reason"),
     [
-        ("gear_ratios = [32]", r"^facts\.toml: gear_ratios is \[32\]: 2 numbers"),
+        (
+            "gear_ratios = [32]",
+            r"^facts\.toml: gear_ratios is 32.0: one gear ratio is given for 2 joints",
+        ),
+        (
+            "torque_constants = [1, 2, 3]",
+            r"^facts\.toml: torque_constants is .*: one torque constant for each",
+        ),
         ('joints = "elbow"', r"^facts\.toml: joints is .elbow.: a list of names"),
         ("joints = 5", r"^facts\.toml: joints is 5: a list of names"),
         ('joints = ["wrist"]', r"^facts\.toml: joints is .wrist.: .*shoulder, elbow"),
@@ -92,7 +99,7 @@ def test_a_fact_that_does_not_fit_names_its_file(
 def test_an_argument_is_not_blamed_on_the_file(path: Path, tmp_path: Path) -> None:
     file = tmp_path / "facts.toml"
     file.write_text("gear_ratios = [1, 1]", encoding="utf-8")
-    with pytest.raises(jid.InputError, match=r"^gear_ratios is \[3"):
+    with pytest.raises(jid.InputError, match=r"^gear_ratios is 3"):
         jid.Robot.from_urdf(path, gear_ratios=[3.0], facts=file)
 
 

@@ -99,4 +99,6 @@ def _written(value: object) -> str:
     if isinstance(value, Mapping):
         inside = ", ".join(f"{key!r}: {_written(entry)}" for key, entry in value.items())
         return f"{{{inside}}}"
+    if isinstance(value, list) and ... in value:
+        return f"[{', '.join(map(_written, value))}]"
     return repr(value)

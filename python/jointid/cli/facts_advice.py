@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from jointid.base.advice import Action
-from jointid.cli.values import in_joint_file
+from jointid.cli.values import behind_option, in_joint_file
 
+_OPTIONS = {"gear_ratios": "--gear-ratio", "torque_constants": "--torque-constant"}
 _NEW_FILE = "robot.toml"
 _BARE = r"[A-Za-z0-9_-]+"
 _HEADER = r"\s*\["
@@ -34,9 +35,17 @@ def words_of_facts(action: Action, file: str) -> str:
         for key, value in _entries(name, fact, lines)
     ]
     purpose = f" ({action.text})" if action.text else ""
+    options = [
+        f"{_OPTIONS[name]} {behind_option(fact)}"
+        for name, fact in action.arguments.items()
+        if name in _OPTIONS
+    ]
+    by_option = ""
+    if len(options) == len(action.arguments):
+        by_option = f"identify with {' '.join(options)}{purpose}; or "
     if not file:
-        return f"write {' and '.join(acts)} in {_NEW_FILE}, and add --facts {_NEW_FILE}{purpose}"
-    return f"{' and '.join(acts)}{purpose}"
+        return f"{by_option}write {' and '.join(acts)} in {_NEW_FILE}, and add --facts {_NEW_FILE}{purpose}"
+    return f"{by_option}{' and '.join(acts)}{purpose}"
 
 
 def _lines_of(file: str) -> list[str]:

@@ -113,8 +113,8 @@ def _robot_arguments(command: CommandParser) -> None:
         "--facts",
         type=Path,
         metavar="TOML",
-        help="with --robot: file of the robot's facts (.toml): joints, gear_ratios, couplings, rotor_inertias, "
-        "zero_offsets, side, gravity",
+        help="with --robot: file of the robot's facts (.toml): joints, gear_ratios, torque_constants, "
+        "couplings, rotor_inertias, zero_offsets, side, gravity",
     )
 
 

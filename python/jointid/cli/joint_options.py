@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import decimal, number_or_text
-from jointid.cli.reading import gear_ratios
+from jointid.cli.reading import numbers_of_joints
 
 if TYPE_CHECKING:
     from jointid.joint.joint import Joint
     from jointid.joint.model import Model
     from jointid.recording.recording import Recording
 
-_DRIVE = ("torque_constant", "rotor_inertia")
+_DRIVE = ("rotor_inertia",)
 # By option: the field of a joint's link.
 _LINK = {"mass": "mass", "centre_of_mass": "centre_of_mass", "link_angle": "angle"}
 
@@ -29,8 +29,12 @@ def joint_arguments(command: argparse.ArgumentParser) -> None:
 
 def fact_arguments(command: argparse.ArgumentParser) -> None:
     """Add the facts of a drive and its link; the gear ratio is among the options of a reading."""
+    command.add_argument(
+        "--torque-constant",
+        metavar="VALUE[,VALUE...]",
+        help="torque constant of the motor [N·m/A], for a recorded current; of several joints one for each",
+    )
     for option, explanation in (
-        ("--torque-constant", "torque constant of the motor [N·m/A], for a recorded current"),
         ("--rotor-inertia", "inertia of the motor and all that turns with it, motor side [kg·m²]"),
         ("--mass", "mass of the link [kg], with --centre-of-mass: its weight is then known"),
         ("--centre-of-mass", "distance of the link's centre of mass from the axis [m]"),
@@ -173,8 +177,9 @@ def facts_of(arguments: argparse.Namespace, file: Joint | None = None) -> dict[s
     from jointid.joint.link import Link
 
     facts: dict[str, Any] = _stated(arguments, {name: name for name in _DRIVE})
-    if (ratios := gear_ratios(arguments)) is not None and len(ratios) == 1:
-        facts["gear_ratio"] = ratios[0]
+    for name in ("gear_ratio", "torque_constant"):
+        if (values := numbers_of_joints(arguments, name)) is not None and len(values) == 1:
+            facts[name] = values[0]
     if (inertia := _inertia(arguments)) is not None:
         facts["inertia"] = inertia
     link = _stated(arguments, _LINK)

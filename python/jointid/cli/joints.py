@@ -14,7 +14,7 @@ from jointid.cli.joint_options import facts_of, joint_file, with_facts
 from jointid.cli.options import stated_options
 from jointid.cli.outputs import check_folder, check_page, estimate_file, say_written
 from jointid.cli.progress import JointsProgress
-from jointid.cli.reading import as_given, gear_ratios, how_to_read
+from jointid.cli.reading import as_given, how_to_read, numbers_of_joints
 from jointid.cli.requirement import required
 from jointid.cli.wording import Wording
 
@@ -53,17 +53,19 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
     file = None if of_each else joint_file(arguments)
     if file is not None:
         merged = model.over(file.model)
-    ratios = gear_ratios(arguments)
+    constants = numbers_of_joints(arguments, "torque_constant")
     try:
         robot = load_robot(
             arguments.recordings[0],
             list(joints) or None,
-            gear_ratio=ratios[0] if ratios is not None and len(ratios) == 1 else ratios,
+            gear_ratio=numbers_of_joints(arguments, "gear_ratio"),
             **how_to_read(arguments, [merged]),
         )
     except InputError as error:
         raise as_given(error, arguments) from None
-    facts = facts_of(arguments, file)
+    if constants is not None:
+        robot = robot.with_torque_constants(constants)
+    facts = {k: v for k, v in facts_of(arguments, file).items() if k != "torque_constant"}
     if of_each:
         wanted = joints or robot.names
         files = {name: Joint.load(str(arguments.joint).replace(_MARK, name)) for name in wanted}

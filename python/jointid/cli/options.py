@@ -56,7 +56,13 @@ _IDENTIFICATION = {
     "seed": "--seed",
     "threads": "--threads",
 }
-_ROBOT = {"robot": "--robot", "path": "--robot", "facts": "--facts"}
+_ROBOT = {
+    "robot": "--robot",
+    "path": "--robot",
+    "facts": "--facts",
+    "gear_ratios": "--gear-ratio",
+    "torque_constants": "--torque-constant",
+}
 _SCENARIO = {
     "controller": "--controller",
     "believe": "--believe",

@@ -40,17 +40,21 @@ def load_all(
     from jointid.recording.readers.loading import load
     from jointid.recording.sides import MOTOR
 
-    several, ratios = joints_wanted(arguments), gear_ratios(arguments)
+    several, ratios = joints_wanted(arguments), numbers_of_joints(arguments, "gear_ratio")
     if several is not None and len(several) != 1:
         raise InputError(
             "one joint is expected here; identify takes several",
             argument="joints",
             value=arguments.joints,
         )
-    if ratios is not None and len(ratios) > 1:
-        raise InputError(
-            "one ratio is expected for one joint", argument="gear_ratio", value=arguments.gear_ratio
-        )
+    for name in ("gear_ratio", "torque_constant"):
+        if len(numbers_of_joints(arguments, name) or ()) > 1:
+            what = name.replace("_", " ")
+            raise InputError(
+                f"one {what} is expected for one joint",
+                argument=name,
+                value=getattr(arguments, name),
+            )
     of_file = None if ratios else _ratio_of_file(arguments)
     reading = {
         "joint": several[0] if several else None,
@@ -158,17 +162,15 @@ def joints_wanted(arguments: argparse.Namespace) -> list[str] | None:
     return names
 
 
-def gear_ratios(arguments: argparse.Namespace) -> list[float] | None:
-    """The ratios of --gear-ratio; None if the option is not there."""
-    text = arguments.gear_ratio
+def numbers_of_joints(arguments: argparse.Namespace, name: str) -> list[float] | None:
+    """The numbers of an option that has one for each joint; None if it is not there."""
+    text = getattr(arguments, name, None)
     if text is None:
         return None
-    ratios = [number_or_text(part.strip()) for part in text.split(",")]
-    if any(isinstance(ratio, str) for ratio in ratios):
-        raise InputError(
-            "numbers such as 32,45,-48 are expected", argument="gear_ratio", value=text
-        )
-    return [float(ratio) for ratio in ratios]
+    found = [number_or_text(part.strip()) for part in text.split(",")]
+    if any(isinstance(each, str) for each in found):
+        raise InputError("numbers such as 32,45,-48 are expected", argument=name, value=text)
+    return [float(each) for each in found]
 
 
 def as_given(error: InputError, arguments: argparse.Namespace) -> InputError:

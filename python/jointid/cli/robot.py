@@ -15,7 +15,7 @@ from jointid.cli.advice import without_options
 from jointid.cli.arguments import with_terms
 from jointid.cli.options import stated_options
 from jointid.cli.outputs import check_folder, check_page, estimate_file, say_written
-from jointid.cli.reading import as_given, gear_ratios, how_to_read, joints_wanted
+from jointid.cli.reading import as_given, how_to_read, joints_wanted, numbers_of_joints
 from jointid.cli.requirement import required
 from jointid.cli.wording import Wording
 
@@ -114,7 +114,10 @@ def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, 
     from jointid.robot.links.robot import Robot
 
     robot = Robot.from_urdf(
-        arguments.robot, gear_ratios=gear_ratios(arguments), facts=arguments.facts
+        arguments.robot,
+        gear_ratios=numbers_of_joints(arguments, "gear_ratio"),
+        torque_constants=numbers_of_joints(arguments, "torque_constant"),
+        facts=arguments.facts,
     )
     try:
         return robot, [

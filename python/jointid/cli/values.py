@@ -56,6 +56,8 @@ def in_joint_file(value: Any) -> str:
 def _text(value: Any, separator: str) -> str:
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:  # a number of numpy's
         value = value.item()
+    if value is ...:
+        return "VALUE"
     if value is None or isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):

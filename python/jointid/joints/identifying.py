@@ -100,16 +100,19 @@ def identify_joints(
     return JointEstimates(results=results, name=robot.name, seconds=time.perf_counter() - started)
 
 
+_OF_EACH = {"gear_ratio", "torque_constant"}
+
+
 def _of_each(error: InputError, joints: int) -> InputError:
-    """Return an error whose advice asks for one gear ratio a joint: joints have different gears."""
+    """Return an error whose advice asks for one gear ratio and torque constant a joint."""
     remedies = tuple(
         Action(
             "call",
             each.arguments,
-            f"{each.text}; one for each joint, comma-separated",
+            "; ".join(filter(None, (each.text, "one for each joint, comma-separated"))),
             each.function,
         )
-        if isinstance(each, Action) and joints > 1 and each.arguments.keys() == {"gear_ratio"}
+        if isinstance(each, Action) and joints > 1 and set() < each.arguments.keys() <= _OF_EACH
         else each
         for each in error.remedy
     )

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from jointid.base.values import dataclass
 from jointid.recording.headers import LONGEST, parsed
+from jointid.recording.sides import JOINT
 from jointid.recording.units import find_unit
 from jointid.recording.wide.one_joint import MARK
 from jointid.recording.wide.words import (
@@ -86,6 +87,24 @@ def _joints(headers: tuple[str, ...]) -> Mapping[str, Sequence[JointHeader]]:
         each = each or numbered
         if each is not None:
             found.setdefault(each.joint, []).append(each)
+    return _with_numbers_named(found)
+
+
+def _with_numbers_named(
+    found: dict[str, list[JointHeader]],
+) -> Mapping[str, Sequence[JointHeader]]:
+    """Return the joints with those that are a number only, and have no position, as the named ones of that number.
+
+    ``joint_1.position`` names joint_1, ``joint_1_effort`` joint 1.
+    """
+    whole = [joint for joint, columns in found.items() if _is_joint(columns)]
+    for number in [joint for joint in found if joint.isdigit() and joint not in whole]:
+        named = [each for each in whole if re.fullmatch(rf"\D*0*{int(number)}", each)]
+        if len(named) == 1:
+            found[named[0]] = [
+                *found[named[0]],
+                *(replace(each, joint=named[0]) for each in found.pop(number)),
+            ]
     return found
 
 
@@ -114,7 +133,15 @@ def _single_words(word: re.Match[str]) -> str:
 
 def _column(index: int, joint: str, shown: str, pattern: str) -> JointHeader:
     meaning = meaning_of(words_of(shown))
+    if meaning is not None and meaning.signal in ("torque", "motor_torque") and _in_amperes(shown):
+        meaning = Meaning(signal="current", side=JOINT, asked=meaning.asked)
     return JointHeader(index=index, joint=joint, header=shown, pattern=pattern, meaning=meaning)
+
+
+def _in_amperes(header: str) -> bool:
+    """Whether a header's unit is that of a current, whatever its words say."""
+    _, unit, _ = parsed(header)
+    return unit is not None and unit.dimension == "current"
 
 
 def _indexed(index: int, header: str) -> JointHeader | None:

@@ -23,6 +23,7 @@ from jointid.recording.wide.robot_signals import (
     checked_ratios,
     extra_arrays,
     joint_arrays,
+    value_of_each,
 )
 
 
@@ -221,8 +222,31 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return type(self)(**fields)
 
     def with_gear_ratio(self, gear_ratio: Sequence[float] | FloatArray | float) -> Self:
-        """Return the recording with other gear ratios, one a joint or one for all."""
+        """Return the recording with other gear ratios, one a joint."""
         return type(self)(**{**self.fields(), "gear_ratio": gear_ratio})
+
+    def with_torque_constants(self, torque_constants: Sequence[float] | FloatArray) -> Self:
+        """Return the recording with torques from its currents, on the side that `side` says.
+
+        Parameters
+        ----------
+        torque_constants : sequence of float
+            Of the motors [N·m/A], one a joint, negative where a positive current turns the joint back. At the joint
+            they are multiplied by the gear ratios; without gear ratios they are the joints'.
+
+        Raises
+        ------
+        InputError
+            There is no current, or another number of constants.
+        """
+        if self.current is None:
+            raise InputError("the recording has no current", argument="torque_constants")
+        found = value_of_each("torque_constants", torque_constants, len(self.names), "load")
+        geared = self.side == JOINT and self.gear_ratio is not None
+        ratios = np.array(self.gear_ratio if geared else (1.0,) * len(self.names))
+        torque = self.current * (np.array(found) * ratios)
+        metadata = {**self.metadata, "torque_constants": list(found)}
+        return type(self)(**{**self.fields(), "torque": torque, "metadata": metadata})
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the recording to a file (.npz, .csv, .csv.gz), whole or not at all.

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.extra import check_extra_name
 from jointid.recording.sides import checked_ratio
@@ -132,15 +133,54 @@ def checked_names(names: Sequence[str] | None, joints: int) -> tuple[str, ...]:
 def checked_ratios(
     gear_ratio: Sequence[float] | FloatArray | float | None, joints: int
 ) -> tuple[float, ...] | None:
-    """Return one gear ratio a joint; a single one is that of all."""
+    """Return one gear ratio a joint."""
     if gear_ratio is None:
         return None
-    single = isinstance(gear_ratio, int | float | np.number)
-    ratios = [gear_ratio] * joints if single else list(gear_ratio)  # type: ignore[arg-type]
-    if len(ratios) != joints:
+    found = value_of_each("gear_ratio", gear_ratio, joints, "load")
+    return tuple(checked_ratio(each) for each in found)
+
+
+def value_of_each(argument: str, values: object, joints: int, function: str) -> tuple[float, ...]:
+    """Return one value a joint, none of them 0; a single one for several joints is refused with the list of it.
+
+    Parameters
+    ----------
+    argument : str
+        "gear_ratio", "gear_ratios" or "torque_constants".
+    values : object
+        A number, or one a joint.
+    joints : int
+    function : str
+        Which takes the argument, for the call that a message proposes.
+
+    Raises
+    ------
+    InputError
+        Another number of values, a single one for several joints, or a value that no joint has.
+    """
+    what = argument.removesuffix("s").replace("_", " ")
+    try:
+        array = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    except (OverflowError, TypeError, ValueError):
+        array = np.full(0, np.nan)
+    if array.shape == (1,) and joints > 1 and np.isfinite(array[0]) and array[0] != 0.0:
+        single = float(array[0])
         raise InputError(
-            f"one ratio for each of the {joints} joints is expected, or one for all",
-            argument="gear_ratio",
-            value=gear_ratio,
+            f"one {what} is given for {joints} joints, and joints have different ones",
+            argument=argument,
+            value=single,
+            remedy=Action(
+                "call", {argument: [single] * joints}, "if all have it", function=function
+            ),
         )
-    return tuple(checked_ratio(each) for each in ratios)
+    if array.shape != (joints,):
+        raise InputError(
+            f"one {what} for each of the {joints} joints is expected",
+            argument=argument,
+            value=values,
+        )
+    if not np.all(np.isfinite(array)) or 0.0 in array:
+        raise InputError(
+            f"a {what} is a finite number other than 0", argument=argument, value=values
+        )
+    return tuple(array.tolist())

@@ -12,7 +12,7 @@ from jointid.joint.checks import suggestion
 
 KEYS = (
     *("joints", "gear_ratios", "couplings", "rotor_inertias", "zero_offsets", "zero_offsets_deg"),
-    *("gravity", "side", "torque_scales", "directions", "models", "drive"),
+    *("gravity", "side", "torque_constants", "torque_scales", "directions", "models", "drive"),
 )
 
 _FACTS = TableOf(Plain())  # `Robot` says more of each value

@@ -17,6 +17,7 @@ from jointid.joint.model import Model
 from jointid.recording.sides import SIDES
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.recording.wide.robot_signals import value_of_each
 from jointid.robot.links.facts import read_facts
 from jointid.robot.links.link_tree import LinkTree
 from jointid.robot.links.models import friction_models
@@ -55,6 +56,8 @@ class Robot:
         Factors by which the recorded torques are multiplied; None: 1.
     directions : tuple of float or None
         1, or -1 where the recording counts positions and torques against the URDF's axis; None: 1.
+    torque_constants : tuple of float or None
+        Of the motors [N·m/A], signed: torque per recorded current; None: not known.
     models : tuple of str or None
         Friction models that are identified where a call names none, one a joint; None: "auto".
     drive : PositionDrive or None
@@ -73,6 +76,7 @@ class Robot:
     name: str = ""
     torque_scales: tuple[float, ...] | None = None
     directions: tuple[float, ...] | None = None
+    torque_constants: tuple[float, ...] | None = None
     models: tuple[str, ...] | None = None
     drive: PositionDrive | None = None
     gravity_free: bool = False
@@ -89,6 +93,7 @@ class Robot:
         zero_offsets: Sequence[float] | None = None,
         side: str | None = None,
         gravity: Sequence[float] | str | None = None,
+        torque_constants: Sequence[float] | None = None,
         torque_scales: Sequence[float] | None = None,
         directions: Sequence[float] | None = None,
         models: Mapping[str, Model | str] | None = None,
@@ -124,6 +129,10 @@ class Robot:
         gravity : sequence of float or "free", optional
             In the base's frame [m/s²], or "free": its direction is identified, of a robot on a stand or hanging.
             Default (0, 0, -9.81): the base stands upright.
+        torque_constants : sequence of float, optional
+            Of the motors [N·m/A], one a joint, for recorded currents; negative where a positive current turns the
+            joint back. The gear ratios bring the torques to the joints; without gear ratios the constants are the
+            joints'. Default: not known, and the recording needs a torque.
         torque_scales : sequence of float, optional
             Factors by which the recorded torques are multiplied, one a joint (of its motor, where motors are recorded):
             the true torque constant over the assumed one; -1 turns a sign. Default: 1.
@@ -165,6 +174,7 @@ class Robot:
                 "zero_offsets": zero_offsets,
                 "side": side,
                 "gravity": gravity,
+                "torque_constants": torque_constants,
                 "torque_scales": torque_scales,
                 "directions": directions,
                 "models": models,
@@ -190,13 +200,17 @@ class Robot:
         down = _numbers("gravity", pull, 3)
         tree = tree_of_urdf(file, joints, down)
         n = len(tree.names)
-        ratios = None if gear_ratios is None else tuple(_numbers("gear_ratios", gear_ratios, n))
-        if ratios is not None and 0.0 in ratios:
-            raise InputError("a gear ratio is not 0", argument="gear_ratios", value=gear_ratios)
+        of_each = {
+            name: None if values is None else value_of_each(name, values, n, "Robot.from_urdf")
+            for name, values in (
+                ("gear_ratios", gear_ratios),
+                ("torque_constants", torque_constants),
+            )
+        }
         return cls(
             tree=tree,
             names=tree.names,
-            gear_ratios=ratios,
+            **of_each,
             couplings=_couplings(couplings, tree.names),
             rotor_inertias=_rotors(rotor_inertias, n),
             zero_offsets=None

@@ -188,14 +188,14 @@ def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, b
     torque, motor_torque = recording.torque, recording.motor_torque
     if at_motor and torque is not None:
         torque, motor_torque = None, torque
-    if torque is None and motor_torque is None:
-        raise InputError(
-            "the recording has no torque",
-            argument="recordings",
-            value=recording.name,
-            remedy=() if recording.reference is None else facts_of_drive(robot.names),
-        )
-    ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
+    by_current = torque is None and motor_torque is None
+    if by_current:
+        motor_torque = _of_currents(recording, robot, columns)
+    geared = robot.gear_ratios is not None or recording.gear_ratio is not None or not by_current
+    needed = at_motor or (
+        torque is None and geared
+    )  # a joint's constant may be that of a motor without a gear
+    ratios = _ratios(recording, robot, columns) if needed else np.ones(robot.n)
     recorded = torque if torque is not None else motor_torque
     assert recorded is not None
     # Before couplings: they spread what one joint lacks over all.
@@ -232,6 +232,29 @@ def _of_unit_gain(recording: RobotRecording, robot: Robot) -> Array | None:
     unit = _driven(recording, replace(robot, drive=robot.drive.of_unit_gain()))
     assert unit is not None
     return unit.torque()
+
+
+def _of_currents(recording: RobotRecording, robot: Robot, columns: list[int]) -> Array:
+    """The motors' torques of a recording that has currents only."""
+    if recording.current is None:
+        raise InputError(
+            "the recording has no torque",
+            argument="recordings",
+            value=recording.name,
+            remedy=() if recording.reference is None else facts_of_drive(robot.names),
+        )
+    if robot.torque_constants is None:
+        names = ", ".join(robot.names)
+        raise InputError(
+            f"the recording has currents and no torque; one torque constant for each of {names} is needed [N·m/A]",
+            argument="torque_constants",
+            remedy=Action(
+                "call", {"torque_constants": [...] * robot.n}, function="Robot.from_urdf"
+            ),
+        )
+    found = np.full(recording.current.shape, np.nan)
+    found[:, columns] = recording.current[:, columns] * np.array(robot.torque_constants)
+    return found
 
 
 def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Array:

@@ -74,4 +74,9 @@ def robot_document(robot: Robot) -> dict[str, Any]:
         "directions": plain(robot.directions),
         "side": robot.side,
         **({} if robot.drive is None else {"drive": robot.drive.document()}),
+        **(
+            {}
+            if robot.torque_constants is None
+            else {"torque_constants": plain(robot.torque_constants)}
+        ),
     }

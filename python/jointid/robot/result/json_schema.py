@@ -46,8 +46,7 @@ _ROBOT = Record(
         "side": OrNull(Text(known=("joint", "motor"))),
     },
     {
-        "torque_scales": OrNull(ListOf(_SIZE)),
-        "directions": OrNull(ListOf(_SIZE)),
+        **{key: OrNull(ListOf(_SIZE)) for key in ("torque_scales", "directions", "torque_constants")},
         "drive": OrNull(_DRIVE),
     },
 )

@@ -142,6 +142,7 @@ def _robot(d: Mapping[str, Any], name: str) -> Robot:
         torque_scales=_factors(d, "torque_scales"),
         directions=_factors(d, "directions"),
         drive=_drive(d),
+        torque_constants=_factors(d, "torque_constants"),
     )
 
 
@@ -238,7 +239,7 @@ def _of_robot(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "robot.couplings", f"{count} rows of {count} are expected"
     elif not np.linalg.cond(np.array(couplings)) <= _SINGULAR:
         yield "robot.couplings", "the motors' speeds do not give the joints': it is singular"
-    for key in ("gear_ratios", "zero_offsets", "torque_scales", "directions"):
+    for key in ("gear_ratios", "zero_offsets", "torque_scales", "directions", "torque_constants"):
         if d.get(key) is not None and len(d[key]) != count:
             yield f"robot.{key}", f"{count} numbers are expected, one per joint"
     if d["gear_ratios"] is not None and 0.0 in d["gear_ratios"]:
