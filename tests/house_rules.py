@@ -303,7 +303,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *_SOUGHT,
             *(
-                "recording/readers",
+                *("recording/readers", "recording/wide"),
                 "comparison",
                 "joints",
                 *("robot", "robot/links", "robot/result"),

@@ -113,12 +113,10 @@ def test_a_joint_file_for_each_joint(
     [
         (("identify",), "load with --joints 1 (or another joint); or load with --joints all"),
         (("compare",), "2 joints (1, 2)"),
-        (("info",), "--joints 1"),
         (("identify", "--joints", "7"), "--joints 7: there is no such joint"),
         (("identify", "--joints", "1,7"), "there is no such joint"),
         (("identify", "--joints", "1,,2"), "names or numbers"),
         (("compare", "--joints", "all"), "one joint is expected here"),
-        (("info", "--joints", "1,2"), "one joint is expected here"),
         (("identify", "--joints", "all", "--causes"), "this is for one joint"),
         (("identify", "--joints", "all", "--selftest"), "this is for one joint"),
         (("identify", "--joints", "all", "--bootstrap"), "this is for one joint"),

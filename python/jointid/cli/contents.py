@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.reading import how_to_read, joints_wanted, load_all
+from jointid.cli.robot_contents import several_of, show_robot
 from jointid.cli.wording import Wording
 
 if TYPE_CHECKING:
@@ -30,6 +31,9 @@ def info(arguments: argparse.Namespace) -> None:
     """Show what a recording holds."""
     import json
 
+    if several_of(arguments):
+        show_robot(arguments)
+        return
     try:
         (recording,) = load_all([arguments.recording], arguments)
     except InputError as error:

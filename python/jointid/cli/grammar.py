@@ -102,12 +102,15 @@ def add_identify(identify: CommandParser) -> None:
     _output_arguments(identify)
 
 
-def _robot_arguments(command: CommandParser) -> None:
+def _robot_arguments(
+    command: CommandParser,
+    purpose: str = "identify all joints together, with the links of this URDF; see docs/robots.md",
+) -> None:
     command.add_argument(
         "--robot",
         type=Path,
         metavar="URDF",
-        help="identify all joints together, with the links of this URDF; see docs/robots.md",
+        help=purpose,
     )
     command.add_argument(
         "--facts",
@@ -175,10 +178,13 @@ def add_report(report: CommandParser) -> None:
 
 def add_info(info: CommandParser) -> None:
     """Add the command's grammar."""
-    info.epilog = "example:\n  jointid info run.csv"
+    info.epilog = "examples:\n  jointid info run.csv\n  jointid info arm.csv --robot arm.urdf   (a line for each joint)"
     recording = info.add_argument("recording", type=Path, help="recording")
     info.help_later(recording, lambda: f"recording: {file_kinds()}")
     reading_arguments(info)
+    _robot_arguments(
+        info, "compare the torques of a robot's log with the weight of this URDF's links"
+    )
     info.add_argument("--json", action="store_true", help="print JSON")
     verbose_argument(info)
 

@@ -29,6 +29,7 @@ _READING = {
     "where": "--where",
     "joints": "--joints",
     "gear_ratio": "--gear-ratio",
+    "gear_ratios": "--gear-ratio",
     "side": "--side",
     "sample_period": "--rate",
     "topic": "--topic",
@@ -40,6 +41,7 @@ _READING = {
 }
 _FACTS = {
     "torque_constant": "--torque-constant",
+    "torque_constants": "--torque-constant",
     "rotor_inertia": "--rotor-inertia",
     "inertia": "--inertia",
     "mass": "--mass",
@@ -60,8 +62,6 @@ _ROBOT = {
     "robot": "--robot",
     "path": "--robot",
     "facts": "--facts",
-    "gear_ratios": "--gear-ratio",
-    "torque_constants": "--torque-constant",
 }
 _SCENARIO = {
     "controller": "--controller",
@@ -184,7 +184,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "speed": "--speed",
     },
     "explain": {},
-    "info": _READING,
+    "info": {**_READING, **_ROBOT},
 }
 """By command and argument."""
 

@@ -88,6 +88,12 @@ def wrong_torques(
     return None
 
 
+def weight_factors(signals: Sequence[PlainSignals], robot: Robot) -> dict[int, float]:
+    """Return the factor of each joint's torque on what the URDF's links need, of those whose links explain it."""
+    factors = {joint: _factor(block) for joint, block in _blocks(signals, robot).items()}
+    return {joint: each.value for joint, each in factors.items() if each.sure}
+
+
 def _blocks(
     signals: Sequence[PlainSignals], robot: Robot, directions: Array | None = None
 ) -> dict[int, Block]:
@@ -193,7 +199,8 @@ def _unsigned(
         return None
     lowest, highest = np.full(robot.n, np.inf), np.full(robot.n, -np.inf)
     for run in recordings:
-        values = run.torque if run.torque is not None else run.motor_torque
+        drives = (run.torque, run.motor_torque, run.current)
+        values = next((each for each in drives if each is not None), None)
         if values is None:
             return None
         of_joints = values[:, robot.columns_of(run)]

@@ -1,0 +1,173 @@
+"""`jointid info` of a log of several joints: a line for each joint."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.base.text_table import aligned
+from jointid.cli.reading import how_to_read, joints_wanted, numbers_of_joints
+
+if TYPE_CHECKING:
+    from jointid.recording.recording import Recording
+    from jointid.recording.wide.robot_recording import RobotRecording
+
+_NOTHING = "–"
+
+
+def several_of(arguments: argparse.Namespace) -> bool:
+    """Whether the command is about several joints: it says so, or the file holds several and it names none."""
+    wanted = joints_wanted(arguments)
+    if arguments.robot is not None or (wanted is not None and len(wanted) != 1):
+        return True
+    if wanted is not None:
+        return False
+    from jointid.recording.even_rows import at_rate
+    from jointid.recording.readers.loading import table_of
+    from jointid.recording.wide.joint_table import several_joints
+
+    reading = how_to_read(arguments)
+    try:
+        table = table_of(
+            arguments.recording, **{name: reading[name] for name in ("topic", "group", "unpacked")}
+        )
+        table, columns = at_rate(table, reading["sample_period"], reading["columns"])
+        return len(several_joints(table, columns)) > 1
+    except InputError:  # what reads the file as one joint says it
+        return False
+
+
+def show_robot(arguments: argparse.Namespace) -> None:
+    """Print what the log holds, a line for each joint."""
+    recordings = _recordings(arguments)
+    whole = recordings[0]
+    scales = _scales(arguments, whole)
+    joints = {
+        name: _of_joint(each, name, scales.get(name)) for each in recordings for name in each.names
+    }
+    if arguments.json:
+        import json
+
+        document = {"name": whole.name, "kind": whole.kind, "side": whole.side, "joints": joints}
+        print(json.dumps(document, indent=1, ensure_ascii=False))
+        return
+    print(
+        f"{whole.name or 'recording'}: {len(joints)} joints, {whole.kind}, {whole.samples} rows over "
+        f"{whole.duration:.6g} s{', of the motors' if whole.side == 'motor' else ''}"
+    )
+    print(*aligned(_table(joints, weighed=bool(scales))), sep="\n")
+    for line in _remarks(whole):
+        print(line)
+
+
+def _recordings(arguments: argparse.Namespace) -> list[RobotRecording]:
+    """The joints on one clock, then each of the others."""
+    from jointid.recording.readers.loading_robot import load_robot
+
+    how = how_to_read(arguments)
+    whole = load_robot(
+        arguments.recording,
+        joints_wanted(arguments) or None,
+        gear_ratio=numbers_of_joints(arguments, "gear_ratio"),
+        **how,
+    )
+    others = whole.metadata.get("joints_left_out") or {}
+    return [whole, *(load_robot(arguments.recording, [name], **how) for name in others)]
+
+
+def _scales(arguments: argparse.Namespace, recording: RobotRecording) -> dict[str, Any]:
+    """How much each torque is of what the URDF's links weigh, by the log's names; nothing without a URDF."""
+    if arguments.robot is None:
+        return {}
+    from jointid.robot.links.robot import Robot
+    from jointid.robot.weighing import weight_scales
+
+    robot = Robot.from_urdf(arguments.robot, facts=arguments.facts)
+    found = weight_scales(recording, robot)
+    columns = robot.columns_of(recording)
+    return {recording.names[k]: found[name] for k, name in zip(columns, robot.names, strict=True)}
+
+
+def _of_joint(robot: RobotRecording, name: str, scale: float | None) -> dict[str, Any]:
+    from jointid.identification.warnings.inspection import DRIVE, inspect
+
+    one = robot.joint(name)
+    signals = [each for each in one.signals if each not in ("time", "velocity")]
+    if not one.velocity_derived:
+        signals.insert(1, "velocity")
+    drive = next((each for each in DRIVE if each in signals), None)
+    return {
+        "rate [Hz]": float(f"{1.0 / one.sample_period:.4g}"),
+        "gaps": len(one.gaps),
+        "rows that repeat the position [%]": round(100.0 * inspect(one).stale_share("position"), 2),
+        "signals": {
+            signal: {
+                "min": float(getattr(one, signal).min()),
+                "max": float(getattr(one, signal).max()),
+                "unit": one.unit(signal),
+            }
+            for signal in signals
+        },
+        "torque": None if drive is None else drive,
+        "signs": None if drive is None else _signs(one, drive),
+        "scale against the URDF's weight": None if scale is None else float(f"{scale:.3g}"),
+    }
+
+
+def _signs(recording: Recording, drive: str) -> str:
+    """Whether a torque has both signs; noise about 0 is none."""
+    from jointid.problem.magnitude import is_one_sided
+
+    values = getattr(recording, drive)
+    lowest, highest = float(values.min()), float(values.max())
+    if not np.any(values):
+        return "always 0"
+    if is_one_sided(lowest, highest):
+        return "never negative"
+    return "never positive" if is_one_sided(-highest, -lowest) else "both"
+
+
+def _table(joints: dict[str, dict[str, Any]], *, weighed: bool) -> list[list[str]]:
+    head = ["joint", "position", "Hz", "gaps", "repeated", "torque", "signs", "other signals"]
+    rows = [[*head, "× URDF's weight"] if weighed else head]
+    for name, facts in joints.items():
+        drive = facts["torque"]
+        signals = facts["signals"]
+        others = [each for each in signals if each not in ("position", drive)]
+        scale = facts["scale against the URDF's weight"]
+        row = [
+            name,
+            _range(signals["position"]),
+            f"{facts['rate [Hz]']:g}",
+            str(facts["gaps"]),
+            f"{facts['rows that repeat the position [%]']:g} %",
+            _NOTHING if drive is None else _range(signals[drive]),
+            facts["signs"] or _NOTHING,
+            ", ".join(others) or _NOTHING,
+        ]
+        if weighed:
+            row.append(_NOTHING if scale is None else _scale(scale, signals[drive]["unit"]))
+        rows.append(row)
+    return rows
+
+
+def _range(facts: dict[str, Any]) -> str:
+    return f"{facts['min']:.4g} … {facts['max']:.4g} {facts['unit']}"
+
+
+def _scale(scale: float, unit: str) -> str:
+    """A torque's factor; of a current how much torque an ampere makes."""
+    return f"{1.0 / scale:.3g} N·m/A" if unit == "A" else f"{scale:.3g}"
+
+
+def _remarks(robot: RobotRecording) -> list[str]:
+    """What is worth knowing about how the file was read."""
+    from jointid.recording.file_remarks import remarks
+
+    assumed = robot.metadata.get("assumed_units")
+    found = [f"SI units assumed: {', '.join(map(str, assumed))}"] if assumed else []
+    said = remarks(robot.metadata)
+    return [*found, f"read: {'; '.join(said)}"] if said else found

@@ -1,0 +1,116 @@
+"""`jointid info` of a log of several joints: a line for each, and its torque against the weight of the URDF's links."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from shared_cases import case
+from small_arm import recording, urdf
+
+import jointid as jid
+from jointid.cli.command_line import main
+
+pytest.importorskip("pinocchio")
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return urdf(tmp_path_factory.mktemp("arm"))
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: object) -> dict[str, Any]:
+    assert main(["info", *map(str, words), "--json"]) == 0
+    found: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return found
+
+
+def log(arm: Path, path: Path, **changes: Any) -> Path:
+    run = recording(arm)
+    jid.RobotRecording(**{**run.fields(), **changes}).save(path)
+    return path
+
+
+@pytest.mark.parametrize("factors", [[1.0, 1.0], [1 / 14.0, 1 / 11.0], [1000.0, 1000.0]])
+def test_the_torques_are_weighed(
+    factors: list[float], arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    torque = recording(arm).torque
+    assert torque is not None
+    path = log(arm, tmp_path / "a.csv", torque=torque * np.array(factors))
+    found = told(capsys, path, "--robot", arm)["joints"]
+    for name, factor in zip(("shoulder", "elbow"), factors, strict=True):
+        assert found[name]["scale against the URDF's weight"] == pytest.approx(factor, rel=0.02)
+        assert found[name]["signs"] == "both"
+        assert found[name]["rate [Hz]"] == 1000.0
+
+
+def test_an_ampere_is_weighed(
+    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without a torque constant the table says what it would be."""
+    torque = recording(arm).torque
+    assert torque is not None
+    current = torque / np.array([14.0, -11.0])
+    path = log(arm, tmp_path / "a.csv", torque=None, current=current)
+    assert main(["info", str(path), "--robot", str(arm)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (shoulder,) = (each for each in lines if each.startswith("shoulder"))
+    (elbow,) = (each for each in lines if each.startswith("elbow"))
+    assert shoulder.endswith("14 N·m/A")
+    assert elbow.endswith("-11 N·m/A")
+
+
+def test_what_each_joint_lacks(
+    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = recording(arm)
+    assert run.torque is not None
+    torque = np.column_stack([np.abs(run.torque[:, 0]), np.full(run.samples, np.nan)])
+    kept = (run.time < 3.0) | (run.time > 3.5)
+    position = run.position.copy()
+    position[1::2, 1] = position[:-1:2, 1]
+    path = tmp_path / "a.npz"
+    jid.RobotRecording(
+        time=run.time[kept],
+        position=position[kept],
+        torque=torque[kept],
+        names=["left", "right"],
+    ).save(path)
+    found = told(capsys, path)["joints"]
+    assert found["left"]["signs"] == "never negative"
+    assert found["right"]["signs"] is None
+    assert found["left"]["gaps"] == found["right"]["gaps"] == 1
+    repeated = [each["rows that repeat the position [%]"] for each in found.values()]
+    assert repeated[0] < 1.0
+    assert repeated[1] == pytest.approx(50.0, abs=2.0)
+    assert found["left"]["signals"]["position"]["max"] == position[kept, 0].max()
+    assert found["right"]["scale against the URDF's weight"] is None
+
+
+def test_one_joint_is_shown_as_before(
+    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log(arm, tmp_path / "a.csv")
+    assert "signals" in told(capsys, path, "--joints", "elbow")
+    assert list(told(capsys, path, "--joints", "elbow,shoulder")["joints"]) == ["elbow", "shoulder"]
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "joints"),
+    [
+        ("robot-08-current-of-each-joint", "log.csv", 4),
+        ("robot-13-two-publishers-bag", "", 3),
+        ("robot-14-formats", "dash.csv", 3),
+        ("robot-14-formats", "lists.csv", 3),
+        ("robot-14-formats", "tau_est.csv", 12),
+    ],
+)
+def test_the_cases_have_a_line_for_each_joint(
+    name: str, file: str, joints: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = told(capsys, case(name) / file)["joints"]
+    assert len(found) == joints
+    if file == "tau_est.csv":
+        assert all(each["torque"] == "torque" for each in found.values())
