@@ -65,6 +65,21 @@ def _parquet(path: Path) -> None:
     )
 
 
+def _lerobot(path: Path) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    run = _run()
+    states = pyarrow.array(np.column_stack([run.position, run.time]).tolist())
+    frames = {"frame_index": np.arange(12), "episode_index": np.arange(12) // 6}
+    columns = {"observation.state": states, "action": states, "timestamp": run.time, **frames}
+    parquet.write_table(pyarrow.table(columns), path)
+
+
+def _lerobot_use(path: Path) -> object:
+    return jid.load(path, joints="all", units={"position": "deg", "reference": "deg"})
+
+
 def _sent() -> list[message_files.Sent]:
     return [message_files.joint_state("/joint_states", each) for each in message_files.motion(12)]
 
@@ -99,6 +114,7 @@ _FORMATS: dict[str, tuple[str, Callable[[Path], object], Use, str]] = {
     "packed mat": (".mat", lambda path: _mat(path, packed=True), jid.load, "scipy"),
     "hdf5": (".h5", _hdf5, jid.load, "h5py"),
     "parquet": (".parquet", _parquet, jid.load, "pyarrow"),
+    "lerobot": (".parquet", _lerobot, _lerobot_use, "pyarrow"),
     "mcap": (".mcap", lambda path: message_files.mcap(path, _sent()), jid.load_robot, "mcap"),
     "bag": (".bag", lambda path: message_files.ros1_bag(path, _sent()), jid.load_robot, "rosbags"),
     "db3": (".db3", _db3, jid.load_robot, "rosbags"),

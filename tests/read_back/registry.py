@@ -453,6 +453,7 @@ OTHERS: dict[str, str] = {
     "recording.messages.sqlite_file": "tests/recording/test_sqlite_logs.py",
     "recording.readers.csv_text": "tests/recording/test_bad_files.py",
     "recording.readers.json_reader": "tests/recording/test_json.py",
+    "recording.readers.lerobot": "tests/recording/test_lerobot.py",
     "recording.readers.mat_reader": "tests/recording/test_mat.py",
     "recording.readers.npz_reader": "tests/recording/test_bad_files.py",
     "recording.readers.parquet_reader": "tests/recording/test_bad_files.py",

@@ -58,6 +58,7 @@ from jointid.recording.units import UNITS, find_unit, unit_named, unit_names
         ("V", 1.5, 1.5),
         ("mV", 1500.0, 1.5),
         ("raw", 2048.0, 2048.0),
+        ("lerobot", 2048.0, 2048.0),
     ],
 )
 def test_values_become_si(name: str, value: float, si: float) -> None:

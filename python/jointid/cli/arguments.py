@@ -59,7 +59,7 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         (
             "--column",
             "SIGNAL=HEADER",
-            "column of a signal: its header or number, or none; may be repeated",
+            "column of a signal: its header or number, none, or 1:6 for the columns of six joints; may be repeated",
         ),
         ("--unit", "SIGNAL=UNIT", "unit of a signal, instead of the one in the header"),
         ("--scale", "SIGNAL=FACTOR", "factor from file units to SI"),

@@ -25,7 +25,7 @@ def several_of(arguments: argparse.Namespace) -> bool:
         return True
     if wanted is not None:
         return False
-    from jointid.recording.even_rows import at_rate
+    from jointid.recording.even_rows import as_stated
     from jointid.recording.readers.loading import table_of
     from jointid.recording.wide.joint_table import several_joints
 
@@ -34,7 +34,7 @@ def several_of(arguments: argparse.Namespace) -> bool:
         table = table_of(
             arguments.recording, **{name: reading[name] for name in ("topic", "group", "unpacked")}
         )
-        table, columns = at_rate(table, reading["sample_period"], reading["columns"])
+        table, columns = as_stated(table, reading["sample_period"], reading["columns"])
         return len(several_joints(table, columns)) > 1
     except InputError:  # what reads the file as one joint says it
         return False
@@ -169,5 +169,8 @@ def _remarks(robot: RobotRecording) -> list[str]:
 
     assumed = robot.metadata.get("assumed_units")
     found = [f"SI units assumed: {', '.join(map(str, assumed))}"] if assumed else []
+    runs = robot.metadata.get("runs")
+    if runs:
+        found.append(f"runs, one after the other: {', '.join(map(str, runs))}")
     said = remarks(robot.metadata)
     return [*found, f"read: {'; '.join(said)}"] if said else found

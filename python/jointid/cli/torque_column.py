@@ -26,7 +26,7 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
         The log has a duty or a voltage in place of a torque: it is a servo's.
     """
     from jointid.recording.column_lookup import column_index
-    from jointid.recording.even_rows import at_rate
+    from jointid.recording.even_rows import as_stated
     from jointid.recording.headers import understood
     from jointid.recording.likely_torque import duty_column, quantity_of, torque_column
     from jointid.recording.matching import match_columns
@@ -37,7 +37,7 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
         return None
     parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
     table = table_of(path, **parts)
-    table, columns = at_rate(table, reading["sample_period"], reading["columns"])
+    table, columns = as_stated(table, reading["sample_period"], reading["columns"])
     found = match_columns(table, columns=columns, units=None, scale=None, kind=None).found
     taken = {column.index for column in found.values()}
     taken |= {column_index(table, header, "where") for header in reading["where"] or ()}

@@ -41,6 +41,16 @@ def last_word_for(header: str, signal: str) -> int:
     return max((found.start() for found in LIKELY[signal].finditer(plain(header))), default=-1)
 
 
+def is_counter(header: str) -> bool:
+    """Whether a header names a count of rows, frames or runs."""
+    return _COUNTER.search(plain(header)) is not None
+
+
+def is_external(header: str) -> bool:
+    """Whether a header names what acts from outside: an external torque or force."""
+    return re.search(r"(^|_)ext(ernal)?($|_)", plain(header)) is not None
+
+
 def values_of(table: Table, index: int) -> FloatArray | None:
     """Return the first values of a column that changes; None for text, a constant, or values that are missing."""
     try:

@@ -7,8 +7,11 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.recording.blocks import OF_BLOCKS
 from jointid.recording.column_evidence import (
     by_numbers,
+    is_counter,
+    is_external,
     shows_position,
     shows_time,
     speaks_for,
@@ -26,6 +29,7 @@ from jointid.recording.units import UNITS, is_mega, unit_names
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
 _MEASURED = ("meas", "actual")
 _SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
+_OF_ONE_JOINT = 5  # columns without headers that may be one joint's
 _MOST_TRIED = 200  # columns whose names say nothing
 
 
@@ -62,6 +66,11 @@ def in_other_unit(column: Column) -> str:
         return f"has the unknown unit {column.unknown!r}"
     if column.documented is not None and column.documented.asked:
         return f"is {column.documented.asked} ({column.documented.source})"
+    if column.unit is UNITS["lerobot"]:
+        return (
+            "is in degrees, in rad, or in −100…100 of each joint's calibrated range: "
+            "a LeRobot dataset does not say"
+        )
     if column.unit.dimension == "raw reading":
         return "is a raw reading"
     return f"is in {column.unit.name} ({column.unit.dimension})"
@@ -81,6 +90,8 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
     elif column.documented is not None:
         factor = column.documented.factor or "the factor from file units to SI"
         remedy = Action("call", {"scale": {signal: ...}}, function="load", text=factor)
+    elif column.unit is UNITS["lerobot"]:
+        remedy = _of_dataset(table)
     elif column.unit and column.unit.dimension in ("raw reading", "voltage"):
         remedy = Action(
             "call",
@@ -106,6 +117,23 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
         f"{' or '.join(dimensions(signal, kind))} is expected, in {', '.join(known)}",
         place=f"{table.header_place}, column {table.headers[column.index]!r}",
         remedy=(other,) if remedy is None else (remedy, other),
+    )
+
+
+def _of_dataset(table: Table) -> Action:
+    """Return the call that states the unit of a dataset's states and actions, which are alike."""
+    read = [understood(header) for header in table.headers]
+    signals = [
+        each.meaning.signal
+        for each in read
+        if each.meaning is not None and each.unit is UNITS["lerobot"]
+    ]
+    units = [each for each in ("position", "reference") if each in signals]
+    return Action(
+        "call",
+        {"units": dict.fromkeys(units, "deg")},
+        "if they are degrees, or rad; of −100…100 --scale has π/180 times half the range in degrees over 100",
+        function="load",
     )
 
 
@@ -156,11 +184,13 @@ def missing(
     if not any(found.of.get(signal) or signal in proposed for signal in TORQUES) and proposed:
         proposed |= _torque(table, found, {*owners, *proposed.values()}, proposed, kind)
     arguments = _proposal(table, proposed, kind)
+    unnamed = all(header == f"column {k}" for k, header in enumerate(table.headers))
+    blocks = (OF_BLOCKS,) if unnamed and len(table.headers) > _OF_ONE_JOINT else ()
     return InputError(
         _not_recognised(table, signals, absent, shown)
         + _asked(table, found, proposed, headerless=bool(headerless)),
         place=table.header_place,
-        remedy=_with_absent(arguments, absent),
+        remedy=(_with_absent(arguments, absent), *blocks),
     )
 
 
@@ -233,6 +263,7 @@ def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> l
         if (
             index not in taken
             and not stamp
+            and not _is_other(header, signal)
             and (
                 unit is None
                 or unit.dimension in dimensions(signal, kind)
@@ -241,6 +272,13 @@ def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> l
         ):
             found.append(index)
     return found
+
+
+def _is_other(header: str, signal: str) -> bool:
+    """Whether a header names a counter, or what acts from outside: neither is a time or a joint's position."""
+    if signal not in NEEDED:
+        return is_external(header)
+    return is_external(header) or (is_counter(header) and not speaks_for(header, signal))
 
 
 def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> list[int]:

@@ -18,24 +18,28 @@ EVENLY = Action(
 _HEADER = "time [s]"
 
 
-def at_rate(
+def as_stated(
     table: Table, sample_period: object, columns: Mapping[str, str | int | None] | None
 ) -> tuple[Table, Mapping[str, str | int | None] | None]:
-    """Return a table and the columns of its signals with the time that a sample period states.
+    """Return a table and the columns of its signals as a call states them: blocks of joints, and the rows' time.
 
     Parameters
     ----------
     table : Table
     sample_period : float or None
-        [s]. None: the table as it is.
+        [s]. None: the table has the time.
     columns : mapping or None
         As given to `load`.
 
     Raises
     ------
     InputError
-        It is no positive number, or a time column is named, too.
+        The period is no positive number, a time column is named, too, or a block cannot be read.
     """
+    if isinstance(columns, Mapping) and any(":" in str(each) for each in columns.values()):
+        from jointid.recording.blocks import with_blocks
+
+        table, columns = with_blocks(table, columns)
     if sample_period is None:
         return table, columns
     if not is_finite(sample_period) or float(sample_period) <= 0.0:  # type: ignore[arg-type]

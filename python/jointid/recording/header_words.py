@@ -30,7 +30,7 @@ _COMMANDED = _words_of(
     "desired des d target cmd command commanded set setpoint setpoints ref reference goal soll"
 )
 # Words that say nothing about which signal it is.
-_PLAIN = _words_of("joint joints jnt j state states msg msgs data field value main nc to plc")
+_PLAIN = _words_of("joint joints jnt j dof state states msg msgs data field value main nc to plc")
 # A column of these is not the signal itself, whatever else the header says.
 _OTHER = _words_of(
     "error err errors limit limits min max offset std sigma raw_offset gain ext "

@@ -170,10 +170,10 @@ class Recording(Parts):
         """
         from jointid.recording.contents import read_contents
         from jointid.recording.dataframe import FrameTable
-        from jointid.recording.even_rows import at_rate
+        from jointid.recording.even_rows import as_stated
         from jointid.recording.sides import at_stated_sides, checked_ratio
 
-        table, columns = at_rate(FrameTable(df), sample_period, columns)
+        table, columns = as_stated(FrameTable(df), sample_period, columns)
         contents = read_contents(
             table,
             columns=columns,

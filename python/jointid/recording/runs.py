@@ -2,17 +2,35 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.contents import Contents, Rows
-from jointid.recording.signals import SHORTEST
+from jointid.recording.signals import SHORTEST, FloatArray
 
 _RUN = r"(?i)run|trial|test|experiment|episode|file|log"
 _MOST = 8  # columns that are examined: each costs time in a long file
+
+
+def shifts_of_runs(time: FloatArray, runs: Sequence[Rows]) -> FloatArray:
+    """Return by how much each row's time moves so that each run begins after the one before it, a pause between them.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        Of each run from a clock of its own.
+    runs : sequence of ndarray
+        The rows of each run.
+    """
+    pause = max(float(time[run[-1]] - time[run[0]]) for run in runs)
+    shift = np.zeros(len(time))
+    for before, run in pairwise(runs):
+        shift[run] = time[before[-1]] + shift[before[-1]] + pause - time[run[0]]
+    return shift
 
 
 def one_run(contents: Contents) -> tuple[Action, ...]:

@@ -98,6 +98,7 @@ UNITS: dict[str, Unit] = {
         ("V", "voltage", 1.0, 0.0),
         ("mV", "voltage", 1e-3, 0.0),
         ("raw", "raw reading", 1.0, 0.0),
+        ("lerobot", "raw reading", 1.0, 0.0),
     ]
 }
 

@@ -139,7 +139,8 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
         MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
         ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
         (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``; a ``.json``
-        file with a list of records, or of WPILib's SysId, and a ``.wpilog`` (the extra ``wpilib``).
+        file with a list of records, or of WPILib's SysId, and a ``.wpilog`` (the extra ``wpilib``); the folder of a
+        LeRobot dataset, version 2 or 3, or one of its ``.parquet`` files (needs pyarrow).
         The cells of a text are separated by commas, semicolons, tabs or blanks; where commas do not separate,
         decimal commas are read as well. Exports of TwinCAT Scope are read, too. Several files, and a folder of them,
         are several runs.
@@ -159,7 +160,8 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column; None leaves the signal out (a velocity
         left out is derived from position). ``{joint}`` in a header stands for the joint:
-        ``{"position": "enc_{joint}_rad"}``. Default: by the headers, also for signals not mapped.
+        ``{"position": "enc_{joint}_rad"}``. ``{"position": "1:6"}`` are the columns of six joints, the first and the
+        last by their 0-based numbers. Default: by the headers, also for signals not mapped.
     units : mapping of str to str, optional
         Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
         Default: the header's.
@@ -175,7 +177,7 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     gear_ratio : float, or sequence of float, optional
         Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
         (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Of several joints one for
-        each, or one for all. Default: that of the subject; without one, positions of the motor stay what they are, and
+        each. Default: that of the subject; without one, positions of the motor stay what they are, and
         ``metadata["side"]`` is "motor".
     side : mapping of str to str, optional
         Signal → "motor" or "joint", where a position, velocity, reference or torque is on another side of the gear

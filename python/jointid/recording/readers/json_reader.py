@@ -15,6 +15,7 @@ from jointid.base.errors import InputError
 from jointid.recording.headers import understood
 from jointid.recording.readers.csv_text import text_of
 from jointid.recording.readers.reader import Reader
+from jointid.recording.runs import shifts_of_runs
 from jointid.recording.signals import FloatArray, signal_array
 
 RUN = "run"
@@ -163,11 +164,7 @@ class JsonTable:
             self._rows = [self._rows[k] for k in order]
             self._runs = [self._runs[k] for k in order]
             return
-        pause = max(float(time[run[-1]] - time[run[0]]) for run in runs)
-        shift = np.zeros(len(time))
-        for before, run in pairwise(runs):
-            shift[run] = time[before[-1]] + shift[before[-1]] + pause - time[run[0]]
-        self._shift = shift
+        self._shift = shifts_of_runs(time, runs)
 
 
 def _is_time(header: str) -> bool:

@@ -16,7 +16,7 @@ from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import Contents, read_contents
 from jointid.recording.copies import without_copies
 from jointid.recording.damaged_rows import NOTE
-from jointid.recording.even_rows import at_rate
+from jointid.recording.even_rows import as_stated
 from jointid.recording.readers.list_columns import with_list_columns
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.readers.reader import Reader
@@ -66,7 +66,7 @@ def load(
         raise also_joints(
             error, partial(table_of, file, kind=kind, unpacked=unpacked), columns
         ) from None
-    table, columns = at_rate(table, sample_period, columns)
+    table, columns = as_stated(table, sample_period, columns)
     one = joint_of_table(table, joint, columns, extra)
     ratio = _ratio(one, gear_ratio)
     read = partial(
@@ -153,7 +153,7 @@ def load_runs(
     """
     file = require_path("path", path)
     table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)
-    table, columns = at_rate(table, sample_period, columns)
+    table, columns = as_stated(table, sample_period, columns)
     one = joint_of_table(table, joint, columns, extra)
     ratio = _ratio(one, gear_ratio)
     contents = read_contents(
@@ -209,6 +209,10 @@ def table_of(
         with allowing(unpacked):
             table = reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
             table = with_list_columns(table)
+            if any(header.startswith("observation.state") for header in table.headers):
+                from jointid.recording.readers.lerobot import with_episodes
+
+                table = with_episodes(table, file)
     except FileNotFoundError:
         raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:
@@ -237,7 +241,9 @@ def _without(file: Path, argument: str) -> str:
 
 
 def _form(file: Path, reader: Reader) -> str:
-    return "bags" if file.is_dir() else f"{ending_of(file, reader.endings)} files"
+    if file.is_dir():
+        return "bags" if reader.folder else "LeRobot datasets"
+    return f"{ending_of(file, reader.endings)} files"
 
 
 def file_name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.recording.contents import Contents, read_contents
-from jointid.recording.even_rows import at_rate
+from jointid.recording.even_rows import as_stated
 from jointid.recording.extra import named_extra
 from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.readers.open_files import Source, reads_open_files
@@ -64,7 +64,7 @@ def load_robot(
     units, scale : mapping, optional
         As in `load`, for all joints.
     gear_ratio : sequence of float, optional
-        One a joint, in the order of `joints`, or one for all; signed. Default: not known.
+        One a joint, in the order of `joints`; signed. Default: not known.
     side, sample_period, where, kind, torque_hold
         As in `load`.
     extra : collection of str, or mapping of str to str or int, optional
@@ -100,7 +100,7 @@ def load_robot(
         columns or units or scale or side or where or kind or torque_hold or extra
     ):
         return _changed(whole, joints, gear_ratio, name)
-    table, columns = at_rate(table, sample_period, columns)
+    table, columns = as_stated(table, sample_period, columns)
     known = joints_of(table, columns)
     if not known:
         raise nothing_named(table, "all" if joints is None else joints, "joints")

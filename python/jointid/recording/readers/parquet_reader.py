@@ -69,6 +69,11 @@ class ParquetTable:
                 "the file has no columns; time and position are expected", place=str(path)
             )
 
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return int(self._sizes.rows)
+
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,), or raise `InputError`."""
         return [self._numbers(column) for column in columns]

@@ -26,6 +26,8 @@ class Reader:
         The argument of `load` that names a part of such a file: ``"topic"`` or ``"group"``. Default: none.
     folder : tuple of str
         A folder with files of these endings is read as one file. Default: no folder is.
+    marker : str
+        A folder that holds this file, by its path inside, is read as one file. Default: no folder is.
     """
 
     endings: tuple[str, ...]
@@ -34,6 +36,7 @@ class Reader:
     install: str = ""
     part: str = ""
     folder: tuple[str, ...] = ()
+    marker: str = ""
 
     @property
     def packages(self) -> tuple[str, ...]:

@@ -1,10 +1,13 @@
 """The list of file formats. A new format is one file beside this one, and one line in `MODULES`."""
 
+import json
+import shlex
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
 from jointid.base.error_text import alternatives
+from jointid.base.errors import InputError
 from jointid.base.file_endings import no_ending
 from jointid.recording.readers.reader import Reader
 
@@ -14,12 +17,15 @@ MODULES = (
     "npz_reader",
     "mat_reader",
     "parquet_reader",
+    "lerobot_reader",
     "mcap_reader",
     "rosbag_reader",
     "hdf5_reader",
     "json_reader",
     "wpilog_reader",
 )
+
+_PICKLES = (".pt", ".pth")
 
 
 def readers() -> Iterator[Reader]:
@@ -48,6 +54,9 @@ def reader_of(path: Path) -> Reader:
         No reader reads such files.
     """
     if path.is_dir():
+        for reader in readers():
+            if reader.marker and (path / reader.marker).is_file():
+                return reader
         inside = [each.name.lower() for each in path.iterdir()]
         for reader in readers():
             if reader.folder and _is_whole(inside, reader.folder):
@@ -56,7 +65,22 @@ def reader_of(path: Path) -> Reader:
     for reader in readers():
         if name.endswith(reader.endings):  # no name has the endings of two readers
             return reader
+    if name.endswith(_PICKLES):
+        raise InputError(
+            "this is a pickle of PyTorch, which may run code and is never read",
+            place=str(path),
+            remedy=f"convert it with {_conversion(path)}",
+        )
     raise no_ending(path, endings())
+
+
+def _conversion(path: Path) -> str:
+    """Return the command that writes a dictionary of tensors as .npz."""
+    code = (
+        f"import numpy, torch; d = torch.load({json.dumps(str(path))}, weights_only=True); "
+        f"numpy.savez({json.dumps(str(path.with_suffix('.npz')))}, **{{k: v.cpu().numpy() for k, v in d.items()}})"
+    )
+    return f"python -c {shlex.quote(code)}"
 
 
 def _is_whole(names: list[str], endings: tuple[str, ...]) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from jointid.recording.even_rows import at_rate
+from jointid.recording.even_rows import as_stated
 from jointid.recording.extra import extra_columns
 from jointid.recording.matching import match_columns
 from jointid.recording.table import Table
@@ -23,7 +23,7 @@ def columns_read(table: Table, joint: str | None, reading: Mapping[str, Any]) ->
         Further arguments of `load`, which has read the table with them.
     """
     extra = reading["extra"]
-    timed, columns = at_rate(table, reading["sample_period"], reading["columns"])
+    timed, columns = as_stated(table, reading["sample_period"], reading["columns"])
     one = joint_of_table(timed, joint, columns, extra)
     units, scale = reading["units"] or {}, reading["scale"] or {}
     own = extra_columns(one.table, one.extra, units, scale)

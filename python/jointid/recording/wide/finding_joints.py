@@ -22,6 +22,7 @@ from jointid.recording.wide.words import (
 
 _UNIT = r"\s*[\[(]\s*[^\[\](){}]*[^\[\](){}\d\s:,][^\[\](){}]*[\])]\s*$"
 _INDEX = r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)"
+_DASH = r"^\s*-\s*"  # as of a list's item, before the whole header
 _SEPARATORS = r"[\s_.\-/]+"
 _CAMEL = r"(?<=[a-z])(?=[A-Z])"
 _LETTERS_DIGITS = r"([^\W\d]+)(\d+)"
@@ -77,16 +78,18 @@ def columns_of(headers: Sequence[str], joint: str) -> Sequence[JointHeader]:
 @lru_cache(maxsize=4)  # each joint of a robot asks
 def _joints(headers: tuple[str, ...]) -> Mapping[str, Sequence[JointHeader]]:
     found: dict[str, list[JointHeader]] = {}
-    for index, header in enumerate(headers):
-        if len(header) > LONGEST:
+    for index, whole in enumerate(headers):
+        if len(whole) > LONGEST:
             continue
+        header = re.sub(_DASH, "", whole)
         numbered = _numbered(index, header)
         each = _indexed(index, header) or _dotted(index, header)
         if each is None and (numbered is None or numbered.meaning is None):
             each = _named(index, header)
         each = each or numbered
         if each is not None:
-            found.setdefault(each.joint, []).append(each)
+            dash = whole[: len(whole) - len(header)]
+            found.setdefault(each.joint, []).append(replace(each, pattern=f"{dash}{each.pattern}"))
     return _with_numbers_named(found)
 
 

@@ -142,7 +142,8 @@ def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
     if given.get("position") is not None:
         return joints_of(table, given)
     joints = joint_headers(table.headers)
-    if sum(map(len, joints.values())) == len(table.headers):  # a matrix: one of them is the time
+    matrix = all(len(each) == 1 for each in joints.values())
+    if matrix and len(joints) == len(table.headers):  # one of its columns is the time
         return ()
     return tuple(joints)
 
@@ -183,10 +184,15 @@ def _extra_index(table: Table, column: str | int, joint: str, name: str) -> int:
 
 def nothing_named(table: Table, joint: object, argument: str = "joint") -> InputError:
     """Return the error for a joint in a file whose headers name none."""
+    from jointid.recording.blocks import OF_BLOCKS
+
     return InputError(
         f"the headers name no joints with a position; they are {listed(table.headers)}",
         argument=argument,
         value=joint,
         place=table.header_place,
-        remedy="headers such as joint1_position, position.1 or elbow.position name a joint",
+        remedy=(
+            OF_BLOCKS,
+            "headers such as joint1_position, position.1 or elbow.position name a joint",
+        ),
     )

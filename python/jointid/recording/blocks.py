@@ -1,0 +1,131 @@
+"""Blocks of columns, one column for each joint, where headers name no joints: ``columns={"position": "1:6"}``."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy.typing as npt
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.recording.signals import FloatArray, check_signal_name
+from jointid.recording.table import Table, first_cell, raw_values
+
+_BLOCK = r"\s*(\d+)\s*:\s*(\d+)\s*"
+_UNIT = r"\s*[\[(][^\[\](),]*[\])]\s*$"
+OF_BLOCKS = Action(
+    "call",
+    {"columns": {"time": "COLUMN", "position": "FIRST:LAST"}},
+    "of several joints: blocks of columns by their numbers from 0, and another one for the torque",
+    function="load_robot",
+)
+"""The call for a file with a block of columns for each signal."""
+Columns = Mapping[str, str | int | None]
+
+
+def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
+    """Return a table in which a block's columns have the names of their joints, and the columns that are no blocks.
+
+    Parameters
+    ----------
+    table : Table
+    columns : mapping
+        As given to `load`. A block is the numbers of its first and last column, 0-based and both included.
+
+    Raises
+    ------
+    InputError
+        A block is not in the table, two share a column, or they have not as many columns.
+    """
+    known = {header.strip() for header in table.headers}
+    blocks = {
+        signal: (int(found[1]), int(found[2]))
+        for signal, column in columns.items()
+        if isinstance(column, str)
+        and column.strip() not in known
+        and (found := re.fullmatch(_BLOCK, column))
+    }
+    if not blocks:
+        return table, columns
+    joints: dict[int, tuple[str, int]] = {}
+    widths = {signal: last - first + 1 for signal, (first, last) in blocks.items()}
+    for signal, (first, last) in blocks.items():
+        check_signal_name(signal, "columns")
+        argument, value = f"columns.{signal}", f"{first}:{last}"
+        if not first <= last < len(table.headers):
+            raise InputError(
+                f"the columns are 0 to {len(table.headers) - 1}; a block is its first and its last one",
+                argument=argument,
+                value=value,
+                place=table.header_place,
+            )
+        if widths[signal] != next(iter(widths.values())):
+            shown = ", ".join(f"{name}: {count}" for name, count in widths.items())
+            raise InputError(
+                f"blocks have as many columns as there are joints ({shown})",
+                argument=argument,
+                value=value,
+                place=table.header_place,
+            )
+        for joint, index in enumerate(range(first, last + 1), 1):
+            if index in joints:
+                raise InputError(
+                    f"column {index} is also of the block {joints[index][0]}",
+                    argument=argument,
+                    value=value,
+                    place=table.header_place,
+                )
+            joints[index] = (signal, joint)
+    rest = {signal: column for signal, column in columns.items() if signal not in blocks}
+    return BlockTable(table, joints), rest
+
+
+class BlockTable:
+    """A table whose columns in blocks are called ``1.position``, ``2.position``, ...
+
+    Parameters
+    ----------
+    table : Table
+    joints : mapping of int to (str, int)
+        Column → signal and number of the joint, from 1.
+    """
+
+    def __init__(self, table: Table, joints: Mapping[int, tuple[str, int]]) -> None:
+        self._table = table
+        self.source, self.header_place, self.saved = table.source, table.header_place, table.saved
+        self.headers = tuple(
+            _header(header, joints.get(index)) for index, header in enumerate(table.headers)
+        )
+        self.other_names = {
+            **{header: k for k, header in enumerate(table.headers) if k not in joints},
+            **table.other_names,
+        }
+        self.notes: dict[str, Any] = dict(getattr(table, "notes", {}))
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as numbers."""
+        return self._table.numbers(columns)
+
+    def text(self, column: int) -> list[str]:
+        """Return a column as text."""
+        return self._table.text(column)
+
+    def first_cell(self, column: int) -> str:
+        """Return the first cell of a column as it stands in the file."""
+        return first_cell(self._table, column)
+
+    def raw(self, column: int) -> npt.NDArray[Any] | None:
+        """Return a column as the file has it."""
+        return raw_values(self._table, column)
+
+    def place(self, column: int, row: int) -> str:
+        """Return where a cell is."""
+        return self._table.place(column, row)
+
+
+def _header(header: str, joint: tuple[str, int] | None) -> str:
+    """Return ``2.position [deg]`` for a column of a block; another header as it is."""
+    if joint is None:
+        return header
+    unit = re.search(_UNIT, header)
+    return f"{joint[1]}.{joint[0]}{f' {unit[0].strip()}' if unit else ''}"

@@ -1,0 +1,187 @@
+"""Tables of LeRobot datasets: lists named by joints, and episodes that follow one another on one clock."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.base.errors import InputError
+from jointid.recording.runs import shifts_of_runs
+from jointid.recording.signals import FloatArray
+from jointid.recording.table import Table, first_cell, raw_values
+from jointid.recording.wide.finding_joints import joint_headers
+
+INFO = "meta/info.json"
+"""What every dataset has, from its top folder."""
+
+_SIGNALS = {
+    "observation.state": "position",
+    "observation.velocity": "velocity",
+    "observation.effort": "torque",
+    "action": "reference",
+}
+_ELEMENT = rf"({'|'.join(map(re.escape, _SIGNALS))})(?:_(\d+))?"
+_BEHIND = r"\.(pos|vel|torque|effort)$"  # what newer datasets put behind a motor's name
+_ABOVE = 4  # folders of a file that may be the dataset's top
+_EPISODE, _FRAME, _TIME = "episode_index", "frame_index", "timestamp"
+_UNIT = "lerobot"
+_MOST_SHOWN = 100  # episodes in the metadata
+
+
+def with_episodes(table: Table, path: Path) -> Table:
+    """Return the table of a LeRobot dataset with named joints; any other table as it is.
+
+    Parameters
+    ----------
+    table : Table
+        With a column for each element of its lists.
+    path : Path
+        The dataset's folder, or one of its files.
+
+    Raises
+    ------
+    InputError
+        ``meta/info.json`` is there, and cannot be read.
+    """
+    headers = set(table.headers)
+    of_states = any(_is_element(each, "observation.state") for each in headers)
+    if not of_states or not {_EPISODE, _FRAME, _TIME} <= headers:
+        return table
+    return LeRobotTable(table, _info(path))
+
+
+def _is_element(header: str, feature: str) -> bool:
+    found = re.fullmatch(_ELEMENT, header)
+    return found is not None and found[1] == feature
+
+
+def _info(path: Path) -> Mapping[str, Any]:
+    """Return what the dataset says of itself; nothing for a file that stands alone."""
+    folders = [path] if path.is_dir() else [*path.resolve().parents][:_ABOVE]
+    file = next((each / INFO for each in folders if (each / INFO).is_file()), None)
+    if file is None:
+        return {}
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError, OSError):
+        raise InputError("it is no JSON, or is damaged", place=str(file)) from None
+    return found if isinstance(found, dict) else {}
+
+
+def joint_names(info: Mapping[str, Any], feature: str, count: int) -> list[str]:
+    """Return the names of a feature's elements; their numbers where the dataset names none, or not so many."""
+    features = info.get("features")
+    own = features.get(feature) if isinstance(features, Mapping) else None
+    names = own.get("names") if isinstance(own, Mapping) else None
+    if isinstance(names, Mapping):
+        lists = [each for each in names.values() if isinstance(each, list)]
+        names = lists[0] if len(lists) == 1 else list(names)
+    plain = [str(number) for number in range(count)]
+    if not isinstance(names, list) or len(names) != count or len(set(map(str, names))) != count:
+        return plain
+    found = [re.sub(_BEHIND, "", str(each).strip()) for each in names]
+    headers = [f"{name}.position [{_UNIT}]" for name in found]
+    return found if list(joint_headers(headers)) == found else plain
+
+
+class LeRobotTable:
+    """A dataset's rows: states are positions, actions wanted positions, episodes runs one after the other.
+
+    Parameters
+    ----------
+    table : Table
+    info : mapping
+        Of ``meta/info.json``; empty if there is none.
+    """
+
+    def __init__(self, table: Table, info: Mapping[str, Any]) -> None:
+        self._table = table
+        self.source, self.header_place, self.saved = table.source, table.header_place, table.saved
+        self._rate = info.get("fps")
+        self.headers = self._named(info)
+        self._time = table.headers.index(_TIME)
+
+    def _named(self, info: Mapping[str, Any]) -> tuple[str, ...]:
+        """The headers, with a joint's name where the table has an element of a list."""
+        elements = [re.fullmatch(_ELEMENT, header) for header in self._table.headers]
+        counts = {name: sum(e is not None and e[1] == name for e in elements) for name in _SIGNALS}
+        names = {name: joint_names(info, name, count) for name, count in counts.items()}
+        found = []
+        for header, element in zip(self._table.headers, elements, strict=True):
+            if element is None:
+                found.append(f"{header} [s]" if header == _TIME else header)
+                continue
+            signal = _SIGNALS[element[1]]
+            joint = names[element[1]][int(element[2] or 0)]
+            unit = f" [{_UNIT}]" if signal in ("position", "velocity", "reference") else ""
+            found.append(f"{joint}.{signal}{unit}")
+        return tuple(found)
+
+    @property
+    def other_names(self) -> Mapping[str, int]:
+        """The dataset's own headers."""
+        return {header: index for index, header in enumerate(self._table.headers)}
+
+    @cached_property
+    def _episodes(self) -> tuple[FloatArray, list[npt.NDArray[np.intp]]]:
+        """Each row's episode, and the rows of each run of one."""
+        (episodes,) = self._table.numbers([self._table.headers.index(_EPISODE)])
+        ends = np.flatnonzero(np.diff(episodes)) + 1
+        return episodes, np.split(np.arange(len(episodes)), ends)
+
+    @property
+    def notes(self) -> dict[str, Any]:
+        """How the file was read."""
+        found = dict(getattr(self._table, "notes", {}))
+        episodes, runs = self._episodes
+        if len(runs) > 1:
+            shown = [f"episode {episodes[run[0]]:g}" for run in runs[:_MOST_SHOWN]]
+            more = len(runs) - len(shown)
+            found["runs"] = [*shown, f"{more} more"] if more else shown
+        return found
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as arrays of shape (n,), or raise `InputError`."""
+        values = self._table.numbers(columns)
+        return [
+            self._clock(each) if column == self._time else each
+            for column, each in zip(columns, values, strict=True)
+        ]
+
+    def _clock(self, stamps: FloatArray) -> FloatArray:
+        """Return the time of all rows: of frames at the dataset's rate where the stamps say the same."""
+        if isinstance(self._rate, int | float) and self._rate > 0.0:
+            (frames,) = self._table.numbers([self._table.headers.index(_FRAME)])
+            even = frames / float(self._rate)
+            if np.allclose(even, stamps, rtol=1e-5, atol=0.1 / float(self._rate)):
+                stamps = even
+        _, runs = self._episodes
+        if all(stamps[first[-1]] < stamps[then[0]] for first, then in pairwise(runs)):
+            return stamps
+        return stamps + shifts_of_runs(stamps, runs)
+
+    def raw(self, column: int) -> npt.NDArray[Any] | None:
+        """Return the values of a column as the file has them."""
+        return None if column == self._time else raw_values(self._table, column)
+
+    def text(self, column: int) -> list[str]:
+        """Return the values of a column as text."""
+        if column == self._time:
+            return list(map(repr, self.numbers([column])[0].tolist()))
+        return self._table.text(column)
+
+    def first_cell(self, column: int) -> str:
+        """Return the first cell of a column as it stands in the file."""
+        return first_cell(self._table, column)
+
+    def place(self, column: int, row: int) -> str:
+        """Return where a cell is."""
+        return self._table.place(column, row)
