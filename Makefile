@@ -113,6 +113,7 @@ study: .venv/.installed .venv/.bench-tools  ## accuracy over many seeds; by hand
 	@$(BIN)/python benchmarks/causes_study.py --joints 100 --output docs/causes.md
 	@$(BIN)/python benchmarks/causes_study.py --joints 30 --seed 7001 --size .1 --output docs/causes.md --append
 	@$(BIN)/python benchmarks/robot_study.py --hour --output docs/robot_accuracy.md
+	@$(BIN)/python benchmarks/robot_faults.py --output docs/robot_faults.md
 
 bench: .venv/.installed .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)

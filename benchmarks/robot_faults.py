@@ -1,0 +1,199 @@
+"""Random arms, each with one random fault that the call does not know, and clean ones. Writes docs/robot_faults.md.
+
+python benchmarks/robot_faults.py [--faulty 100] [--clean 50] [--only FAULT] [--logs FOLDER] [--output FILE]
+"""
+
+from __future__ import annotations
+
+import argparse
+import pickle
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from arms.log_faults import FAULTS, FaultyLog, faulty_log
+
+import jointid as jid
+
+_WRONG = 0.05  # of a value, outside its interval
+_SHOWN = 14  # cases that are listed one by one
+_NAMED = {  # codes of findings that name the fault
+    "signs": {
+        *("reversed_torques", "reversed_positions"),
+        *("wrong_sign", "wrong_torque_sign", "wrong_motion_sign"),
+    },
+    "factors": {
+        *("scaled_torques", "different_factors", "wrong_torque_scale"),
+        *("implausible_unit", "unsigned_torque"),
+    },
+    "order": {"swapped_joints", "swapped_torques", "joint_order"},
+    "lag": {"delay_removed", "signal_lag", "lag"},
+    "load": {"load_friction"},
+    "smooth": {"rise", "smooth_friction"},
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What a call says, and whether it is so."""
+
+    fault: str
+    detail: str
+    seed: int
+    level: str  # of the verdict; "refused" for an error
+    worst: float  # error of Coulomb or viscous friction outside its interval, the largest
+    codes: tuple[str, ...]  # of all findings, the most severe first
+    seconds: float  # of the processor
+
+    @property
+    def kind(self) -> str:
+        """How it ends."""
+        if self.level in ("refused", "not usable"):
+            return "refused"
+        if self.level == "usable with care":
+            return "doubted"
+        return "wrong" if self.worst > _WRONG else "right"
+
+    @property
+    def is_named(self) -> bool:
+        """Whether a finding names the fault."""
+        return bool(_NAMED.get(self.fault, set()) & set(self.codes))
+
+
+def outcome(log: FaultyLog, seed: int) -> Outcome:
+    """Identify the log by the plain call."""
+    began = time.process_time()
+    codes: tuple[str, ...]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "arm.urdf"
+        path.write_text(log.arm.urdf, encoding="utf-8")
+        try:
+            found = jid.identify(log.recording, jid.Robot.from_urdf(path))
+        except jid.InputError as error:
+            level, worst, codes = "refused", 0.0, (f"error: {error.reason}",)
+        else:
+            level, worst = found.verdict.level, _worst(log, found)
+            codes = tuple(each.code for each in found.findings)
+    return Outcome(
+        fault=log.fault,
+        detail=log.detail,
+        seed=seed,
+        level=level,
+        worst=worst,
+        codes=codes,
+        seconds=time.process_time() - began,
+    )
+
+
+def _worst(log: FaultyLog, found: jid.RobotEstimate) -> float:
+    worst = 0.0
+    for place, joint in enumerate(found.joints.values()):
+        for name, true in (("coulomb", log.arm.coulomb), ("viscous", log.arm.viscous)):
+            p = joint.parameters[name]
+            low, high = p.interval or (p.value, p.value)
+            if not low <= true[place] <= high:
+                worst = max(worst, abs(p.value / float(true[place]) - 1.0))
+    return worst
+
+
+def cases(faulty: int, clean: int, only: str) -> Iterator[tuple[int, str]]:
+    """Seed and fault of each log: the faults in turn."""
+    every = [(seed, FAULTS[seed % len(FAULTS)]) for seed in range(faulty)]
+    every += [(10_000 + seed, "clean") for seed in range(clean)]
+    yield from (each for each in every if only in each[1])
+
+
+def log_of(seed: int, fault: str, folder: Path | None) -> FaultyLog:
+    """The log; kept in the folder, if there is one."""
+    if folder is None:
+        return faulty_log(seed, fault)
+    path = folder / f"{fault}-{seed}.pickle"
+    if not path.is_file():
+        folder.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(pickle.dumps(faulty_log(seed, fault)))
+    kept = pickle.loads(path.read_bytes())
+    assert isinstance(kept, FaultyLog)
+    return kept
+
+
+def table(found: Sequence[Outcome]) -> Iterator[str]:
+    """Yield one row a fault, then the cases that end wrong."""
+    kinds = ("wrong", "refused", "doubted", "right")
+    yield "| fault | arms | usable and wrong | refused | with care | usable and right | named | seconds |"
+    yield "|---|--:|--:|--:|--:|--:|--:|--:|"
+    for fault in dict.fromkeys(each.fault for each in found):
+        mine = [each for each in found if each.fault == fault]
+        counts = [sum(each.kind == kind for each in mine) for kind in kinds]
+        seconds = float(np.median([each.seconds for each in mine]))
+        named = sum(each.is_named for each in mine) if fault in _NAMED else "–"
+        cells = (fault, len(mine), *counts, named, f"{seconds:.1f}")
+        yield f"| {' | '.join(map(str, cells))} |"
+    bad = [
+        each
+        for each in found
+        if each.kind == "wrong" or (each.fault == "clean" and each.level != "usable")
+    ]
+    if bad:
+        yield ""
+        yield "Usable and wrong, and clean ones that are doubted:"
+        yield ""
+        for each in bad[:_SHOWN]:
+            yield f"- {line(each)}"
+
+
+def line(each: Outcome) -> str:
+    """One case."""
+    codes = ", ".join(dict.fromkeys(each.codes)) or "no warning"
+    detail = f" ({each.detail})" if each.detail else ""
+    return (
+        f"{each.fault} {each.seed}{detail}: {each.level}, "
+        f"outside its interval by {100.0 * each.worst:.1f} % at most; {codes}"
+    )
+
+
+def main() -> None:
+    """Run the study and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--faulty", type=int, default=100, help="arms with a fault")
+    parser.add_argument("--clean", type=int, default=50, help="arms without")
+    parser.add_argument("--only", default="", help="faults whose name contains this")
+    parser.add_argument("--logs", type=Path, help="a folder that keeps the simulated logs")
+    parser.add_argument("--output", type=Path, help="a file to write, besides printing")
+    given = parser.parse_args()
+    found = []
+    for seed, fault in cases(given.faulty, given.clean, given.only):
+        found.append(outcome(log_of(seed, fault, given.logs), seed))
+        print(f"{found[-1].kind:8} {found[-1].seconds:5.1f} s  {line(found[-1])}", flush=True)
+    text = "\n".join([_TEXT, "", *table(found)]) + "\n"
+    if given.output is None:
+        print(text)
+    else:
+        given.output.write_text(text, encoding="utf-8")
+
+
+_TEXT = """# Arms with one fault each
+
+Written by `benchmarks/robot_faults.py` (`make study`); do not edit. Random serial arms of three to seven joints,
+20 s; links, friction, rotors and motion are drawn. pinocchio has the dynamics; friction may hold any torque at
+standstill, and nothing of the package is in the simulation. Each log but the clean ones has one fault, and the plain
+call with the true URDF is not informed of it:
+
+- stamps: late, lost, both, or rounded
+- signs: of one joint or all, of torques, positions or both
+- factors: on all torques, on one, one gear ratio taken for all joints, degrees, or a torque without its sign
+- order: two or all joints exchanged, or only their torques
+- lag: a delay or a first-order lag of 4 to 30 ms on the torques
+- load: friction that grows with the torque of the links
+- smooth: Coulomb friction that rises as tanh of the speed
+- slow: 10 to 50 Hz
+
+Wrong: the verdict is "usable" although Coulomb or viscous friction of a joint is more than 5 % off and outside its
+95 % interval. Refused: "not usable", or an error. Named: a finding says what the fault is. Seconds are those of the
+processor, in the median."""
+
+
+if __name__ == "__main__":
+    main()
