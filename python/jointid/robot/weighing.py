@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.checks.torque_check import weight_factors
+from jointid.robot.checks.link_factors import weight_factors
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import plain_signals
 

@@ -7,7 +7,7 @@ fault makes every later finding a consequence, so that it is the only one.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
-from jointid.problem.magnitude import BETTER, CLEAR, is_magnitude, is_one_sided, without
+from jointid.problem.magnitude import BETTER, is_magnitude, is_one_sided, without
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.balance.inertia import InertiaColumns
-from jointid.robot.checks.plain_regression import Block, Columns
-from jointid.robot.checks.second_look import SETTINGS
-from jointid.robot.links.models import PLAIN
+from jointid.robot.checks.exchanged_columns import joint_order
+from jointid.robot.checks.link_factors import LinkFactor, link_factor, link_rows
+from jointid.robot.checks.plain_regression import Block
 from jointid.robot.links.parameters import CONSTANT
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import PlainSignals
@@ -30,28 +29,13 @@ Array = NDArray[np.float64]
 
 _FAR = 1.6  # a factor on all torques: no URDF is off by so much in the weight of all links
 _CERTAIN = 2.5  # a factor that no load or link makes, which the URDF does not know
-_SEEN = 0.15  # of what friction leaves, squared: what the links may leave to say a factor
-_NEAR = 0.03  # of it: another reading is not tried
+_OFF = 0.1  # of a logarithm: a joint's factor that differs from 1
+_NEAR = 0.03  # of a torque: another reading is not tried
 _LINK = 0.5  # of what one link's other weight would leave, squared: what a factor has to leave
 _BOTH = 0.2  # of the rows in each direction
 _RANGE = 2.0  # times the URDF's range: no joint moves so far
 _DEGREES = np.pi / 180.0
 _MOVES = 0.05  # [rad or m]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Factor:
-    """What one joint's rows say of its torque: its factor on the URDF's, and squared residuals over its torque."""
-
-    value: float
-    left: float  # residual with the factor
-    without: float  # residual without the links
-    given: float  # residual with a factor of 1
-
-    @property
-    def sure(self) -> bool:
-        """Whether the links explain enough to say it."""
-        return self.left < _SEEN * self.without and self.left < CLEAR**2
 
 
 def wrong_torques(
@@ -60,11 +44,11 @@ def wrong_torques(
     """Return the blocking finding of torques, or positions, that are not what they are taken for."""
     if not signals:
         return None
-    blocks = _blocks(signals, robot)
+    blocks = link_rows(signals, robot)
     found = _unsigned(recordings, robot, blocks)
     if found is not None or not blocks:
         return found
-    given = {joint: _factor(block) for joint, block in blocks.items()}
+    given = {joint: link_factor(block) for joint, block in blocks.items()}
     common = _common(given)
     if common is not None and not 1.0 / _FAR < common < _FAR:
         if max(abs(common), 1.0 / abs(common)) < _CERTAIN and common > 0.0:
@@ -75,8 +59,9 @@ def wrong_torques(
         if _fits(turned, given):
             return _reversed(robot, (_common(turned) or 1.0) < 0.0)
         return _scaled(robot, given, common)
-    if all(each.sure and each.left < _NEAR**2 for each in given.values()):
-        return None
+    several = _several(signals, robot, given)
+    if several is not None or all(each.sure and each.left < _NEAR**2 for each in given.values()):
+        return several
     if _far(signals, robot):
         return _in_degrees(signals, robot)
     for factor in (-1.0, _DEGREES):
@@ -85,33 +70,38 @@ def wrong_torques(
             if factor != -1.0:
                 return _in_degrees(signals, robot)
             return _reversed(robot, (_common(other) or 1.0) < 0.0)
-    return None
+    return joint_order(recordings, robot, given)
 
 
-def weight_factors(signals: Sequence[PlainSignals], robot: Robot) -> dict[int, float]:
-    """Return the factor of each joint's torque on what the URDF's links need, of those whose links explain it."""
-    factors = {joint: _factor(block) for joint, block in _blocks(signals, robot).items()}
-    return {joint: each.value for joint, each in factors.items() if each.sure}
-
-
-def _blocks(
-    signals: Sequence[PlainSignals], robot: Robot, directions: Array | None = None
-) -> dict[int, Block]:
-    """Rows with the links' torque as the last column, or further changes of their parameters behind it."""
-    weights = robot.tree.inertias.reshape(-1, 1)
-    every = weights if directions is None else np.hstack([weights, directions])
-    count = every.shape[1]
-    links = InertiaColumns(
-        names=tuple(f"links {number}" for number in range(count)),
-        units=("",) * count,
-        joints=(0,) * count,
-        directions=every,
-        given=np.zeros(weights.size),
-        start=np.ones(count),
+def _several(
+    signals: Sequence[PlainSignals], robot: Robot, given: Mapping[int, LinkFactor]
+) -> Finding | None:
+    """The finding of a factor for each joint, where several differ from 1 and explain what no link explains."""
+    sure = {joint: each for joint, each in given.items() if each.sure}
+    off = [
+        joint for joint, each in sure.items() if each.value < 0.0 or abs(np.log(each.value)) > _OFF
+    ]
+    if len(off) < 2 or 2 * len(sure) < robot.n:
+        return None
+    left, before = (sum(getattr(e, name) for e in sure.values()) for name in ("left", "given"))
+    if left > BETTER * before or left > _LINK * _otherwise(signals, robot):
+        return None
+    factors = {joint: sure[joint].value if joint in off else 1.0 for joint in range(robot.n)}
+    names = [robot.names[joint] for joint in off]
+    shown = ", ".join(f"{robot.names[joint]} {sure[joint].value:.3g}" for joint in off)
+    return TYPES["different_factors"].finding(
+        f"the torques of {listed(names)} have factors of their own against the URDF",
+        Action(
+            "call",
+            {"torque_scales": _scales(robot, factors)},
+            text="so that they weigh what the URDF says, until the factors are known",
+            function="Robot.from_urdf",
+        ),
+        details=f"{shown}: one gear ratio or torque constant was probably taken for all joints; with these factors the "
+        f"URDF leaves {percent(float(np.sqrt(left / len(sure))))} of the torques, without "
+        f"{percent(float(np.sqrt(before / len(sure))))}",
+        evidence={robot.names[joint]: Measured(sure[joint].value) for joint in off},
     )
-    other = replace(robot, rotor_inertias=(None,) * robot.n)
-    columns = Columns(other, links, np.zeros(robot.n), (PLAIN,) * robot.n)
-    return columns.blocks(signals, *SETTINGS[0], np.zeros((robot.n, 1)))
 
 
 def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
@@ -119,7 +109,7 @@ def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
     n = robot.n
     moments = [10 * link + k for link in range(n) for k in range(4)]
     links = np.kron(np.eye(n), np.ones((10, 1))) * robot.tree.inertias.reshape(-1, 1)
-    blocks = _blocks(signals, robot, np.hstack([links, np.eye(10 * n)[:, moments]]))
+    blocks = link_rows(signals, robot, np.hstack([links, np.eye(10 * n)[:, moments]]))
     rests = []
     for block in blocks.values():
         first = block.matrix.shape[1] - 5 * n - 1
@@ -135,30 +125,16 @@ def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
     return min(found)
 
 
-def _tried(signals: Sequence[PlainSignals], robot: Robot, factor: float) -> dict[int, _Factor]:
+def _tried(signals: Sequence[PlainSignals], robot: Robot, factor: float) -> dict[int, LinkFactor]:
     """The joints' factors if all positions were multiplied."""
     moved = [
         replace(each, position=factor * each.position, velocity=factor * each.velocity)
         for each in signals
     ]
-    return {joint: _factor(block) for joint, block in _blocks(moved, robot).items()}
+    return {joint: link_factor(block) for joint, block in link_rows(moved, robot).items()}
 
 
-def _factor(block: Block) -> _Factor:
-    target, links = block.targets[:, 0], block.matrix[:, -1]
-    power = float(target @ target) or 1.0
-    rest = without(block.matrix[:, :-1], np.column_stack([target, links]))
-    length = float(rest[:, 1] @ rest[:, 1])
-    seen = length > 1e-12 * max(float(links @ links), 1e-300)
-    value = float(rest[:, 0] @ rest[:, 1]) / length if seen else 0.0
-
-    def left(factor: float) -> float:
-        return float(np.sum((rest[:, 0] - factor * rest[:, 1]) ** 2)) / power
-
-    return _Factor(value=value, left=left(value), without=left(0.0), given=left(1.0))
-
-
-def _common(factors: Mapping[int, _Factor]) -> float | None:
+def _common(factors: Mapping[int, LinkFactor]) -> float | None:
     """The factor on which the joints that can say one agree; None where they do not, or none can."""
     sure = np.array([each.value for each in factors.values() if each.sure])
     if not sure.size or 2 * sure.size < len(factors) or not np.all(sure * sure[0] > 0.0):
@@ -170,7 +146,7 @@ def _common(factors: Mapping[int, _Factor]) -> float | None:
     return float(np.copysign(middle, sure[0]))
 
 
-def _fits(other: Mapping[int, _Factor], given: Mapping[int, _Factor]) -> bool:
+def _fits(other: Mapping[int, LinkFactor], given: Mapping[int, LinkFactor]) -> bool:
     """Whether the torques are the URDF's, by their size, with another reading of the positions, and only with it."""
     common = _common(other)
     if common is None or not 1.0 / _FAR < abs(common) < _FAR:
@@ -245,7 +221,7 @@ def _scales(robot: Robot, factors: Mapping[int, float]) -> list[float]:
     return [float(f"{old / factors[joint]:.3g}") for joint, old in enumerate(before)]
 
 
-def _scaled(robot: Robot, given: Mapping[int, _Factor], common: float) -> Finding:
+def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Finding:
     """The torques, multiplied by one factor or reversed, are those of the URDF's links."""
     if 1.0 / _FAR < abs(common) < _FAR:
         return TYPES["reversed_torques"].finding(

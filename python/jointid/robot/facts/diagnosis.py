@@ -22,6 +22,7 @@ from jointid.robot.facts.wrong_facts import WrongFact, wrong_fact
 from jointid.robot.fit.attempt import Attempt, Request, attempted
 from jointid.robot.links.parameters import LINEAR_FRICTION
 from jointid.robot.links.robot import Robot
+from jointid.robot.motion.column_order import reordered
 from jointid.robot.result.finding_types import TYPES, listed
 from jointid.robot.result.findings import doubtful_joints
 
@@ -139,7 +140,12 @@ def _without_fact(
     attempt: Attempt,
 ) -> _Corrected:
     other = replace(wrong.robot, zero_offsets=robot.zero_offsets)
-    runs = [_reordered(run, robot, wrong) for run in recordings]
+    runs = [
+        reordered(run, robot, wrong.order, wrong.torque_order)
+        if wrong.torque_order is not None
+        else run
+        for run in recordings
+    ]
     without = attempted(runs, other, request, attempt.delay)
     before, after = (_left(each) for each in (attempt, without))
     shown = int(np.argmax(before / after))
@@ -150,26 +156,6 @@ def _without_fact(
         robot=other,
         attempt=without,
     )
-
-
-def _reordered(recording: RobotRecording, robot: Robot, wrong: WrongFact) -> RobotRecording:
-    """A recording with its columns exchanged as they should be."""
-    if wrong.torque_order is None:
-        return recording
-    columns = np.array(robot.columns_of(recording))
-    fields = recording.fields()
-    orders = {
-        "position": wrong.order,
-        "velocity": wrong.order,
-        "torque": wrong.torque_order,
-        "motor_torque": wrong.torque_order,
-    }
-    for signal, order in orders.items():
-        if order is not None and fields.get(signal) is not None:
-            values = np.array(fields[signal])
-            values[:, columns] = values[:, columns[order]]
-            fields[signal] = values
-    return RobotRecording(**fields)
 
 
 def _misfit(attempt: Attempt) -> float:

@@ -22,6 +22,20 @@ TYPES = {
             advice="state the unit, the gear ratios or `torque_scales`",
         ),
         FindingType(
+            code="different_factors",
+            severity="blocking",
+            meaning="the torques of several joints, not of all alike, differ from the weight of the URDF's links, each "
+            "by a factor of its own: one gear ratio or torque constant was taken for all joints. No link with another "
+            "weight must explain it half as well",
+            advice="state `gear_ratios`, or `torque_scales`",
+        ),
+        FindingType(
+            code="joint_order",
+            severity="blocking",
+            meaning="the columns of three or more joints, or of their torques, are in another order than the robot's",
+            advice=_COLUMNS,
+        ),
+        FindingType(
             code="reversed_torques",
             severity="blocking",
             meaning="all torques have the opposite sign of what the URDF's links weigh",

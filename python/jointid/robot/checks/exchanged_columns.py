@@ -1,0 +1,167 @@
+"""Whether the joints' columns, or those of their torques, are in another order than the robot's."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.checks.link_factors import LinkFactor, link_factor, link_rows
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.column_order import reordered, sampled
+from jointid.robot.motion.plain_motion import plain_signals
+from jointid.robot.result.finding_types import TYPES, listed, titled
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+Order = tuple[int, ...]
+
+_SAMPLES = 1000  # of a recording, for each order that is tried
+_RECORDINGS = 2
+_LEAST = 1e-4  # of a squared torque: less does not decide between orders
+_CLEARLY = (
+    0.5  # of the logarithms of what is left, squared and summed: what an exchange has to gain
+)
+_WELL = 0.1  # of the torques, root mean square: what the right order may leave
+_BETTER = 0.1  # of what the given order leaves, squared
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Found:
+    order: Order
+    score: float
+    left: float  # of the squared torques, in the mean
+
+
+def joint_order(
+    recordings: Sequence[RobotRecording], robot: Robot, given: Mapping[int, LinkFactor]
+) -> Finding | None:
+    """Return the blocking finding of another order of all signals or of the torques, if it alone explains the torques.
+
+    `given` is what the joints' rows say as they are taken.
+    """
+    few = [sampled(run, _SAMPLES) for run in recordings[:_RECORDINGS]]
+    before = _left(given, robot.n)
+    torques = _climbed(robot.n, _score_of_torques(few, robot))
+    found = [("torques", torques)]
+    if not _explains(torques, before):
+        found.append(("joints", _climbed(robot.n, _score_of_joints(few, robot))))
+    for kind, each in found:
+        if _explains(each, before):
+            return _finding(kind, each, before, robot, recordings[0])
+    return None
+
+
+def _explains(found: _Found, before: float) -> bool:
+    moved = found.order != tuple(range(len(found.order)))
+    return moved and found.left < _WELL**2 and found.left < _BETTER * before
+
+
+def _climbed(n: int, score: Callable[[Order], tuple[float, float]]) -> _Found:
+    """The order that no exchange of two joints betters; it has as few exchanges as that takes."""
+    best = _made(tuple(range(n)), score)
+    while True:
+        pairs = itertools.combinations(range(n), 2)
+        tried = [_made(_exchanged(best.order, *pair), score) for pair in pairs]
+        other = min(tried, key=lambda each: each.score)
+        if other.score > best.score - _CLEARLY:
+            return best
+        best = other
+
+
+def _made(order: Order, score: Callable[[Order], tuple[float, float]]) -> _Found:
+    value, left = score(order)
+    return _Found(order=order, score=value, left=left)
+
+
+def _exchanged(order: Order, first: int, second: int) -> Order:
+    found = list(order)
+    found[first], found[second] = found[second], found[first]
+    return tuple(found)
+
+
+def _score_of_torques(
+    recordings: Sequence[RobotRecording], robot: Robot
+) -> Callable[[Order], tuple[float, float]]:
+    """Of an order of the torques alone: each joint's rows with each torque are made once."""
+    n = robot.n
+    table = np.ones((n, n))  # joint and torque
+    for turn in range(n):
+        order = np.roll(np.arange(n), turn)
+        for joint, each in _factors(recordings, robot, None, order).items():
+            table[joint, order[joint]] = each.given
+
+    def score(order: Order) -> tuple[float, float]:
+        left = table[np.arange(n), list(order)]
+        return float(np.log(np.maximum(left, _LEAST)).sum()), float(left.mean())
+
+    return score
+
+
+def _score_of_joints(
+    recordings: Sequence[RobotRecording], robot: Robot
+) -> Callable[[Order], tuple[float, float]]:
+    known: dict[Order, tuple[float, float]] = {}
+
+    def score(order: Order) -> tuple[float, float]:
+        if order not in known:
+            each = np.array(order)
+            factors = _factors(recordings, robot, each, each)
+            left = [factors[joint].given if joint in factors else 1.0 for joint in range(robot.n)]
+            logs = float(np.log(np.maximum(left, _LEAST)).sum())
+            known[order] = logs, float(np.mean(left))
+        return known[order]
+
+    return score
+
+
+def _factors(
+    recordings: Sequence[RobotRecording], robot: Robot, order: Whole | None, torque_order: Whole
+) -> dict[int, LinkFactor]:
+    runs = [reordered(run, robot, order, torque_order) for run in recordings]
+    rows = link_rows(plain_signals(runs, robot), robot)
+    return {joint: link_factor(block) for joint, block in rows.items()}
+
+
+def _left(factors: Mapping[int, LinkFactor], n: int) -> float:
+    return float(np.mean([factors[joint].given if joint in factors else 1.0 for joint in range(n)]))
+
+
+def _finding(
+    kind: str, found: _Found, before: float, robot: Robot, recording: RobotRecording
+) -> Finding:
+    columns = robot.columns_of(recording)
+    own = [recording.names[columns[place]] for place in range(robot.n)]
+    right = [own[place] for place in found.order]
+    moved = [robot.names[j] for j in range(robot.n) if found.order[j] != j]
+    is_named = set(own) & set(robot.names)
+    advice = Action("inspect", text="the order and names of the columns")
+    if kind == "joints" and not is_named:
+        advice = Action("call", {"joints": right}, function="load_robot")
+    code = {"torques": "swapped_torques", "joints": "swapped_joints"}[kind]
+    if len(moved) > 2:
+        code = "joint_order"
+    what = "columns" if kind == "joints" else "torques"
+    title = (
+        f"the {what} of {listed(moved)} are exchanged"
+        if len(moved) == 2
+        else f"the {what} of {len(moved)} joints are in another order"
+    )
+    was, after = percent(float(np.sqrt(before))), percent(float(np.sqrt(found.left)))
+    pairs = zip(robot.names, right, strict=True)
+    return TYPES[code].finding(
+        titled(title, f"{was} unexplained, corrected {after}"),
+        advice,
+        details="; ".join(
+            f"{name} is in the {what} of {column}" for name, column in pairs if name in moved
+        ),
+        severity="blocking",
+        evidence={"before": Measured(np.sqrt(before)), "after": Measured(np.sqrt(found.left))},
+    )

@@ -1,0 +1,41 @@
+"""A robot's recording with its columns exchanged."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.links.robot import Robot
+
+Whole = NDArray[np.int64]
+
+
+def reordered(
+    recording: RobotRecording, robot: Robot, order: Whole | None, torque_order: Whole | None
+) -> RobotRecording:
+    """Return a recording in which each joint has the columns that `order` says; None leaves them."""
+    columns = np.array(robot.columns_of(recording))
+    fields = recording.fields()
+    orders = {
+        "position": order,
+        "velocity": order,
+        "torque": torque_order,
+        "motor_torque": torque_order,
+    }
+    for signal, each in orders.items():
+        if each is not None and fields.get(signal) is not None:
+            values = np.array(fields[signal])
+            values[:, columns] = values[:, columns[each]]
+            fields[signal] = values
+    return RobotRecording(**fields)
+
+
+def sampled(recording: RobotRecording, count: int) -> RobotRecording:
+    """Return about so many of a recording's samples, evenly spread."""
+    every = max(1, recording.samples // count)
+    fields = recording.fields()
+    for signal, values in fields.items():
+        if isinstance(values, np.ndarray) and len(values) == recording.samples:
+            fields[signal] = values[::every]
+    return RobotRecording(**fields)

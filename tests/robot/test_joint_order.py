@@ -1,0 +1,142 @@
+"""Columns in another order, and one gear ratio taken for all joints, are the one finding, with the order or factors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from simulated_arm import JOINTS, URDF
+
+import jointid as jid
+from jointid.robot import identifying
+from jointid.robot.links.inertia_modes import Inertia
+
+pinocchio = pytest.importorskip("pinocchio")
+
+Array = NDArray[np.float64]
+NAMES = tuple(f"joint_{number}" for number in range(1, JOINTS + 1))
+
+
+@pytest.fixture(name="run", scope="module")
+def _run() -> jid.RobotRecording:
+    """Exact torques along sines, with friction, rotors and noise."""
+    rng = np.random.default_rng(5)
+    model = pinocchio.buildModelFromUrdf(str(URDF))
+    state, time = model.createData(), np.arange(0.0, 12.0, 4e-3)
+    rates = rng.uniform(0.6, 5.0, (JOINTS, 4))
+    sizes = rng.uniform(0.3, 0.8, (JOINTS, 4)) / rates
+    angle = rates[:, :, None] * time + rng.uniform(0.0, 6.0, (JOINTS, 4, 1))
+    q, v, a = (
+        np.einsum("jk,jkn->nj", sizes * rates**order, wave)
+        for order, wave in enumerate((np.sin(angle), np.cos(angle), -np.sin(angle)))
+    )
+    links = np.array([pinocchio.rnea(model, state, *each) for each in zip(q, v, a, strict=True)])
+    coulomb, viscous, rotor = (size * np.geomspace(8.0, 2.0, JOINTS) for size in (1.0, 1.2, 0.1))
+    torque = links + rotor * a + coulomb * np.sign(v) + viscous * v
+    torque += rng.normal(0.0, 0.02, torque.shape)
+    return jid.RobotRecording(time=time, position=q, torque=torque, names=NAMES)
+
+
+def changed(run: jid.RobotRecording, **signals: Any) -> jid.RobotRecording:
+    return jid.RobotRecording(**{**run.fields(), **signals})
+
+
+def in_order(run: jid.RobotRecording, order: list[int], *signals: str) -> jid.RobotRecording:
+    fields = run.fields()
+    return changed(run, **{name: np.array(fields[name])[:, order] for name in signals})
+
+
+def only(found: jid.RobotEstimate, code: str) -> Any:
+    assert [(each.code, each.severity) for each in found.warnings] == [(code, "blocking")]
+    assert found.verdict.level == "not usable"
+    return found.warnings[0]
+
+
+@pytest.mark.parametrize("inertia", ["urdf", "free"])
+@pytest.mark.parametrize(
+    ("order", "code"),
+    [
+        ([1, 0, 2, 3, 4, 5, 6], "swapped_torques"),
+        ([0, 3, 1, 2, 4, 5, 6], "joint_order"),
+        ([6, 5, 4, 3, 2, 1, 0], "joint_order"),
+        ([2, 1, 0, 3, 4, 6, 5], "joint_order"),
+    ],
+)
+def test_torques_in_another_order_are_named(
+    run: jid.RobotRecording,
+    order: list[int],
+    code: str,
+    inertia: Inertia,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def tried(*_: object) -> None:
+        raise AssertionError("a delay or a fact was tried")
+
+    for name in ("aligned", "diagnosed"):
+        monkeypatch.setattr(identifying, name, tried)
+    found = jid.identify(in_order(run, order, "torque"), jid.Robot.from_urdf(URDF), inertia=inertia)
+    details = only(found, code).details
+    for place, column in enumerate(order):
+        said = f"{NAMES[column]} is in the torques of {NAMES[place]}"
+        assert (said in details) == (place != column)
+
+
+@pytest.mark.parametrize(
+    ("order", "code"),
+    [
+        ([0, 2, 1, 3, 4, 5, 6], "swapped_joints"),
+        ([2, 1, 0, 3, 4, 5, 6], "swapped_joints"),
+        ([2, 0, 1, 3, 4, 5, 6], "joint_order"),
+    ],
+)
+def test_joints_in_another_order_are_named_with_the_call(
+    run: jid.RobotRecording, order: list[int], code: str
+) -> None:
+    wrong = in_order(run, order, "position", "torque")
+    wrong = changed(wrong, names=[f"axis {'abcdefg'[each]}" for each in order])
+    said = only(jid.identify(wrong, jid.Robot.from_urdf(URDF)), code)
+    (advice,) = said.advice
+    assert advice.function == "load_robot"
+    assert advice.arguments["joints"] == [f"axis {each}" for each in "abcdefg"]
+
+
+@pytest.mark.parametrize("inertia", ["urdf", "free"])
+@pytest.mark.parametrize(
+    "factors",
+    [
+        [1.0, 1.0, 1.25, 1.25, 1.6, 1.6, 1.6],
+        [1.0, 0.8, 0.5, 0.5, 0.7, 0.6, 0.6],
+        [1.0, 1.0, 1.0, 0.6, 1.0, 1.9, 1.0],
+        [1.0, -1.0, -0.7, 1.0, 1.0, 1.0, 1.0],
+    ],
+)
+def test_one_gear_ratio_taken_for_all_is_named_with_the_factors(
+    run: jid.RobotRecording, factors: list[float], inertia: Inertia
+) -> None:
+    wrong = changed(run, torque=np.asarray(run.torque) * factors)
+    found = jid.identify(wrong, jid.Robot.from_urdf(URDF), inertia=inertia)
+    (advice,) = only(found, "different_factors").advice
+    assert advice.function == "Robot.from_urdf"
+    np.testing.assert_allclose(advice.arguments["torque_scales"], 1.0 / np.array(factors), rtol=0.1)
+    cured = jid.identify(wrong, jid.Robot.from_urdf(URDF, **advice.arguments), inertia=inertia)
+    assert "different_factors" not in {each.code for each in cured.findings}
+
+
+@pytest.mark.parametrize("link", [2, 5])
+def test_a_heavier_link_is_no_factor(run: jid.RobotRecording, link: int) -> None:
+    """All joints below it carry it: their torques seem too large, each by a share of its own."""
+    model = pinocchio.buildModelFromUrdf(str(URDF))
+    state, other = model.createData(), pinocchio.Model(model)
+    was = model.inertias[link]
+    other.inertias[link] = pinocchio.Inertia(2.0 * was.mass, was.lever, 2.0 * was.inertia)
+    slope = np.gradient(run.position, run.time, axis=0)
+    rows = [run.position, slope, np.gradient(slope, run.time, axis=0)]
+    more = [
+        pinocchio.rnea(other, state, *row) - pinocchio.rnea(model, state, *row)
+        for row in zip(*rows, strict=True)
+    ]
+    heavier = changed(run, torque=np.asarray(run.torque) + np.array(more))
+    found = jid.identify(heavier, jid.Robot.from_urdf(URDF))
+    assert "different_factors" not in {each.code for each in found.findings}
