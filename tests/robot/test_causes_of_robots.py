@@ -91,6 +91,27 @@ def test_what_is_half_explained_is_no_longer_listed(
     assert codes == {"drift", *(["unexamined_causes"] if listed else [])}
 
 
+@pytest.mark.parametrize(
+    ("shares", "listed"), [((0.6,), False), ((0.3, 0.4), False), ((0.2, 0.3), True)]
+)
+def test_what_harmless_causes_explain_is_not_listed(
+    path: Path,
+    robot: jid.Robot,
+    monkeypatch: pytest.MonkeyPatch,
+    shares: tuple[float, ...],
+    listed: bool,
+) -> None:
+    causes = tuple(
+        Cause(name="disturbance", share=share, scale=0.1, harmful=False) for share in shares
+    )
+    found = Causes(found=(), harmless=causes)
+    monkeypatch.setattr(unexamined_causes, "causes_of_joint", lambda *_: found)
+    run = small_arm.recording(path, static=0.5)
+    estimate = jid.identify_robot(run, robot, model="coulomb_viscous")
+    codes = {each.code for each in estimate.warnings}
+    assert codes == ({"unexamined_causes"} if listed else set())
+
+
 def test_a_joint_that_stands_in_the_excerpts_has_no_causes(path: Path, robot: jid.Robot) -> None:
     request = Request(
         inertia="urdf",

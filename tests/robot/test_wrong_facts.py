@@ -236,3 +236,47 @@ def test_factors_that_cannot_be_are_refused(options: dict[str, list[float]]) -> 
     with pytest.raises(jid.InputError) as refused:
         jid.Robot.from_urdf(URDF, **options)  # type: ignore[arg-type]
     assert refused.value.argument == next(iter(options))
+
+
+@pytest.mark.parametrize(
+    ("stated", "right"),
+    [
+        ([0.0, 0.0], [0.0, np.pi]),
+        ([0.2, -0.5 * np.pi], [0.2, 0.0]),
+        ([0.0, 0.5], [-np.pi / 2, 0.5]),
+    ],
+)
+def test_stated_zeros_that_are_quarter_turns_off_are_named(
+    tmp_path: Path, stated: list[float], right: list[float]
+) -> None:
+    urdf = small_arm.urdf(tmp_path)
+    run = small_arm.recording(urdf)
+    fields = run.fields()
+    fields["position"] = np.asarray(run.position) - right
+    recording = jid.RobotRecording(**fields)
+    said = identified(recording, urdf=urdf, zero_offsets=stated).warnings[0]
+    assert said.code == "wrong_zero"
+    assert "stated zeros are off" in said.title
+    (advice,) = said.advice
+    found = np.array(advice.arguments["zero_offsets"])
+    np.testing.assert_allclose(np.cos(found - right), 1.0, atol=1e-6)
+    assert identified(recording, urdf=urdf, **advice.arguments).warnings == ()
+
+
+@pytest.mark.parametrize(("stiffness", "phase"), [(25.0, 0.3), (12.0, 1.0), (40.0, -0.6)])
+def test_no_component_without_information_is_printed(
+    tmp_path: Path, stiffness: float, phase: float
+) -> None:
+    """A counterweight on the shoulder: the axis that it turns about is no direction that motion shows."""
+    urdf = small_arm.urdf(tmp_path)
+    run = small_arm.recording(urdf)
+    fields = run.fields()
+    torque = np.array(run.torque)
+    torque[:, 0] += stiffness * np.sin(run.position[:, 0] + phase)
+    fields["torque"] = torque
+    found = identified(jid.RobotRecording(**fields), urdf=urdf)
+    centres = [each for each in found.findings if each.code in ("wrong_centre", "payload")]
+    assert centres
+    for each in centres:
+        assert "y" not in each.evidence
+        assert "no motion shows y" in each.details or " y " not in each.details

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 _SEEN = 0.15  # of what friction leaves, squared: what the links may leave to say a factor
 
+_WORSE = 1.2  # of what friction leaves, squared: with more a factor is not this joint's
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkFactor:
@@ -34,6 +36,11 @@ class LinkFactor:
     def sure(self) -> bool:
         """Whether the links explain enough to say it."""
         return self.left < _SEEN * self.without and self.left < CLEAR**2
+
+    def contradicts(self, factor: float) -> bool:
+        """Whether these rows are worse with a factor than without the links."""
+        curvature = (self.without - self.left) / self.value**2 if self.value else 0.0
+        return self.left + (factor - self.value) ** 2 * curvature > _WORSE * self.without
 
 
 def link_rows(

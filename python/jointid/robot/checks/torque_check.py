@@ -143,7 +143,10 @@ def _common(factors: Mapping[int, LinkFactor]) -> float | None:
     spread = float(np.abs(sure).max() / np.abs(sure).min())
     if spread > max(middle, 1.0 / middle, _FAR):  # a link or a load that the URDF does not know
         return None
-    return float(np.copysign(middle, sure[0]))
+    common = float(np.copysign(middle, sure[0]))
+    if any(each.contradicts(common) for each in factors.values() if not each.sure):
+        return None
+    return common
 
 
 def _fits(other: Mapping[int, LinkFactor], given: Mapping[int, LinkFactor]) -> bool:

@@ -17,9 +17,10 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.facts.error_candidates import ZERO, SmallError, refined, small_errors
-from jointid.robot.facts.naming import named_error, named_fact
+from jointid.robot.facts.naming import named_error, named_fact, stated_zeros
 from jointid.robot.facts.wrong_facts import WrongFact, wrong_fact
 from jointid.robot.fit.attempt import Attempt, Request, attempted
+from jointid.robot.fit.zeros import zeros_of
 from jointid.robot.links.parameters import LINEAR_FRICTION
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.column_order import reordered
@@ -64,8 +65,9 @@ def diagnosed(
     """
     causes: list[Finding] = []
     last = attempt
-    for _ in range(_MOST):
-        found = _corrected(recordings, robot, request, last)
+    for turn in range(_MOST):
+        turned = _with_turned_zeros(recordings, robot, request, last) if turn == 0 else None
+        found = turned or _corrected(recordings, robot, request, last)
         if found is None:
             break
         causes.append(found.finding)
@@ -79,6 +81,25 @@ def diagnosed(
     gone = [each for each in attempt.estimate.warnings if _key(each, attempt) not in left]
     every = [*causes, *_summary(causes, gone, attempt, last), *stay]
     return Diagnosis(findings=tuple(every), recordings=recordings, corrected=last)
+
+
+def _with_turned_zeros(
+    recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
+) -> _Corrected | None:
+    """The identification with other zeros than the stated ones, where quarter turns explain what these do not."""
+    if robot.zero_offsets is None or not doubtful_joints(attempt.estimate):
+        return None
+    zeros = zeros_of(attempt.robot, list(attempt.excerpts.values()), attempt.duration)
+    if not zeros.found:
+        return None
+    right = np.array(robot.zero_offsets) + zeros.offsets
+    other = replace(robot, zero_offsets=tuple(right.tolist()))
+    return _Corrected(
+        finding=stated_zeros(zeros, other),
+        recordings=recordings,
+        robot=other,
+        attempt=attempted(recordings, other, request, attempt.delay),
+    )
 
 
 def _corrected(

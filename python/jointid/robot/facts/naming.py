@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
@@ -24,6 +25,8 @@ from jointid.robot.links.inertia_modes import FREE, SCALED
 from jointid.robot.links.robot import Robot
 from jointid.robot.result.finding_types import TYPES, listed, titled
 
+Array = NDArray[np.float64]
+
 
 def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
     """The finding that the recording counts from another pose than the URDF."""
@@ -42,6 +45,22 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
         ),
         details=f"the offsets are {', '.join(turned)} and are taken into account; the URDF's inertias leave "
         f"{percent(zeros.before)} of the torque unexplained without them, {percent(zeros.after)} with them",
+        evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
+    )
+
+
+def stated_zeros(zeros: Zeros, robot: Robot) -> Finding:
+    """The finding that stated zeros are off by quarter turns; the robot has the right ones."""
+    turned = [
+        f"{name} by {np.rad2deg(angle):+.0f}°"
+        for name, angle in zip(robot.names, zeros.offsets, strict=True)
+        if angle
+    ]
+    return TYPES[ZERO].finding(
+        titled("stated zeros are off", listed(turned)),
+        _call({"zero_offsets": [round(each, 6) for each in robot.zero_offsets or ()]}),
+        details=f"{', '.join(turned)}; the URDF's inertias leave {percent(zeros.before)} of the torque unexplained as "
+        f"stated, {percent(zeros.after)} with the other zeros",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
@@ -170,21 +189,26 @@ def _link(error: SmallError, name: str) -> _Worded:
 def _centre(error: SmallError, name: str) -> _Worded:
     mass = float(error.robot.tree.inertias[error.joint or 0, 0])
     offset = 1e3 * error.values / mass if mass else error.values
-    shown = ", ".join(f"{each:.0f}" for each in offset)
+    seen = _seen(error.values, error.errors)
+    shown = ", ".join(f"{axis} {offset[place]:.0f}" for axis, place in seen.items())
+    free = [axis for axis in "xyz" if axis not in seen]
     return (
-        f"the centre of mass of the link that {name} moves is off by ({shown}) mm",
-        "x, y and z in the link's frame, from where the URDF has it",
-        {axis: Measured(float(each) * 1e-3, "m") for axis, each in zip("xyz", offset, strict=True)},
+        f"the centre of mass of the link that {name} moves is off by {shown} mm",
+        "in the link's frame, from where the URDF has it"
+        + (f"; no motion shows {' and '.join(free)}" if free else ""),
+        {axis: Measured(float(offset[place]) * 1e-3, "m") for axis, place in seen.items()},
         _freed(),
     )
 
 
 def _carried(error: SmallError, name: str) -> _Worded:
     mass, spread = float(error.values[0]), float(error.errors[0])
-    place = ", ".join(f"{each:.2f}" for each in error.values[1:] / mass)
+    centre = error.values[1:] / mass
+    seen = _seen(error.values[1:], error.errors[1:])
+    place = ", ".join(f"{axis} {centre[number]:.2f}" for axis, number in seen.items())
     return (
         f"the link that {name} moves carries {_with_error(mass, spread)} kg that is not in the URDF",
-        f"at ({place}) m in the link's frame",
+        f"at {place} m in the link's frame" if seen else "no motion shows where",
         {"mass": Measured(mass, "kg"), "mass_error": Measured(spread, "kg")},
         _freed(),
     )
@@ -198,6 +222,13 @@ _WORDED = {
     CENTRE: _centre,
     PAYLOAD: _carried,
 }
+
+
+def _seen(values: Array, errors: Array) -> dict[str, int]:
+    """Places of the components of which the motion says something: their errors are smaller than all of them."""
+    size = float(np.linalg.norm(values[np.isfinite(errors)]))
+    clear = np.isfinite(errors) & (errors < size)
+    return {axis: place for place, axis in enumerate("xyz") if clear[place]}
 
 
 def _with_error(value: float, error: float) -> str:

@@ -25,7 +25,7 @@ _FAR = 6.0  # times the median: a window says no more
 _SURE = 4.5  # standard errors of an autocorrelation
 _MATTERS = 0.005  # of the torque: the part of the residual that is no noise
 _EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
-_MOST_LEFT = 0.5  # of a joint's misfit, by the causes that were found
+_MOST_LEFT = 0.5  # of a joint's misfit, by the causes that were found, harmless ones too
 _MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
 
 
@@ -49,7 +49,8 @@ def misfit_findings(
         causes = causes_of_joint(corrected, name) if left[name] else Causes(found=())
         for cause in causes.found:
             yield cause_finding(cause, name, _all_of(estimate, name))
-        if math.prod(1.0 - cause.share for cause in causes.found) < _MOST_LEFT:
+        known = (*causes.found, *causes.harmless)
+        if math.prod(1.0 - cause.share for cause in known) < _MOST_LEFT:
             concerned.remove(name)
         notes += [f"{name}: {cause}" for cause in causes.harmless]
     if concerned:

@@ -27,6 +27,8 @@ _BETTER = (
 _BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
 _CLEARLY = 0.05  # by which it has to be better than the next
 _LEAST = 0.01  # of a motor's torque: less residual does not decide
+_BLOCKS = 20  # of the windows
+_SURE = 3.0  # standard errors, over the blocks, by which another fact has to be better
 _SLOW = 0.02  # of a peak speed: standing still, for a quick fit
 
 
@@ -89,6 +91,8 @@ def wrong_fact(
             # Free inertias may end far off where another fact is wrong; that is no merit of the coupling.
             before = np.minimum(before, _relative(plain, other)[0])
         fall = float(np.log(before / after).sum())
+        if not _is_certain(was, other):
+            continue
         if mode == FREE and other.held > was.held and fall < _BETTER:
             continue  # friction that takes no power away, and a balance that hardly says otherwise
         falls.append((fall, trial, before, after))
@@ -152,6 +156,20 @@ def _relative(given: _MotorFit, other: _MotorFit) -> tuple[Array, Array]:
         left, size = (np.linalg.norm(np.where(common, each, 0.0), axis=1) for each in both)
         found.append(np.maximum(left / np.where(size > 0.0, size, 1.0), _LEAST))
     return found[0], found[1]
+
+
+def _is_certain(given: _MotorFit, other: _MotorFit) -> bool:
+    """Whether another fact is better by three standard errors, over blocks, of the fall that is to be reached."""
+    common = np.isfinite(given.residual) & np.isfinite(other.residual)
+    size = np.linalg.norm(np.where(common, given.torque, 0.0), axis=1, keepdims=True)
+    logs = []
+    for fit in (given, other):
+        left = np.where(common, fit.residual, 0.0) / np.where(size > 0.0, size, 1.0)
+        used = (left**2)[:, common.any(axis=0)]
+        sums = np.array([part.sum(axis=1) for part in np.array_split(used, _BLOCKS, axis=1)])
+        logs.append(np.log(np.maximum(sums, _LEAST**2 / _BLOCKS)).sum(axis=1))
+    falls = logs[0] - logs[1]
+    return bool(falls.mean() > _SURE * falls.std(ddof=1) / np.sqrt(falls.size))
 
 
 def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator[_Trial]:

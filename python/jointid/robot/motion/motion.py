@@ -25,8 +25,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _UNKNOWNS = 6  # of a joint's balance, for the length of its windows
-_UNSEEN = 0.015  # [s]: between samples further apart, a reversal is left out
 _STILL = 8.0  # standard deviations that the velocity of a short standstill reaches, smoothed with the motion beside it
+_COARSE = 0.015  # [s], between samples: what a reversal blurs matters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -102,10 +102,10 @@ class Motion:
         for k in np.flatnonzero(robot.coupled):
             of_motors[k] = masked.moving(masked.core(own[0][k], own[1][k], torque[k], min_speed[k]))
         if mask_standstill:
-            coarse = np.diff(recording.time) > _UNSEEN
-            of_joints &= _fast(velocity, noise, coarse)
-            of_motors &= _fast(own[1], own_noise, coarse)
-        if mask_standstill and robot.drive is not None:
+            of_joints &= _fast(velocity, noise)
+            of_motors &= _fast(own[1], own_noise)
+        coarse = float(np.median(np.diff(recording.time))) > _COARSE
+        if mask_standstill and (coarse or robot.drive is not None):
             of_joints = away_from_reversals(of_joints, velocity)
             of_motors = away_from_reversals(of_motors, own[1])
         return cls(
@@ -136,14 +136,10 @@ class Motion:
         return np.array(late)
 
 
-def _fast(velocity: Array, noise: Array, coarse: Flags) -> Flags:
-    """Intervals that are certainly no short standstill, which noise hides, and no reversal in a coarse interval.
-
-    Friction has any value there; the torque's jump at a reversal between two samples far apart is not seen.
-    """
+def _fast(velocity: Array, noise: Array) -> Flags:
+    """Intervals that are certainly no short standstill, which noise hides; friction has any value there."""
     fast = np.abs(velocity) >= _STILL * noise
-    reversal = velocity[:, 1:] * velocity[:, :-1] < 0.0
-    return np.asarray(fast[:, 1:] & fast[:, :-1] & ~(reversal & coarse))
+    return np.asarray(fast[:, 1:] & fast[:, :-1])
 
 
 def recorded_velocity(recording: RobotRecording, robot: Robot, at_motor: bool) -> Array | None:
