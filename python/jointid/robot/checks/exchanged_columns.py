@@ -29,7 +29,7 @@ _LEAST = 1e-4  # of a squared torque: less does not decide between orders
 _CLEARLY = (
     0.5  # of the logarithms of what is left, squared and summed: what an exchange has to gain
 )
-_WELL = 0.1  # of the torques, root mean square: what the right order may leave
+_WELL = 0.1  # of the torques, root mean square: what the right order may leave, and a wrong one does not
 _BETTER = 0.1  # of what the given order leaves, squared
 
 
@@ -47,8 +47,10 @@ def joint_order(
 
     `given` is what the joints' rows say as they are taken.
     """
-    few = [sampled(run, _SAMPLES) for run in recordings[:_RECORDINGS]]
     before = _left(given, robot.n)
+    if before < _WELL**2:
+        return None
+    few = [sampled(run, _SAMPLES) for run in recordings[:_RECORDINGS]]
     torques = _climbed(robot.n, _score_of_torques(few, robot))
     found = [("torques", torques)]
     if not _explains(torques, before):

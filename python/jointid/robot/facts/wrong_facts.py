@@ -176,7 +176,8 @@ def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator
     n = robot.n
     for i in range(n):
         for j in range(i + 1, n):
-            if suspects & {i, j}:
+            # What fits well is not exchanged.
+            if suspects >= {i, j} or (len(suspects) == 1 and suspects & {i, j}):
                 order = np.arange(n)
                 order[[i, j]] = j, i
                 both = [_remade(each, robot, order=order, torque=order) for each in motions]
@@ -210,6 +211,8 @@ def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator
         moved = [_remade(each, robot, torque_sign=sign) for each in turned]
         other = replace(robot, directions=directions, torque_scales=scales)
         yield _Trial(kind="wrong_motion_sign", joints=(i,), robot=other, motions=moved)
+    if not (motions[0].at_motor or robot.coupled.any()):
+        return  # joints' own torques and positions: what a motor turns with does not show
     for i, j in np.argwhere(robot.couplings - np.diag(np.diag(robot.couplings))).tolist():
         matrix = robot.couplings.copy()
         matrix[i, j], matrix[j, i] = 0.0, matrix[i, j]

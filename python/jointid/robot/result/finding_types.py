@@ -70,17 +70,20 @@ TYPES = {
         ),
         FindingType(
             code="swapped_joints",
+            severity="blocking",
             meaning="the columns of two joints are probably exchanged. It is looked for where a joint's balance "
             "leaves more than 5 %, or where friction would be negative",
             advice=_COLUMNS,
         ),
         FindingType(
             code="swapped_torques",
+            severity="blocking",
             meaning="the torque columns of two joints are probably exchanged; looked for where `swapped_joints` is",
             advice=_COLUMNS,
         ),
         FindingType(
             code="wrong_sign",
+            severity="blocking",
             meaning="all signals of a joint have the wrong sign; looked for where `swapped_joints` is. The mirror "
             "image of an arm that moves in one plane fits as well: both joints that may turn the other way "
             "are then named",
@@ -88,11 +91,13 @@ TYPES = {
         ),
         FindingType(
             code="wrong_torque_sign",
+            severity="blocking",
             meaning="the torque of a joint has the wrong sign; looked for where `swapped_joints` is",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="wrong_motion_sign",
+            severity="blocking",
             meaning="the position of a joint has the wrong sign, its torque the right one; looked for where "
             "`swapped_joints` is",
             advice="state `directions` and `torque_scales`",
