@@ -59,6 +59,10 @@ def wrong_torques(
         if _fits(turned, given):
             return _reversed(robot, (_common(turned) or 1.0) < 0.0)
         return _scaled(robot, given, common)
+    if any(each.sure and each.value < 0.0 for each in given.values()):
+        turned = _tried(signals, robot, -1.0)
+        if _fits(turned, given):
+            return _reversed(robot, (_common(turned) or 1.0) < 0.0)
     several = _several(signals, robot, given)
     if several is not None or all(each.sure and each.left < _NEAR**2 for each in given.values()):
         return several
