@@ -192,6 +192,13 @@ FOLDERS: dict[str, Folder] = {
         },
         packages={"numpy"},
     ),
+    "robot/rollout": Folder(
+        may_use={
+            *("base", "recording/wide", "joint", "estimate"),
+            *("robot/links", "robot/motion", "robot/result"),
+        },
+        packages={"numpy", "pinocchio"},
+    ),
     "robot": Folder(
         may_use={
             "balance",
@@ -222,16 +229,16 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy"},
     ),
     "plot": Folder(
-        may_use={*_DATA, "simulation", "estimate", "study", "servo", "panels"},
+        may_use={*_DATA, "simulation", "estimate", "study", "panels"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
         may_use={
-            *("base", "problem", "recording", "servo"),
+            *("base", "problem", "recording", "estimate"),
             *("report/page", "report/sections", "report/renderers"),
         }
     ),
-    "report/page": Folder(may_use={"base", "recording", "estimate", "servo", "panels"}),
+    "report/page": Folder(may_use={"base", "recording", "estimate", "panels"}),
     "report/sections": Folder(
         may_use={
             *("base", "recording", "problem", "estimate", "identification/warnings", "comparison"),
@@ -286,7 +293,8 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(*_DATA, "estimate", "identification"),
             *("recording/readers", "recording/wide", "comparison", "joints", "servo"),
-            *("robot", "robot/links", "robot/result", "simulation", "excitation", "study"),
+            *("robot", "robot/links", "robot/result", "robot/rollout"),
+            *("simulation", "excitation", "study"),
         },
         packages={"numpy"},
     ),
@@ -306,7 +314,7 @@ FOLDERS: dict[str, Folder] = {
                 *("recording/readers", "recording/wide"),
                 "comparison",
                 "joints",
-                *("robot", "robot/links", "robot/result"),
+                *("robot", "robot/links", "robot/result", "robot/rollout"),
                 "servo",
                 "simulation",
                 "study",

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from jointid.comparison.result import Comparison as Comparison
     from jointid.estimate.bootstrap import Bootstrap as Bootstrap
     from jointid.estimate.estimate import Estimate
+    from jointid.estimate.rollout import Rollout as Rollout
     from jointid.estimate.selection import Selection as Selection
     from jointid.estimate.self_test import SelfTest as SelfTest
     from jointid.excitation.design import Design
@@ -81,7 +82,6 @@ if TYPE_CHECKING:
     from jointid.servo.comparison_result import ServoComparison as ServoComparison
     from jointid.servo.estimate import ServoEstimate as ServoEstimate
     from jointid.servo.identifying import identify_servo as identify_servo
-    from jointid.servo.rolling_out import Rollout as Rollout
     from jointid.servo.rolling_out import rollout as rollout
     from jointid.simulation.batch import SimulatedBatch as SimulatedBatch
     from jointid.simulation.batch import simulate_batch as simulate_batch
@@ -194,7 +194,8 @@ _HOMES = {
     "jointid.servo.comparison_result": ("ServoComparison",),
     "jointid.servo.estimate": ("ServoEstimate",),
     "jointid.servo.identifying": ("identify_servo",),
-    "jointid.servo.rolling_out": ("Rollout", "rollout"),
+    "jointid.estimate.rollout": ("Rollout",),
+    "jointid.servo.rolling_out": ("rollout",),
     "jointid.simulation.batch": ("SimulatedBatch", "simulate_batch"),
     "jointid.simulation.plant": ("Bristle", "control_estimates"),
     "jointid.simulation.scenario": ("Scenario",),

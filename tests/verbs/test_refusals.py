@@ -153,7 +153,7 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "simulate: a robot's estimate": (
         lambda b: verbs.simulate(b.robot_estimate),
-        "subject is a RobotEstimate: simulate takes one joint or servo; found.predict(recording) returns",
+        "subject is a RobotEstimate: simulate takes one joint or servo; give recordings=: its logged torques",
     ),
     "simulate: several joints": (
         lambda b: verbs.simulate(b.joint_estimates),

@@ -78,7 +78,7 @@ def add_identify(identify: CommandParser) -> None:
     identify.add_argument(
         "--rollout",
         action="store_true",
-        help="for a servo: simulate the closed loop of each run and print its difference from the log",
+        help="for a servo or a robot: simulate each run along its log and print the difference in position",
     )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")

@@ -31,6 +31,7 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
     """Identify all joints of a robot from one recording or several."""
     from jointid.report.saving import save_report
     from jointid.robot.identifying import identify_robot
+    from jointid.robot.rollout.rolling_out import rollout_robot
 
     options = _checked(arguments)
     model = with_terms(arguments.model, arguments)
@@ -45,12 +46,14 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
     draws = arguments.bootstrap
     drawn = found.bootstrap(draws, arguments.seed) if draws is not None else None
     wording, saved = Wording.of(arguments), estimate_file(arguments)
+    rolled = rollout_robot(found, recordings) if arguments.rollout else None
     if arguments.report is not None:
-        save_report(found, arguments.report, action=wording.of_command)
+        save_report(found, arguments.report, wording.of_command, rollout=rolled)
     if saved is not None:
         found.save(saved)
     if arguments.json:
-        done = {} if drawn is None else {"bootstrap": drawn.document()}
+        done = {} if drawn is None else {"bootstrap": drawn.to_dict()}
+        done |= {} if rolled is None else {"rollout": rolled.to_dict()}
         print(json.dumps(found.document() | done, indent=1, ensure_ascii=False, allow_nan=False))
     else:
         from jointid.robot.result.answers import answer
@@ -62,6 +65,8 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
             print(answer(found, wording.of_command, wording.saved_file))
         if drawn is not None:
             print(f"\n{drawn.report()}")
+        if rolled is not None:
+            print(f"\n{rolled.sentence}\n{rolled.report()}")
         say_written(report=arguments.report, estimate=saved)
     return required({"": found.verdict}, arguments)
 

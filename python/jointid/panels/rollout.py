@@ -4,27 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from jointid.panels.marks import Line, Panel, Picture
 
 if TYPE_CHECKING:
-    from jointid.servo.rolling_out import RunRollout
+    from jointid.estimate.rollout import RunRollout
 
 
 def rolled_out(run: RunRollout) -> Picture:
     """Position of a run over time, as logged and as simulated, with the mean error in the legend."""
     time = run.time - run.time[0]
-    label = f"simulated, {np.degrees(run.error):.2f}° mean error"
+    label = f"simulated, {run.shown(run.error):.2f} {run.unit} mean error"
     if run.bistable:
         label += ", bistable"
     panel = Panel(
         across="time [s]",
-        up="position [deg]",
+        up=f"position [{run.unit}]",
         marks=(
-            Line(label="logged", across=time, up=np.degrees(run.measured), look="measured"),
+            Line(label="logged", across=time, up=run.shown(run.measured), look="measured"),
             # Dashed, since a good model lies upon the log.
-            Line(label=label, across=time, up=np.degrees(run.position), dashed=True),
+            Line(label=label, across=time, up=run.shown(run.position), dashed=True),
         ),
     )
     return Picture(

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.estimate.rollout import Rollout, RunRollout
 from jointid.panels import rollout
 from jointid.plot.appearance import axes_or_new
 from jointid.plot.drawing import draw
-from jointid.servo.rolling_out import Rollout, RunRollout
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -31,8 +31,10 @@ def page_of(result: Result, extras: Extras) -> Page:
         raise InputError(
             "only the report of one joint's estimate shows its recordings", argument="recordings"
         )
-    if extras.rollout is not None and kind_of(result) != "servo":
-        raise InputError("only the report of a servo shows a rollout", argument="rollout")
+    if extras.rollout is not None and kind_of(result) not in ("servo", "robot"):
+        raise InputError(
+            "only the report of a servo or a robot shows a rollout", argument="rollout"
+        )
     seen = result.overview
     return Page(seen.title, tuple(_parts(result, replace(extras, overview=seen))), seen.footer)
 

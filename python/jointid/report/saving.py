@@ -17,8 +17,8 @@ from jointid.report.renderers import RENDERERS, ending_of_page
 
 if TYPE_CHECKING:
     from jointid.base.result import Result
+    from jointid.estimate.rollout import Rollout
     from jointid.recording.recording import Recording
-    from jointid.servo.rolling_out import Rollout
 
 
 def report_page(
@@ -75,7 +75,8 @@ def save_report(
         That an `Estimate` was made from, in this order: the page then shows their signals, with what was left out
         shaded, and the residual over the position. Default: a page without these.
     rollout : Rollout, optional
-        Of a servo's runs: the page then shows each run as logged and as simulated. Default: a page without these.
+        Of a servo's or a robot's recordings: the page then shows each run or joint as logged and as simulated.
+        Default: a page without these.
 
     Returns
     -------

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.base.json_layout import json_types
-from jointid.base.result import Overview, Quantity, Result
-from jointid.base.text_table import aligned
-from jointid.base.values import dataclass
+from jointid.estimate.rollout import Rollout, RunRollout
 from jointid.joint.checks import positive_number
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
@@ -28,129 +22,8 @@ Array = NDArray[np.float64]
 STEP = 1e-3
 """Longest integration step by default [s]."""
 
-BISTABLE = math.radians(5.0)
-"""A run is bistable where a small change of the motor's torque moves its rollout farther [rad]."""
-
 _NUDGE = 0.01  # of the motor's torque, to both sides
 _START = 0.03  # s, of the log, for the initial velocity
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RunRollout:
-    """One run, simulated.
-
-    Attributes
-    ----------
-    name : str
-    time, position, velocity : ndarray, shape (n,)
-        At the log's time stamps [s], [rad], [rad/s].
-    measured : ndarray, shape (n,)
-        The logged position [rad].
-    error : float
-        Mean absolute error of the position [rad].
-    spread : float
-        How far the rollout moves at most when the motor's torque changes by 1 % [rad].
-    closed : bool
-        Whether the position loop was closed; else the logged duty drove the motor.
-    """
-
-    name: str
-    time: Array = field(repr=False)
-    position: Array = field(repr=False)
-    velocity: Array = field(repr=False)
-    measured: Array = field(repr=False)
-    error: float
-    spread: float
-    closed: bool
-
-    @property
-    def bistable(self) -> bool:
-        """Whether two motions far apart belong to nearly the same servo, so that its error says little."""
-        return self.spread > BISTABLE
-
-    @property
-    def remark(self) -> str:
-        """What a reader must know of the error, in a few words; empty where there is nothing."""
-        return ", ".join(["bistable"] * self.bistable + ["duty as logged"] * (not self.closed))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Rollout(Result):
-    """All runs, simulated.
-
-    Attributes
-    ----------
-    runs : tuple of RunRollout
-    """
-
-    runs: tuple[RunRollout, ...]
-
-    _KIND = "rollout"
-
-    @property
-    def errors(self) -> Array:
-        """Mean absolute error of each run's position [rad]."""
-        return np.array([run.error for run in self.runs])
-
-    @property
-    def median(self) -> float:
-        """Median of the runs' errors [rad]: a bistable run does not decide it."""
-        return float(np.median(self.errors))
-
-    @property
-    def bistable(self) -> tuple[str, ...]:
-        """Names of the bistable runs."""
-        return tuple(run.name for run in self.runs if run.bistable)
-
-    @property
-    def overview(self) -> Overview:
-        """What a page needs to know of the rollout."""
-        runs = len(self.runs)
-        return Overview(
-            title=f"rollout of {runs} run{'s' * (runs != 1)}",
-            answer=(f"median error of the position {math.degrees(self.median):.2f}°",),
-            parameters=tuple(
-                Quantity(
-                    name=run.name,
-                    value=math.degrees(run.error),
-                    unit="°",
-                    meaning="mean absolute error of the position",
-                    remark=run.remark,
-                )
-                for run in self.runs
-            ),
-        )
-
-    def report(self, *, verbose: bool = False) -> str:
-        """Return the errors as text.
-
-        Parameters
-        ----------
-        verbose : bool
-            Changes nothing: the answer is everything.
-        """
-        del verbose
-        table = [["run", "error [deg]", "moved by 1 % of torque [deg]", ""]]
-        table += [
-            [
-                run.name,
-                f"{math.degrees(run.error):.2f}",
-                f"{math.degrees(run.spread):.2f}",
-                run.remark,
-            ]
-            for run in self.runs
-        ]
-        table.append(["median", f"{math.degrees(self.median):.2f}", "", ""])
-        return "\n".join(aligned(table))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the errors in JSON's types."""
-        names = ("name", "error", "spread", "bistable", "closed")
-        runs = [{name: getattr(run, name) for name in names} for run in self.runs]
-        document: dict[str, Any] = json_types({"median": self.median, "runs": runs})
-        return document
-
-    document = to_dict
 
 
 def rollout(

@@ -8,20 +8,22 @@ from typing import TYPE_CHECKING, Any, overload
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.rollout import Rollout
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
 from jointid.recording.recording import Recording
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.servo.rolling_out import STEP, Rollout, rollout
+from jointid.servo.rolling_out import STEP, rollout
 from jointid.simulation import simulation
 from jointid.simulation.arguments import Controller
 from jointid.simulation.plant import Bristle
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 from jointid.verbs.signatures import shows
-from jointid.verbs.subjects import OtherKind, ask, other_kind, second
+from jointid.verbs.subjects import OtherKind, ask, check_options, other_kind, second
 
 if TYPE_CHECKING:
+    from jointid.robot.result.result import RobotEstimate
     from jointid.servo.estimate import ServoEstimate
 
 
@@ -47,6 +49,16 @@ def simulate(
 
 @overload
 def simulate(
+    subject: RobotEstimate,
+    *,
+    recordings: RobotRecording | Sequence[RobotRecording],
+    horizon: float = 0.5,
+    step: float = STEP,
+) -> Rollout: ...
+
+
+@overload
+def simulate(
     subject: Joint | ServoEstimate,
     *,
     recordings: Recording | Sequence[Recording],
@@ -55,7 +67,7 @@ def simulate(
 ) -> Rollout: ...
 
 
-@shows(simulation.simulate, others={"step": STEP, "threads": 0})
+@shows(simulation.simulate, others={"step": STEP, "threads": 0, "horizon": 0.5})
 def simulate(
     subject: Any = None,
     controller: Any = None,
@@ -64,18 +76,19 @@ def simulate(
     recordings: Any = None,
     **of_servos: Any,
 ) -> Any:
-    """Simulate a joint that a controller moves along a trajectory, or a servo along its logs.
+    """Simulate a joint that a controller moves along a trajectory, or a servo or a robot along its logs.
 
     Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command
     is held over each control period. Same arguments, same bits.
 
     With `recordings`, the closed loop of a servo is simulated from their initial states and compared with their
     positions. Only the reference, the supply and when the motor is driven are taken from the log; where the position
-    loop is not known, the logged duty instead of the reference.
+    loop is not known, the logged duty instead of the reference. A robot is moved by its logged torques, in stretches
+    that begin at the logged state, and compared with the URDF without friction, too.
 
     Parameters
     ----------
-    subject : Joint, Estimate or ServoEstimate
+    subject : Joint, Estimate, ServoEstimate or RobotEstimate
         With a value for each parameter of its model: see `Joint.with_parameters`. Its link, if it
         has a sensor and ``gravity="none"``, hangs behind the sensor; a link without inertia is a
         point mass. A servo has values of torque constant, resistance, inertia and friction.
@@ -108,10 +121,12 @@ def simulate(
 
     Other Parameters
     ----------------
-    recordings : Recording or sequence of Recording
-        Servo: the logs, as for `identify`.
+    recordings : Recording, RobotRecording, or sequence of these
+        Servo, robot: the logs, as for `identify`.
     step : float
-        Servo: longest integration step [s]. Default 1 ms.
+        Servo, robot: longest integration step [s]. Default 1 ms.
+    horizon : float
+        Robot: length of a stretch [s]. Default 0.5: errors of an open loop grow without a bound.
     threads : int
         Servo: 0 (default): all. The results do not depend on it, to the last bit.
 
@@ -122,7 +137,7 @@ def simulate(
         parameters, `truth.signals` the true signals. Unless the sensors show an exact velocity,
         it is derived from the position, and what the controller had is in
         ``truth.signals["control_velocity"]``. ``metadata["saturations"]`` counts the control
-        periods in which the torque limit cut the command. A `Rollout` is of a servo along its logs.
+        periods in which the torque limit cut the command. A `Rollout` is of a servo or a robot along its logs.
 
     Raises
     ------
@@ -152,6 +167,13 @@ def simulate(
     """
     subject = second(subject, of_servos, "joint", "estimate")
     kind = None if isinstance(subject, Estimate) else other_kind(subject)
+    if recordings is None and _are_recordings(controller) and trajectory is None:
+        controller, recordings = None, controller
+    if kind == "robot estimate" and recordings is not None:
+        from jointid.robot.rollout.rolling_out import rollout_robot
+
+        check_options("simulate", "a robot along recordings", of_servos, ("horizon", "step"))
+        return rollout_robot(subject, recordings, **of_servos)
     if kind is not None and kind != "servo estimate":
         raise InputError(
             "simulate takes one joint or servo",
@@ -159,8 +181,6 @@ def simulate(
             value=subject,
             remedy=_REMEDIES[kind],
         )
-    if recordings is None and _are_recordings(controller) and trajectory is None:
-        controller, recordings = None, controller
     if recordings is not None:
         return _along(subject, controller, trajectory, recordings, of_servos)
     joint = subject.identified if kind == "servo estimate" else subject
@@ -201,7 +221,6 @@ def _are_recordings(value: object) -> bool:
 
 _REMEDIES: dict[OtherKind, str] = {
     "robot": "give a jid.Joint with the values of one of its joints",
-    "robot estimate": "found.predict(recording) returns its torque, "
-    "and a jid.Joint with the values of one of its joints is simulated",
+    "robot estimate": "give recordings=: its logged torques then move the arm",
     "joint estimates": "choose one of them, as in found[NAME]",
 }

@@ -11,9 +11,9 @@ from jointid.base.values import dataclass
 
 if TYPE_CHECKING:
     from jointid.base.result import Result
+    from jointid.estimate.rollout import Rollout
     from jointid.recording.recording import Recording
     from jointid.report.page.content import Part
-    from jointid.servo.rolling_out import Rollout
 
 
 def _no_parts(_result: Result, _extras: Extras) -> list[Part]:

@@ -25,7 +25,7 @@ SECTIONS: dict[str, tuple[str, ...]] = {
     "cells": ("study",),
     "tracking": ("commissioning",),
     "session": ("commissioning",),
-    "rollouts": ("rollout", "servo"),
+    "rollouts": ("rollout", "servo", "robot"),
     "friction_of_joints": ("joints", "robot"),
     "findings": _JUDGED,
     "couplings": ("joints",),

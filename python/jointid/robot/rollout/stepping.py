@@ -1,0 +1,43 @@
+"""One step of an arm with set-valued dry friction: a joint that sticks stands still."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.rollout.arm import Arm
+
+Array = NDArray[np.float64]
+
+_SWEEPS = 50  # of projected Gauss-Seidel; a few settle it
+_SETTLED = 1e-10
+
+
+def moved(
+    arm: Arm, position: Array, velocity: Array, torque: Array, duration: float
+) -> tuple[Array, Array]:
+    """Return position and velocity of the joints after a duration [s] under a torque."""
+    mass = arm.mass(position)
+    free = velocity + duration * np.linalg.solve(mass, torque - arm.bias(position, velocity))
+    rows = arm.friction_rows()
+    if rows.size:
+        reach = duration * arm.friction_sizes(velocity)
+        impulses = np.linalg.solve(mass, rows.T)
+        free = free + impulses @ _impulse(rows @ impulses, rows @ free, reach)
+    return position + duration * free, free
+
+
+def _impulse(response: Array, speeds: Array, reach: Array) -> Array:
+    """The impulses within their reach that bring the speeds to rest, or act against them with all their reach."""
+    found = -np.sign(speeds) * reach
+    if (np.sign(speeds + response @ found) == np.sign(speeds)).all():
+        return np.asarray(found)  # nothing comes to rest
+    diagonal = np.diag(response)
+    for _ in range(_SWEEPS):
+        before = found.copy()
+        for k in range(len(found)):
+            wanted = found[k] - (speeds[k] + response[k] @ found) / diagonal[k]
+            found[k] = min(max(wanted, -reach[k]), reach[k])
+        if np.abs(found - before).max() <= _SETTLED * max(float(reach.max()), 1e-300):
+            break
+    return np.asarray(found)
