@@ -45,8 +45,12 @@ def recording(
     seed: int = 0,
     names: tuple[str, ...] = ("shoulder", "elbow"),
     friction: Callable[[Array], Array] | None = None,
+    under_load: tuple[float, float] = (0.0, 0.0),
 ) -> jid.RobotRecording:
-    """At 1 kHz, with 0.02 N·m of noise on the torques; `friction` of both speeds instead of ours."""
+    """At 1 kHz, with 0.02 N·m of noise on the torques; `friction` of both speeds instead of ours.
+
+    `under_load`: shares of the links' torque that each joint has as further friction.
+    """
     import pinocchio
 
     model = pinocchio.buildModelFromUrdf(str(path))
@@ -59,6 +63,7 @@ def recording(
     v = np.einsum("jk,jkn->nj", sizes * rates, np.cos(phases))
     a = -np.einsum("jk,jkn->nj", sizes * rates**2, np.sin(phases))
     torque = np.array([pinocchio.rnea(model, state, *each) for each in zip(q, v, a, strict=True)])
+    torque = torque + under_load * np.abs(torque) * np.sign(v)
     dry = COULOMB * (1.0 + static * np.exp(-100.0 * v**2))
     torque = torque + ROTOR * a
     torque = torque + dry * np.sign(v) + VISCOUS * v if friction is None else torque + friction(v)

@@ -101,13 +101,13 @@ def _factors(log: _Log, rng: np.random.Generator) -> _Log:
         return replace(log, position=np.rad2deg(log.position), detail=kind)
     if kind == "magnitude":
         return replace(log, torque=np.abs(log.torque), detail=kind)
-    factor = np.exp(rng.choice([-1.0, 1.0]) * rng.uniform(np.log(1.3), np.log(30.0)))
+    factor = float(np.exp(rng.choice([-1.0, 1.0]) * rng.uniform(np.log(1.3), np.log(30.0))))
     scales = np.full(n, factor)
     if kind == "one torque":
         scales = np.ones(n)
-        scales[int(rng.integers(n))] = np.exp(rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 1.0))
+        scales[rng.integers(n)] = np.exp(rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 1.0))
     if kind == "one ratio":  # that of the first joint is taken for all
-        ratios = rng.uniform(0.4, 1.0, n) * 100.0
+        ratios = rng.uniform(0.4, 1.0, (n,)) * 100.0
         scales = ratios[0] / ratios
     shown = ", ".join(f"{each:.2g}" for each in scales.tolist())
     return replace(log, torque=log.torque * scales, detail=f"{kind}: {shown}")

@@ -172,7 +172,7 @@ def simulated(arm: SerialArm, duration: float, rng: np.random.Generator) -> Sign
                 chord = np.tanh(velocity / arm.rise) / np.where(velocity, velocity, 1.0)
                 slope = slope + level * np.where(velocity, chord, 1.0 / arm.rise)
                 level = np.zeros(arm.joints)
-            back = np.linalg.inv(moving + step * np.diag(slope))
+            back = np.asarray(np.linalg.inv(moving + step * np.diag(slope)), dtype=np.float64)
             sign = np.asarray(np.sign(velocity), dtype=np.float64)
             after = _slowed(back, back @ push, step * level, sign)
             if arm.load.any():

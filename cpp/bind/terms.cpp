@@ -43,6 +43,14 @@ void bind_terms(py::module_& m) {
           },
           "The friction's basis at a vanishing speed.")
       .def_property_readonly(
+          "settles",
+          [](const Term& t) {
+            return identify::is_friction(t) && !identify::needs_load(t) &&
+                   t.integral != identify::Integral::displacement &&
+                   model::facts_of(t.basis).settles;
+          },
+          "Whether the friction's basis is 1 in fast motion, as of Coulomb friction.")
+      .def_property_readonly(
           "side", [](const Term& t) { return identify::side_of(t); },
           "1 or -1: friction of this direction of motion alone; 0: of both.")
       .def_property_readonly(

@@ -1,10 +1,10 @@
 #pragma once
 // Static friction maps as sums of linear coefficients times basis functions of the speed:
 // f(v) = sgn v * sum c_i h_i(|v|). (2-1) Coulomb + viscous, (2-3) Stribeck with exponent and (4-1)
-// Coulomb + static excess with Gaussian decay + viscous are such sums; only the decay has shape
-// parameters. A basis owns value, slopes, unit and how exports write it; a new one is a row and a
-// case in each function here, and a row in identify/balance/terms.cpp. Fits, simulation, design,
-// exports and pages follow.
+// Coulomb + static excess with Gaussian decay + viscous are such sums; only a decay and a rise have
+// shape parameters. A basis owns value, slopes, unit and how exports write it; a new one is a row
+// and a case in each function here, and a row in identify/balance/terms.cpp. Fits, simulation,
+// design, exports and pages follow.
 
 #include <array>
 #include <cstddef>
@@ -22,6 +22,7 @@ enum class SpeedBasis {
   linear,    ///< |v|: viscous friction
   gaussian,  ///< exp(-s v^2), s [s^2/rad^2]: the static excess of (4-1)
   general,   ///< exp(-|v/v_s|^d), v_s [rad/s] and d [1]: the static excess of (2-3)
+  rising,    ///< tanh(|v|/v_r), v_r [rad/s]: Coulomb friction that rises smoothly with speed
 };
 
 constexpr std::size_t kMostShapes = 2;  ///< parameters of a basis
@@ -34,13 +35,14 @@ struct BasisFacts {
   const char* unit;  ///< of a coefficient: torque over the basis's unit
   const char* unit_prismatic;
   double at_rest;            ///< h(0)
+  bool settles = false;      ///< whether h is 1 in fast motion, as of Coulomb friction
   bool shape_above = false;  ///< whether its shape parameters must be above 0, not 0
   /// h as a product, in the notation of C: `speed`, {0} and {1} are speed and shapes. Empty: 1.
   const char* expression = "";
 };
 inline const BasisFacts& facts_of(SpeedBasis basis) {
-  static constexpr std::array<BasisFacts, 4> kFacts{{
-      {.unit = "N·m", .unit_prismatic = "N", .at_rest = 1.0},
+  static constexpr std::array<BasisFacts, 5> kFacts{{
+      {.unit = "N·m", .unit_prismatic = "N", .at_rest = 1.0, .settles = true},
       {.unit = "N·m·s/rad", .unit_prismatic = "N·s/m", .at_rest = 0.0, .expression = "speed"},
       {.unit = "N·m",
        .unit_prismatic = "N",
@@ -52,6 +54,13 @@ inline const BasisFacts& facts_of(SpeedBasis basis) {
        .at_rest = 1.0,
        .shape_above = true,
        .expression = "exp(-exp({1} * log(speed / {0})))"},
+      // The hyperbolic tangent by an exponential, which every language has.
+      {.unit = "N·m",
+       .unit_prismatic = "N",
+       .at_rest = 0.0,
+       .settles = true,
+       .shape_above = true,
+       .expression = "(2.0 / (1.0 + exp(-(2.0 * speed / {0}))) - 1.0)"},
   }};
   return kFacts.at(static_cast<std::size_t>(basis));
 }
@@ -91,6 +100,9 @@ Number basis_value(SpeedBasis basis, const Number& speed, const Number* shapes) 
       return base::exp(-(shapes[0] * speed * speed));
     case SpeedBasis::general:
       return base::exp(-base::pow(speed / shapes[0], shapes[1]));
+    case SpeedBasis::rising:
+      return Number(2.0) / (Number(1.0) + base::exp(-(Number(2.0) * speed / shapes[0]))) -
+             Number(1.0);
   }
   return 0.0;
 }
@@ -108,6 +120,10 @@ inline double basis_slope(SpeedBasis basis, double speed, const double* shapes, 
       const auto decay = general_decay(scaled, shapes[0], shapes[1]);
       return which == 0 ? decay.by_velocity : decay.by_exponent;
     }
+    case SpeedBasis::rising: {
+      const double value = basis_value(basis, speed, shapes);
+      return -(1.0 - value * value) * speed / (shapes[0] * shapes[0]);
+    }
   }
   return 0.0;
 }
@@ -124,6 +140,10 @@ inline double basis_rate(SpeedBasis basis, double speed, const double* shapes) {
     case SpeedBasis::general:
       return -shapes[1] * base::pow(speed / shapes[0], shapes[1]) / speed *
              basis_value(basis, speed, shapes);
+    case SpeedBasis::rising: {
+      const double value = basis_value(basis, speed, shapes);
+      return (1.0 - value * value) / shapes[0];
+    }
   }
   return 0.0;
 }
@@ -133,5 +153,6 @@ inline double basis_rate(SpeedBasis basis, double speed, const double* shapes) {
 template <>
 struct jointid::base::Words<jointid::model::SpeedBasis> {
   static constexpr std::string_view field = "basis";
-  static constexpr std::array<std::string_view, 4> all{"constant", "linear", "gaussian", "general"};
+  static constexpr std::array<std::string_view, 5> all{"constant", "linear", "gaussian", "general",
+                                                       "rising"};
 };

@@ -66,6 +66,22 @@ CHECK_CASE("terms: the general decay and its derivatives are those of long doubl
   CHECK_CLOSE(model::basis_slope(SpeedBasis::general, 1e6, sudden, 1), 0.0, 1e-200);
 }
 
+CHECK_CASE("terms: the rise is a hyperbolic tangent, and its derivatives are its differences") {
+  const double least = 1e-7;
+  for (const double width : {0.01, 0.13, 2.0}) {
+    for (const double v : {0.0, 0.003, 0.13, 0.9, 50.0}) {
+      const auto value = [&](double speed, double w) {
+        return model::basis_value(SpeedBasis::rising, speed, &w);
+      };
+      CHECK_CLOSE(value(v, width), std::tanh(v / width), 4e-16);
+      CHECK_CLOSE(model::basis_slope(SpeedBasis::rising, v, &width, 0),
+                  (value(v, width + least) - value(v, width - least)) / (2.0 * least), 1e-4);
+      CHECK_CLOSE(model::basis_rate(SpeedBasis::rising, v, &width),
+                  (value(v + least, width) - value(v - least, width)) / (2.0 * least), 1e-4);
+    }
+  }
+}
+
 // The rows below are read from the table, so that a new row is checked without a line here.
 
 CHECK_CASE("terms: every row says what it is, which motion determines it and what adds it") {

@@ -23,7 +23,7 @@ from jointid.identification.causes.whole_recording import WholeRecording
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.prepared import prepare
 
-_SLOW = {"slow_motion", "presliding", "stribeck_exponent"}
+_SLOW = {"slow_motion", "smooth_friction", "presliding", "stribeck_exponent"}
 _BROKEN: Mapping[str, tuple[dict[str, float], set[str]]] = {
     "clean": ({}, set()),
     "viscous drift": ({"viscous_drift": -0.3}, {"drift"}),

@@ -19,7 +19,7 @@ from jointid.identification.causes.families import BY_NAME, FAMILIES, OTHER_LAW
 from jointid.identification.warnings import causes as warned
 
 _QUADRATIC = SimpleNamespace(
-    **dict.fromkeys(("needs_load", "side", "at_rest"), 0),
+    **dict.fromkeys(("needs_load", "side", "at_rest", "settles"), 0),
     friction=True,
     key="quadratic",
     name="quadratic",
@@ -55,7 +55,7 @@ def _row(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
 def test_other_causes_stand_for_todays_friction() -> None:
     """So there is no such cause; a term for which none stands brings it."""
-    known = {"constant", "linear", "gaussian", "general", "load"}
+    known = {"constant", "linear", "gaussian", "general", "rising", "load"}
     others = {term.basis for term in _core.terms() if term.friction} - known
     assert {term.basis for term in other_laws()} == others
     assert (OTHER_LAW in FAMILIES) == bool(others)

@@ -22,7 +22,15 @@ from documentation.defective import GOOD, Case, cases, damaged
 # Of these the titles are still to be written.
 NOT_YET = frozenset(
     {"undivided_offset", "ripple", "gravity", "inertia_varies", "load_friction", "slow_motion"}
-    | {"presliding", "stribeck_exponent", "drift", "harmonic", "delay", "other_signal"}
+    | {
+        "presliding",
+        "smooth_friction",
+        "stribeck_exponent",
+        "drift",
+        "harmonic",
+        "delay",
+        "other_signal",
+    }
     | {"disturbance", "asymmetry", "offset", "standing", "hardly_moves", "late_samples"}
     | {"cross_check", "poor_fit", "structured_residual", "undetermined", "gaps"}
 )

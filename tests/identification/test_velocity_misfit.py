@@ -80,7 +80,7 @@ def test_what_the_noise_imitates_is_not_named(coarse: tuple[jid.Recording, jid.R
 
 
 def test_what_is_more_than_the_noise_is_named(coarse: tuple[jid.Recording, jid.Recording]) -> None:
-    slow = {"slow_motion", "presliding", "stribeck_exponent"}
+    slow = {"slow_motion", "smooth_friction", "presliding", "stribeck_exponent"}
     sound, bristles = (
         {found.code for found in _prepared(run)[1].warnings} & slow for run in coarse
     )

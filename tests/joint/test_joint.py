@@ -51,11 +51,14 @@ LIMITS = st.builds(
 )
 
 
+_ABOVE_ZERO = {name for term in _core.terms() if term.above_zero for name in term.shapes}
+
+
 @st.composite
 def parameters(draw: st.DrawFn) -> dict[str, Parameter]:
     table = {}
     for name in draw(st.sets(st.sampled_from(_core.parameter_names()))):
-        numbers = POSITIVE if name in ("stribeck_velocity", "stribeck_exponent") else FINITE
+        numbers = POSITIVE if name in _ABOVE_ZERO else FINITE
         low, value, high = sorted(draw(st.tuples(numbers, numbers, numbers)))
         known = draw(st.booleans())
         table[name] = Parameter(

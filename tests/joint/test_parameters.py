@@ -15,12 +15,13 @@ from jointid.joint.parameters import Parameter, merge, parameter_table
 
 NAMES = st.sampled_from(_core.parameter_names())
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
+_ABOVE_ZERO = {name for term in _core.terms() if term.above_zero for name in term.shapes}
 POSITIVE = st.floats(min_value=0.0, exclude_min=True, allow_infinity=False)
 
 
 @st.composite
 def parameters(draw: st.DrawFn, name: str) -> Parameter:
-    numbers = POSITIVE if name in ("stribeck_velocity", "stribeck_exponent") else FINITE
+    numbers = POSITIVE if name in _ABOVE_ZERO else FINITE
     low, value, high = sorted(draw(st.tuples(numbers, numbers, numbers)))
     given_value = draw(st.booleans())
     return Parameter(

@@ -56,11 +56,12 @@ def used(found: jid.RobotEstimate) -> list[str]:
 
 def worst(found: jid.RobotEstimate) -> float:
     """The largest relative error of friction."""
-    return max(
-        abs(joint.parameters[name].value / truth - 1.0)
+    pairs = [
+        (joint.parameters[name].value, float(truth))
         for name, truths in (("coulomb", small_arm.COULOMB), ("viscous", small_arm.VISCOUS))
         for joint, truth in zip(found.joints.values(), truths, strict=True)
-    )
+    ]
+    return max(abs(value / truth - 1.0) for value, truth in pairs)
 
 
 @pytest.mark.parametrize("seed", range(2))

@@ -29,17 +29,8 @@ def _path(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_friction_under_load_has_its_size_and_its_joint(path: Path, robot: jid.Robot) -> None:
-    run = small_arm.recording(path)
-    fields = run.fields()
-    speed = np.gradient(run.position[:, 1], run.time)
-    links = (
-        fields["torque"][:, 1]
-        - small_arm.COULOMB[1] * np.sign(speed)
-        - small_arm.VISCOUS[1] * speed
-    )
-    fields["torque"] = fields["torque"].copy()
-    fields["torque"][:, 1] += 0.15 * np.abs(links) * np.sign(speed)
-    found = jid.identify_robot(jid.RobotRecording(**fields), robot)
+    run = small_arm.recording(path, under_load=(0.0, 0.15))
+    found = jid.identify_robot(run, robot)
     (told,) = found.warnings
     assert told.code == "load_friction"
     assert told.title.startswith("elbow: friction that grows with the load (0.15 of the load)")
@@ -49,16 +40,13 @@ def test_friction_under_load_has_its_size_and_its_joint(path: Path, robot: jid.R
     moved = 1.0 + told.evidence["coulomb.shift"].value
     assert coulomb * moved == pytest.approx(small_arm.COULOMB[1], rel=0.01)
     assert all(name.startswith("elbow.") for name in told.parameters)
-    # A robot's model has no such term: a single joint's has.
-    assert [each.kind for each in told.advice] == ["inspect"]
+    (call,) = told.advice
+    assert call.arguments == {"model": {"elbow": "auto:load_friction"}}
 
 
 def test_the_advice_against_slow_motion_runs(path: Path, robot: jid.Robot) -> None:
-    def rising(speed: np.ndarray) -> np.ndarray:
-        return np.asarray(small_arm.COULOMB * np.tanh(speed / 0.05) + small_arm.VISCOUS * speed)
-
-    run = small_arm.recording(path, friction=rising)
-    found = jid.identify_robot(run, robot)
+    run = small_arm.recording(path, static=0.5)
+    found = jid.identify_robot(run, robot, model="coulomb_viscous")
     told = [each for each in found.warnings if each.code == "slow_motion"]
     advice = told[0].advice[0]
     assert advice.function == "compare_robot_models"

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import small_arm
+from shared_cases import case
 
 import jointid as jid
 from jointid.robot.motion.numbering import row_numbers
@@ -17,11 +18,11 @@ from jointid.robot.motion.stamps import on_even_clock
 pytest.importorskip("pinocchio")
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+Numbers = np.ndarray[Any, np.dtype[np.intp]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 Damage = Callable[[np.random.Generator, int], tuple[Array, Flags]]
 
 PERIOD = 1e-3  # [s]
-CASE = Path("/work/shared/cases/robot-01-late-stamps-lost-samples")
 
 
 def late_and_lost(rng: np.random.Generator, count: int) -> tuple[Array, Flags]:
@@ -58,7 +59,7 @@ KINDS = [late_and_lost, bursts_and_jitter, rounded_and_lost, stalled]
 
 def damaged(
     run: jid.RobotRecording, damage: Damage, seed: int, noise: float = 1e-6
-) -> tuple[jid.RobotRecording, Array]:
+) -> tuple[jid.RobotRecording, Numbers]:
     """A recording with wrong stamps and without some rows, and the numbers of those that are left."""
     rng = np.random.default_rng(seed)
     late, kept = damage(rng, run.samples)
@@ -122,11 +123,11 @@ def test_an_even_recording_is_not_changed(run: jid.RobotRecording) -> None:
     assert on_even_clock(run) is run
 
 
-@pytest.mark.skipif(not CASE.exists(), reason="the recorded case is not here")
 @pytest.mark.parametrize("inertia", ["urdf", "scaled", "free"])
 def test_the_case_is_right(inertia: Any) -> None:
-    robot = jid.Robot.from_urdf(CASE / "arm.urdf")
-    found = jid.identify_robot(jid.load_robot(CASE / "log.csv"), robot, inertia=inertia)
+    folder = case("robot-01-late-stamps-lost-samples")
+    robot = jid.Robot.from_urdf(folder / "arm.urdf")
+    found = jid.identify_robot(jid.load_robot(folder / "log.csv"), robot, inertia=inertia)
     assert found.relative_residual < 0.04
     truth = {"coulomb": (4.0, 5.0, 3.0, 1.2), "viscous": (6.0, 7.0, 3.5, 1.5)}
     for name, values in truth.items():

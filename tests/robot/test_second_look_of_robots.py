@@ -172,7 +172,7 @@ def warming(run: jid.RobotRecording) -> Array:
 @pytest.mark.parametrize(
     ("fault", "cause"),
     [
-        *((rising(width), "slow_motion") for width in (0.05, 0.1, 0.2)),
+        *((rising(width), "smooth_friction") for width in (0.05, 0.1, 0.2)),
         *((loaded(share), "load_friction") for share in (0.05, 0.15, 0.3)),
         *((sprung(*each), "") for each in ((6.0, 0), (3.0, 1), (15.0, 0))),
         (warming, "drift"),

@@ -85,6 +85,7 @@ def test_a_coupling_that_is_not_told_is_named(shared_data: Path) -> None:
 
 def test_nothing_wrong_is_named_of_right_facts(estimate: jid.RobotEstimate) -> None:
     # A real arm: what is left is no noise, and no fact explains it; friction grows with the load.
-    named = {"turned_zero", "undetermined", "unexamined_causes", "load_friction", "slow_motion"}
+    named = {"turned_zero", "undetermined", "unexamined_causes", "load_friction"}
+    named |= {"slow_motion", "smooth_friction"}
     assert {each.code for each in estimate.warnings} <= named
     assert estimate.settings["shift"] == {}

@@ -157,6 +157,13 @@ SYMPTOMS: Mapping[str, Symptom] = {
             caption="The model of Coulomb and viscous friction lacks the peak near rest.",
         ),
     ),
+    "smooth_friction": Symptom(
+        "Friction falls towards rest, where the line goes on to its constant part.",
+        residual_over(
+            "velocity",
+            caption="The residual opposes the friction near rest: dry friction rises with the speed.",
+        ),
+    ),
     "presliding": Symptom(
         "Friction builds up over the first way after a reversal.",
         residual_over(

@@ -133,6 +133,9 @@ std::vector<Term> base_rows() {
       simulated(friction("coulomb", "coulomb", SpeedBasis::constant, {}, "Coulomb friction",
                          "motion in both directions, at several speeds"),
                 Control::compensated),
+      simulated(friction("coulomb_rising", "coulomb", SpeedBasis::rising, {"rise_velocity"},
+                         "Coulomb friction", "motion in both directions, at several speeds"),
+                Control::refused),
       simulated(friction("static", "static", SpeedBasis::gaussian, {"stribeck"},
                          "static (above Coulomb)", kSlow),
                 Control::compensated),
@@ -256,6 +259,12 @@ const std::vector<Shape>& shape_table() {
        .lower = 0.5,
        .upper = 4.0,
        .typical = 2.0},
+      {.name = "rise_velocity",
+       .unit = "rad/s",
+       .unit_prismatic = "m/s",
+       .meaning = "speed at which Coulomb friction has risen to 76 %",
+       .advice = kSlow,
+       .speed_power = 1.0},
       // At 1 a joint locks by itself in one quadrant.
       {.name = "load_friction",
        .unit = "1",
@@ -280,6 +289,7 @@ const std::vector<Model>& model_table() {
       {"coulomb_viscous", "(2-1)", {"coulomb", "viscous"}},
       {"stribeck", "(4-1)", {"coulomb", "static", "viscous"}},
       {"stribeck_general", "(2-3)", {"coulomb", "static_general", "viscous"}},
+      {"smooth_coulomb_viscous", "", {"coulomb_rising", "viscous"}},
   };
   return table;
 }
@@ -295,11 +305,6 @@ bool is_friction(const Term& term) {
 
 bool needs_load(const Term& term) {
   return term.integral == Integral::load_friction || term.integral == Integral::link_friction;
-}
-
-int side_of(const Term& term) {
-  if (term.direction == Direction::both) return 0;
-  return term.direction == Direction::positive ? 1 : -1;
 }
 
 std::string expression_of(const Term& term) {

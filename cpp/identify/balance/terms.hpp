@@ -95,7 +95,10 @@ bool is_friction(const Term& term);
 /// Whether the friction depends on the torque that the drive transmits, too.
 bool needs_load(const Term& term);
 /// 1 or -1 for friction of one direction of motion alone, else 0.
-int side_of(const Term& term);
+inline int side_of(const Term& term) {
+  if (term.direction == model::Direction::both) return 0;
+  return term.direction == model::Direction::positive ? 1 : -1;
+}
 /// How an export writes the friction, as a product in the notation of C: `speed`, `load_size` and
 /// shape parameters by their names; empty: 1.
 std::string expression_of(const Term& term);

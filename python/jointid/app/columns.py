@@ -28,6 +28,7 @@ _LABELS = {
     "coulomb_viscous": "Coulomb and viscous",
     "stribeck": "Stribeck",
     "stribeck_general": "Stribeck, general",
+    "smooth_coulomb_viscous": "Coulomb and viscous, smooth",
 }
 _MODELS = {name: _LABELS.get(name, name) for name in (AUTO, *_core.model_names())}
 

@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from jointid.base.advice import Action
-from jointid.cli.arguments import number_or_text
+from jointid.cli.arguments import number_or_text, text_by_joint
 from jointid.cli.options import FILES, FLAGS, NUMBERS, OPTIONS, PLACEHOLDERS, option_of
 from jointid.cli.values import behind_option, in_joint_file
 
@@ -249,6 +249,8 @@ def _arguments(
     for name, value in _flat(arguments):
         if name in MODEL_FIELDS:
             changes[name] = value
+        elif name == "model" and isinstance(value, Mapping) and not set(value) <= MODEL_FIELDS:
+            options.append(shlex.join([option_of(command, name)[0], text_by_joint(value)]))
         elif name == "model" and isinstance(value, Mapping):
             changes |= value
         elif name == "model":

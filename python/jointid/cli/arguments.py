@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -214,6 +214,40 @@ def with_terms(model: str | None, arguments: argparse.Namespace) -> Model:
     if not arguments.terms:
         return stated
     return stated.replace(terms={**(stated.terms or {}), **by_name("terms", arguments.terms)})
+
+
+def models_by_joint(text: str) -> dict[str, str]:
+    """The models of a robot's joints, as in "elbow,wrist=auto:load_friction;shoulder=stribeck"; nothing of a plain one.
+
+    Raises
+    ------
+    InputError
+        A part names no joint, or one is named twice.
+    """
+    if "=" not in text.partition(":")[0]:
+        return {}
+    found: dict[str, str] = {}
+    for part in text.split(";"):
+        names, separator, model = part.partition("=")
+        for name in names.split(","):
+            if not (separator and name and model):
+                raise InputError(
+                    "JOINT[,JOINT...]=MODEL is expected, several divided by ;",
+                    argument="model",
+                    value=part,
+                )
+            if name in found:
+                raise InputError(f"{name} is named twice", argument="model", value=text)
+            found[name] = model
+    return found
+
+
+def text_by_joint(models: Mapping[str, str]) -> str:
+    """The text that `models_by_joint` reads; joints with the same model share it."""
+    groups: dict[str, list[str]] = {}
+    for name, model in models.items():
+        groups.setdefault(model, []).append(name)
+    return ";".join(f"{','.join(names)}={model}" for model, names in groups.items())
 
 
 def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:

@@ -50,7 +50,7 @@ def add_identify(identify: CommandParser) -> None:
         help=(
             f"friction model: {', '.join(model_names())}, or auto (default if the joint has no model): of the first "
             "two, with or without gravity, the best on held-out torque; options follow, as in "
-            "stribeck:asymmetric:ripple=2,4"
+            "stribeck:asymmetric:ripple=2,4; with --robot also JOINT[,JOINT...]=MODEL, several divided by a semicolon"
         ),
     )
     _robot_arguments(identify)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.base.options import options_of
 from jointid.cli.advice import without_options
-from jointid.cli.arguments import with_terms
+from jointid.cli.arguments import models_by_joint, with_terms
 from jointid.cli.options import stated_options
 from jointid.cli.outputs import check_folder, check_page, estimate_file, say_written
 from jointid.cli.reading import as_given, how_to_read, joints_wanted, numbers_of_joints
@@ -34,8 +34,8 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
     from jointid.robot.rollout.rolling_out import rollout_robot
 
     options = _checked(arguments)
-    model = with_terms(arguments.model, arguments)
-    robot, recordings = _read(arguments, [model])
+    model = models_by_joint(arguments.model or "") or with_terms(arguments.model, arguments)
+    robot, recordings = _read(arguments, [] if isinstance(model, dict) else [model])
     found = identify_robot(
         recordings,
         robot,

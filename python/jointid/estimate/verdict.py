@@ -41,6 +41,7 @@ _CHANGING = frozenset(
         "torque_saturated",
     )
 )
+_NAMED = 5  # parameters, in words
 _SEEN = 0.036  # standard error, of a value: with it a change of a tenth is seen, at 95 %
 
 
@@ -66,7 +67,9 @@ class Use:
     within: float | None = field(default=None, repr=False)
 
     def __str__(self) -> str:
-        named = f" ({', '.join(self.parameters)})" if self.parameters else ""
+        more = len(self.parameters) - _NAMED
+        names = ", ".join(self.parameters[:_NAMED]) + (f" and {more} more" if more > 0 else "")
+        named = f" ({names})" if names else ""
         return f"{self.level}{named}"
 
     @property

@@ -26,8 +26,8 @@ def unseen_friction(estimate: Estimate) -> tuple[dict[str, float], set[str]]:
     """
     found = estimate.parameters
     terms = [_core.term(key) for key in estimate.settings["terms"]]
-    fading = [term for term in terms if term.friction and term.shapes and found[term.name].vary]
-    dry = {term.side: term.name for term in terms if term.basis == "constant"}
+    fading = [term for term in terms if _is_fading(term) and found[term.name].vary]
+    dry = {term.side: term.name for term in terms if term.settles}
     shapes = {name: found[name] for term in fading for name in term.shapes if found[name].vary}
     assumed: dict[str, float] = {}
     absent: set[str] = set()
@@ -52,6 +52,10 @@ def unseen_friction(estimate: Estimate) -> tuple[dict[str, float], set[str]]:
             typical = slow**shape.speed_power if shape.speed_power else shape.typical
             assumed[name] = _inside(estimate, name, typical)
     return assumed, absent
+
+
+def _is_fading(term: _core.Term) -> bool:
+    return bool(term.friction and term.shapes) and not term.settles
 
 
 def interval_error(p: ParameterEstimate) -> float:

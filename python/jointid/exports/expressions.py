@@ -49,6 +49,7 @@ def _summand(term: FrictionTerm, language: Language) -> str:
     words = {"exp": language.exp, "log": language.log}
     words |= {name: language.name(name) for name in term.shapes}
     basis = re.sub(r"[a-z_]\w*", lambda word: words.get(word[0], word[0]), term.term.expression)
+    basis = re.sub(r"\b\d+\.\d+\b", lambda number: language.number(float(number[0])), basis)
     return f"({value} * {basis})"
 
 

@@ -37,7 +37,8 @@ def lost_terms(subject: Subject) -> tuple[str, ...]:
         lost.append(f"Stribeck friction ({sizes} {unit} above Coulomb at rest)")
     revolute = subject.joint.kind == "revolute"
     lost += [
-        f"{each.term.meaning} ({each.value:.4g} {each.term.unit if revolute else each.term.unit_prismatic})"
+        f"{'the smooth rise of ' * each.term.settles}{each.term.meaning} "
+        f"({each.value:.4g} {each.term.unit if revolute else each.term.unit_prismatic})"
         for each in law.friction
         if each.term.basis not in ("constant", "linear", "load") and each not in excess
     ]

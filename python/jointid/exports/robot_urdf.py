@@ -9,11 +9,11 @@ from jointid.exports.urdf_model import is_joint, with_children
 from jointid.exports.xml_patch import elements, only, with_attributes, with_comment
 from jointid.joint.checks import suggestion
 from jointid.robot.links.models import terms_of
-from jointid.robot.links.parameters import DIFFERENCE, MOTOR_TERMS
+from jointid.robot.links.parameters import DIFFERENCE, MOTOR_TERMS, VISCOUS
 from jointid.robot.result.record import RobotJoint
 from jointid.robot.result.result import RobotEstimate
 
-_WORDS = {"linear": "damping", "constant": "friction"}  # of the URDF, by the basis
+_DAMPING, _FRICTION = "damping", "friction"  # words of the URDF
 
 
 def robot_in_urdf(
@@ -40,7 +40,7 @@ def _with_dynamics(content: bytes, place: str, joint: RobotJoint) -> bytes:
     found = elements(content, place)
     element = only(found, joint.name, is_joint, place, suggestion)
     children = [each for each in found if each.parent == found.index(element)]
-    changes = dict.fromkeys(_WORDS.values(), repr(0.0))
+    changes = dict.fromkeys((_DAMPING, _FRICTION), repr(0.0))
     changes |= {word: repr(joint.parameters[name].value) for name, word in _written(joint).items()}
     dynamics = [each for each in children if each.tag == "dynamics"]
     if dynamics:
@@ -54,13 +54,24 @@ def _with_dynamics(content: bytes, place: str, joint: RobotJoint) -> bytes:
 def _written(joint: RobotJoint) -> dict[str, str]:
     """The URDF's words by names of the parameters that it has."""
     terms = terms_of(joint.model)
-    return {term.name: _WORDS[term.basis] for term in terms if term.basis in _WORDS}
+    words = {term.name: _FRICTION for term in terms if term.settles}
+    return words | {term.name: _DAMPING for term in terms if term.basis == VISCOUS.basis}
 
 
 def _lost(joint: RobotJoint) -> list[str]:
     written = _written(joint)
     names = {
-        **{t.name: f"{t.name} friction" for t in terms_of(joint.model) if t.name not in written},
+        **{
+            t.name: "friction under load" if t.needs_load else f"{t.name} friction"
+            for t in terms_of(joint.model)
+            if t.name not in written
+        },
+        **{
+            shape: "friction that rises smoothly"
+            for t in terms_of(joint.model)
+            if t.settles
+            for shape in t.shapes
+        },
         DIFFERENCE: "friction that differs between the directions",
         **dict.fromkeys(MOTOR_TERMS, "friction of a coupled motor"),
     }

@@ -18,7 +18,9 @@ from jointid.joint.own_terms import NO_TERMS, OwnTerms
 
 Gravity = Literal["none", "known", "free"]
 Load = Literal["drive", "link"]
-ModelName = Literal["coulomb_viscous", "stribeck", "stribeck_general", "auto"]
+ModelName = Literal[
+    "coulomb_viscous", "stribeck", "stribeck_general", "smooth_coulomb_viscous", "auto"
+]
 """Names of models, for type checkers; text with options is `Model.parse`'s."""
 
 AUTO = "auto"
@@ -40,7 +42,8 @@ class Model:
     Parameters
     ----------
     name : str, optional
-        Of the friction model: "coulomb_viscous", "stribeck", "stribeck_general" (with a free exponent), or
+        Of the friction model: "coulomb_viscous", "stribeck", "stribeck_general" (with a free exponent),
+        "smooth_coulomb_viscous" (Coulomb friction rises with the speed, as a hyperbolic tangent), or
         "auto" (default): `identify` chooses between the first two by the torque that they predict. What
         needs a model before there are recordings, as a simulation, takes "coulomb_viscous" by default.
     gravity : {"none", "known", "free"}, optional

@@ -96,7 +96,8 @@ def compare_robot_models(
         further_modes=modes[1:],
     )
     runs = all_on_even_clocks(given)
-    attempt = with_better_velocities(runs, robot, request, options["shift"]).alignment.attempt
+    alignment = with_better_velocities(runs, robot, request, options["shift"]).alignment
+    attempt = alignment.attempt
     blocks = blocks_of(attempt.balance.rows, attempt.runs, count)
     rows, left_out = [], {}
     for mode in modes:
@@ -124,7 +125,7 @@ def compare_robot_models(
         windows=attempt.duration,
         min_speed=slowest.tolist(),
         **mask,
-        shift=shift_option(attempt.delay, attempt.robot),
+        shift=shift_option(attempt.delay, attempt.robot, alignment.request.lag),
     )
     several = len(given) > 1
     return RobotComparison(

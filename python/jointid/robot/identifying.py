@@ -21,6 +21,7 @@ from jointid.robot.facts.assumptions import assumption_findings
 from jointid.robot.facts.asymmetry import asymmetry_findings
 from jointid.robot.facts.diagnosis import diagnosed
 from jointid.robot.facts.naming import turned_zeros
+from jointid.robot.facts.one_call import advised_models
 from jointid.robot.facts.unexamined_causes import misfit_findings
 from jointid.robot.fit.aligning import aligned, delay_findings
 from jointid.robot.fit.attempt import Attempt, Request, attempted
@@ -129,9 +130,10 @@ def identify_robot(
         choice = None
         if first is None:
             choice = with_better_velocities(runs, robot, request, shift)
-            request, found = choice.request, choice.alignment
+            found = choice.alignment
         else:
             found = first
+        request = found.request
         attempt = found.attempt
         estimate = attempt.estimate
         if inertia == FREE:
@@ -144,7 +146,6 @@ def identify_robot(
             again = cross_checked(other, corrected, request, stated_delay)
             check = replace(check, explained=bool(again.agrees))
         findings = (
-            *disagreement(check, slow_motion(signals)),
             *assumption_findings(runs, given, attempt),
             *([] if choice is None else velocity_findings(choice, robot)),
             *delay_findings(found),
@@ -152,12 +153,27 @@ def identify_robot(
             *diagnosis.findings,
             *impossible_links(estimate),
         )
-        plain = all(each.severity == "info" for each in findings)
+        plain = all(each.severity == "info" for each in findings) and check.agrees is not False
         # With another finding, a difference of the directions may follow from that.
         uneven = [*asymmetry_findings(attempt)] if plain else []
         late = any(each.code == "signal_lag" for each in findings)  # a delay looks like friction
-        rest = misfit_findings(attempt, diagnosis.corrected, named=not late)
-        findings = (*findings, *(uneven or rest))
+        rest = uneven or [
+            *misfit_findings(attempt, diagnosis.corrected, request.models, named=not late)
+        ]
+        richer = advised_models(rest)
+        if check.agrees is False and not check.explained and richer:
+            wanted = [richer.get(*each) for each in zip(given.names, request.models, strict=True)]
+            last = diagnosis.corrected
+            better = attempted(
+                diagnosis.recordings,
+                last.robot,
+                replace(request, models=tuple(wanted)),
+                last.delay,
+            )
+            other = _signals(diagnosis.recordings, last.robot, better)
+            again = cross_checked(other, better, request, stated_delay)
+            check = replace(check, explained=bool(again.agrees))
+        findings = (*disagreement(check, slow_motion(signals)), *findings, *rest)
         if attempt.zeros is not None and attempt.zeros.found:
             findings = (*findings, turned_zeros(attempt.zeros, attempt.robot))
     robot = attempt.robot
@@ -168,7 +184,7 @@ def identify_robot(
         "zero_offsets": list(robot.zero_offsets or (0.0,) * robot.n),
         "min_speed": [float(each) for each in request.slowest],
         **mask,
-        "shift": shift_option(attempt.delay, robot),
+        "shift": shift_option(attempt.delay, robot, request.lag),
         "recorded_velocity": [robot.names[joint] for joint in request.recorded],
         "version": _core.__version__,
         "recordings": [run.name for run in runs],

@@ -35,9 +35,10 @@ class RobotFitOptions(MaskOptions, total=False):
             kind="mapping, optional",
             help='Delay of the "torque" against the position [s], to be taken away; positive: the torque is late. One '
             "for all joints, a sequence with one for each, or a mapping by joints' names, e.g. "
-            '``{"torque": 0.001}``. An empty mapping shifts nothing. Default: the delay that is certain, of all joints '
-            "alike and of a joint that clearly has another, but for a torque that is early by more than a sample; the "
-            "findings tell it.",
+            '``{"torque": 0.001}``; "torque_filter" is the time constant of a low-pass filter that it passed [s]. An '
+            "empty mapping shifts nothing. Default: the delay that is certain, of all joints alike and of a joint that "
+            "clearly has another, but for a torque that is early by more than a sample; or the filter, where that "
+            "explains more. The findings tell it.",
         ),
     ]
 
@@ -49,11 +50,13 @@ class RobotOptions(RobotFitOptions, total=False):
         Model | str | Mapping[str, Model | str] | None,
         Option(
             kind="Model, str or mapping, optional",
-            help='Friction of the joints: "coulomb_viscous", "stribeck", or "auto": each joint has static friction if '
+            help='Friction of the joints: "coulomb_viscous", "stribeck", "smooth_coulomb_viscous" (Coulomb friction '
+            'rises with the speed), or "auto": each joint has static friction if '
             "that predicts its held-out torque better. With ``:asymmetric`` behind it, or as "
             '``Model(asymmetric=True)``, friction differs between the directions: "viscous" is then the mean, and '
             '"viscous_difference" half of what is more in the positive direction; half the difference of Coulomb '
-            'friction is in "torque_offset". A mapping from joints\' names to models says it for some of them. '
+            'friction is in "torque_offset". With ``:load_friction`` it grows with the torque of the links, too. A '
+            "mapping from joints' names to models says it for some of them. "
             'Default: the robot\'s models, else "auto".',
         ),
     ]

@@ -95,13 +95,13 @@ class MovingJoint:
 
 
 def breakaway(joint: object) -> float | None:
-    """Return the largest friction just off rest that a joint states [N·m]; None: its constant part is not known."""
+    """Return the largest friction in slow motion that a joint states [N·m]; None: its constant part is not known."""
     if not isinstance(joint, Joint):
         return None
     sizes = _sizes(_values(joint))
-    if not any(term.basis == "constant" for term, _ in sizes):
+    if not any(term.settles for term, _ in sizes):
         return None
-    return float(sum(term.at_rest * size for term, size in sizes))
+    return float(sum(max(float(term.at_rest), float(term.settles)) * size for term, size in sizes))
 
 
 def _values(joint: Joint) -> dict[str, float]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.causes.fitted_balance import LATE, FittedBalance
-from jointid.identification.causes.samples import Samples, WaySinceReversal, all_samples
+from jointid.identification.causes.samples import Samples, all_samples
 from jointid.recording.order_statistics import quantile_of_sizes
 
 Array = NDArray[np.float64]
@@ -134,44 +134,6 @@ def _against_motion(fit: FittedBalance, load: Array) -> Array:
     return np.asarray(np.abs(load) * turned)
 
 
-def slow_motion(fit: FittedBalance) -> Iterator[Candidate]:
-    """Friction at low speed: another decay, or the position since the last reversal."""
-    fast = _typical_speed(fit)
-    reach = max(float(np.ptp(run.position)) for run in fit.runs)
-    speeds = fast * np.array([0.02, 0.05, 0.1, 0.2, 0.4])
-    ways = reach * np.array([1e-4, 1e-3, 1e-2])
-    linear = fit.integral_of_each(
-        lambda _, run: (
-            np.exp(-np.abs(run.velocity)[:, None] / speeds) * np.sign(run.velocity)[:, None]
-        )
-    )
-    ways_gone = [WaySinceReversal(run) for run in fit.runs]
-    since = fit.integral_of_each(
-        lambda number, run: (
-            np.exp(-ways_gone[number].of(run.cut)[:, None] / ways) * np.sign(run.velocity)[:, None]
-        )
-    )
-    family = "slow_motion"
-    known = "static" in fit.names or "static_positive" in fit.names
-    for k, speed in enumerate(speeds):
-        yield Candidate(
-            name="stribeck_exponent" if known else "slow_motion",
-            columns=linear[:, k : k + 1],
-            detail=f"below {speed:.2g} @/s",
-            numbers=(("speed", float(speed), "/s"),),
-            family=family,
-        )
-    for k, way in enumerate(ways):
-        yield Candidate(
-            name="presliding",
-            columns=since[:, k : k + 1],
-            detail=f"within {way:.2g} @",
-            numbers=(("way", float(way), ""),),
-            family=family,
-        )
-    yield Candidate(name="slow_motion", columns=np.hstack([linear[:, ::2], since]), family=family)
-
-
 def drift(fit: FittedBalance) -> Iterator[Candidate]:
     """Coefficients that change evenly with time."""
     middle = fit.integral_of_each(lambda _, run: run.time - run.begin) / fit.duration
@@ -225,16 +187,17 @@ def delay(fit: FittedBalance) -> Iterator[Candidate]:
 def other_laws() -> list[_core.Term]:
     """Return the terms of friction of the speed alone that no other cause stands for.
 
-    Friction that is there at rest is dry, or low-speed friction.
+    Friction that is there at rest is dry, or low-speed friction; so is dry friction that rises with the speed.
     """
     of_speed = [t for t in _core.terms() if t.friction and not (t.needs_load or t.side)]
-    return [term for term in of_speed if not term.at_rest and term.basis != "linear"]
+    dry = [term for term in of_speed if term.at_rest or term.settles]
+    return [term for term in of_speed if term not in dry and term.basis != "linear"]
 
 
 def other_law(fit: FittedBalance) -> Iterator[Candidate]:
     """Friction of the core's table that the model lacks; with a shape in proportion to a power of usual speeds."""
     present = {term.basis for term in fit.terms if term is not None and term.friction}
-    speeds = _typical_speed(fit) * np.array(_OF_TYPICAL)
+    speeds = typical_speed(fit) * np.array(_OF_TYPICAL)
     for term in other_laws():
         if term.basis in present:
             continue
@@ -338,7 +301,8 @@ def _angle(fit: FittedBalance, order: float) -> Array:
     return np.asarray(columns - fit.duration[:, None] * mean)
 
 
-def _typical_speed(fit: FittedBalance) -> float:
+def typical_speed(fit: FittedBalance) -> float:
+    """Return a fast speed of the joint."""
     # Of a joint that rests nearly all the time it is that of the little motion.
     usual = max(quantile_of_sizes(run.velocity, 0.9) for run in fit.runs)
     return usual or max(float(np.abs(run.velocity).max()) for run in fit.runs)

@@ -14,7 +14,7 @@ from jointid.base.values import dataclass
 from jointid.estimate.delays import Delay
 from jointid.estimate.types_of_findings import FindingType
 from jointid.identification.causes import candidates as of
-from jointid.identification.causes import sizes
+from jointid.identification.causes import low_speed, sizes
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
 
@@ -163,14 +163,21 @@ FAMILIES: tuple[Family, ...] = (
         name="slow_motion",
         meaning="low-speed friction that the model lacks",
         remedy="use the model stribeck",
-        candidates=of.slow_motion,
+        candidates=low_speed.slow_motion,
         advice=_against_slow_motion,
+    ),
+    Family(
+        name="smooth_friction",
+        meaning="smoothly rising friction",
+        remedy="use the model smooth_coulomb_viscous",
+        candidates=low_speed.smooth_friction,
+        advice=lambda fit, _: fit.compared_with(name=low_speed.smooth_law()[0]),
     ),
     Family(
         name="presliding",
         meaning="friction that builds up after each reversal",
         remedy="record longer strokes with fewer reversals",
-        candidates=of.slow_motion,
+        candidates=low_speed.slow_motion,
         advice=_always(
             Action("record", text="longer strokes with fewer reversals"),
             Action("inspect", text="the friction just after each reversal"),
@@ -180,7 +187,7 @@ FAMILIES: tuple[Family, ...] = (
         name="stribeck_exponent",
         meaning="another decay of friction with speed",
         remedy="use the model stribeck_general, which has a free exponent",
-        candidates=of.slow_motion,
+        candidates=low_speed.slow_motion,
         advice=_against_slow_motion,
     ),
     Family(

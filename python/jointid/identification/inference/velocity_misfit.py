@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 # The last ones are how fast the static excess decays, whatever the speed it decays at.
 IMITATED = (
     "slow_motion",
+    "smooth_friction",
     "presliding",
     "delay",
     *dict.fromkeys(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.balance.windows import Windows, direction_integrals, interval_means, torque_integrals
+from jointid.robot.links.models import LOAD
 from jointid.robot.links.parameters import (
     CONSTANT,
     DIFFERENCE,
@@ -102,6 +103,8 @@ def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
             column(t.name, _integrals(t, velocity, travel, summing.step), key, least_of(t))
             for key, t in LINEAR_TERMS.items()
         ),
+        # The load is known with the links' inertias only: see `loads`.
+        column(LOAD.name, np.zeros_like(travel), LOAD.key, least_of(LOAD)),
         column(DIFFERENCE, np.abs(travel)),
         # Of a gain that is found from the weight at rest, an offset would take all of it away.
         *((column("torque_offset", summing.step),) if not _gainless(motion, joint) else ()),

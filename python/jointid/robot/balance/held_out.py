@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from jointid.balance.held_out import block_starts, groups_of
 from jointid.robot.balance.balance import Balance, Rows
 from jointid.robot.balance.fit import Fit
+from jointid.robot.balance.loads import loaded
 from jointid.robot.balance.shaped_terms import ShapedTerms
 
 Array = NDArray[np.float64]
@@ -50,14 +51,16 @@ def part_of_balance(balance: Balance, kept: Flags) -> Balance:
 
 def predicted_torque(fit: Fit, balance: Balance) -> Array:
     """Return the integrals of torque that a fit tells of a balance, which it need not have seen."""
+    inertial = [
+        value
+        for value, (joint, name) in zip(fit.values, fit.labels, strict=True)
+        if joint is None or name == "inertia_scale"
+    ]
+    balance = loaded(balance, fit.models, fit.columns.loading(np.array(inertial)))
     places = {balance.labels[place]: place for place in balance.columns_of(fit.models)}
-    total = fit.columns.known(balance)
-    inertial = []
+    total = fit.columns.known(balance) + fit.columns.columns(balance) @ np.array(inertial)
     for value, (joint, name) in zip(fit.values, fit.labels, strict=True):
-        if joint is None or name == "inertia_scale":
-            inertial.append(value)
-        elif (joint, name) in places:
+        if joint is not None and (joint, name) in places:
             total = total + value * balance.matrix[:, places[joint, name]]
-    total = total + fit.columns.columns(balance) @ np.array(inertial)
     values = dict(zip(fit.labels, fit.values.tolist(), strict=True))
     return np.asarray(total + ShapedTerms.of(balance, fit.models).torque(values))

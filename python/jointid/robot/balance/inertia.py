@@ -34,6 +34,8 @@ class InertiaColumns:
     given: Array  # (10 n,), what is not identified
     start: Array  # (columns,), values of the URDF
     dropped: tuple[int, ...] = ()  # motors whose inertia no motion separates from the links'
+    # (columns,), which base parameters contain a rotor's inertia
+    of_rotors: NDArray[np.bool_] | None = None
     # links whose scale no motion separates from the rotors' inertias or other scales; they stay at 1
     fixed: tuple[int, ...] = ()
     scales: bool = False  # whether the columns are scales
@@ -43,6 +45,15 @@ class InertiaColumns:
         """Return the inertial parameters of all links that have these values, shape (10 n,)."""
         if self.prior is not None:
             return self.prior.completed(values)
+        return np.asarray(self.given + self.directions @ values)
+
+    def loading(self, values: Array) -> Array:
+        """Return inertial parameters whose torque loads the gears, shape (10 n,).
+
+        A base parameter that also contains a rotor's inertia has the URDF's value: a rotor does not load its gear.
+        """
+        if self.of_rotors is not None:
+            values = np.where(self.of_rotors, self.start, values)
         return np.asarray(self.given + self.directions @ values)
 
     def prior_rows(self, others: int) -> PriorRows:
@@ -122,6 +133,8 @@ def inertia_columns(robot: Robot, mode: str) -> InertiaColumns:
     kept, combined = independent(structure)
     base = [place for place in kept if place < every.size]
     separate = {free[place - every.size] for place in kept if place >= every.size}
+    dropped = tuple(motor for motor in free if motor not in separate)
+    merged = [every.size + free.index(motor) for motor in dropped]
     directions = np.zeros((every.size, len(base)))
     directions[base, np.arange(len(base))] = 1.0
     prior = Prior.of(robot, combined[: len(base)], free)
@@ -133,7 +146,8 @@ def inertia_columns(robot: Robot, mode: str) -> InertiaColumns:
         given=np.zeros(every.size),
         start=combined[: len(base), : every.size] @ every,
         prior=prior,
-        dropped=tuple(motor for motor in free if motor not in separate),
+        dropped=dropped,
+        of_rotors=np.any(combined[: len(base), merged] != 0.0, axis=1),
     )
 
 

@@ -18,6 +18,7 @@ from jointid.robot.links.parameters import JOINT_FRICTION
 from jointid.robot.motion.plain_motion import PlainSignals
 from jointid.robot.result.cross_check import Compared, CrossCheck
 from jointid.robot.result.finding_types import TYPES
+from jointid.robot.result.prediction import loading_of
 from jointid.robot.result.record import RobotJoint
 
 Array = NDArray[np.float64]
@@ -28,6 +29,7 @@ _MATTERS = 0.01  # of the joint's torque: a smaller difference spoils nothing
 _VAGUE = 0.5  # of the value: with more doubt the look says nothing
 _SHOWN = 5
 _PAST = 2.2  # of the speed that a shape stands for: static friction is gone
+_RISEN = 3.0  # of the same: dry friction has risen
 _GONE = 0.01  # of a coefficient
 _POOR, _BETTER = 0.05, 0.5  # residual of the torque, and the second look's squared one beside it
 
@@ -55,6 +57,7 @@ def cross_checked(
         estimate.inertia,
         np.maximum([_past_shape(joint) for joint in joints], request.slowest),
         [joint.model for joint in joints],
+        loading_of(estimate),
         np.zeros(robot.n) if delay is None else delay,
         other,
     )
@@ -78,14 +81,15 @@ def cross_checked(
 
 
 def _past_shape(joint: RobotJoint) -> float:
-    """The speed past which a joint's shaped term is gone; infinite where it never is."""
+    """The speed past which a joint's shaped term is gone, or all there; infinite where it never is."""
     term = shaped_term(joint.model)
     if term is None:
         return 0.0
     value = joint.parameters[term.shapes[0]].value
     power = _core.shape(term.shapes[0]).speed_power
-    speed = _PAST * value ** (1.0 / power) if power else np.inf
-    return float(speed) if _core.friction_basis(term.key, [speed], [value])[0] < _GONE else np.inf
+    speed = (_RISEN if term.settles else _PAST) * value ** (1.0 / power) if power else np.inf
+    left = abs(float(term.settles) - _core.friction_basis(term.key, [speed], [value])[0])
+    return float(speed) if left < _GONE else np.inf
 
 
 def _compared(attempt: Attempt, look: SecondLook, joint: int, name: str) -> Compared:

@@ -59,7 +59,7 @@ def link_rows(
         start=np.ones(count),
     )
     other = replace(robot, rotor_inertias=(None,) * robot.n)
-    columns = Columns(other, links, np.zeros(robot.n), (PLAIN,) * robot.n)
+    columns = Columns(other, links, np.zeros(robot.n), (PLAIN,) * robot.n, links.given)
     return columns.blocks(signals, *SETTINGS[0], np.zeros((robot.n, 1)))
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.problem.low_pass import low_passed, reach
 from jointid.robot.balance.inertia import InertiaColumns
-from jointid.robot.links.models import is_asymmetric, linear_terms
+from jointid.robot.links.models import LOAD, is_asymmetric, is_loaded, linear_terms, shaped_term
 from jointid.robot.links.parameters import DIFFERENCE, MOTOR_TERMS, VISCOUS
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import PlainSignals, link_columns
@@ -58,6 +58,7 @@ class Columns:
     inertia: InertiaColumns
     slowest: Array  # (n,), speed of each joint below which there are no rows
     models: Sequence[str]  # one a joint
+    links: Array  # (10 n,), inertial parameters that the load of friction comes from
     # columns by signals, width and least speeds, once they were made
     made: dict[tuple[int, int, tuple[float, ...]], list[_Rows]] = field(default_factory=dict)
 
@@ -132,6 +133,11 @@ class Columns:
         wanted = np.column_stack([self.inertia.given, self.inertia.directions])
         links = link_columns(robot, signals.position, speed, step, wanted)
         change = np.gradient(motors, step, axis=1)
+        given = self.links[:, None]
+        loads = any(map(is_loaded, self.models))
+        link_torques = (
+            link_columns(robot, signals.position, speed, step, given)[:, 0] if loads else speed
+        )
         slow = np.abs(np.vstack([speed, motors])) <= limit[:, None]
         names: tuple[Label, ...] = tuple(
             (link, "inertia_scale") if self.inertia.scales else (None, name)
@@ -140,6 +146,9 @@ class Columns:
         found = []
         for joint in range(n):
             own = self._friction(joint, speed, motors, change)
+            if is_loaded(self.models[joint]):
+                torque = low_passed(link_torques[joint][None], width)[0]
+                own[joint, LOAD.name] = np.abs(torque) * np.sign(speed[joint])
             bad = slow[joint] | ~signals.whole
             for motor in np.flatnonzero(robot.coupled & (robot.couplings[:, joint] != 0.0)):
                 bad = bad | slow[n + motor]
@@ -158,7 +167,11 @@ class Columns:
         found: dict[Label, Array] = {
             (joint, term.name): _core.friction_basis(term.key, own, ())
             for term in linear_terms(self.models[joint])
+            if not term.needs_load
         }
+        shaped = shaped_term(self.models[joint])
+        if shaped is not None and shaped.settles:  # rows are where it has risen
+            found[joint, shaped.name] = np.sign(own)
         found[joint, "torque_offset"] = np.ones_like(own)
         found[joint, "given"] = np.zeros_like(own)
         if is_asymmetric(self.models[joint]):

@@ -52,16 +52,18 @@ def filtered_fit(
     mode: str,
     slowest: Array,
     models: Sequence[str],
+    inertial: Array,
     delay: Array,
     other: Array,
 ) -> SecondLook:
     """Return a plain fit of a robot's torques, without rows below the speeds `slowest`.
 
+    The load of friction is that of links with the inertial parameters `inertial`, (10 n,).
     `delay` is what a call states of each torque, `other` what the identification took away [s]: where these rows cannot
     tell it from their own, values differ by so much.
     """
     columns = inertia_columns(robot, mode)
-    every = Columns(robot, columns, slowest, models)
+    every = Columns(robot, columns, slowest, models, inertial)
     sources = [(False, list(signals))]
     if all(each.recorded is not None for each in signals):
         swapped = [replace(each, velocity=np.asarray(each.recorded)) for each in signals]

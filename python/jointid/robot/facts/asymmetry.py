@@ -43,7 +43,9 @@ def asymmetry_findings(attempt: Attempt) -> Iterator[Finding]:
             size = f"{rounded(2.0 * abs(value), 2.0 * error)} ± {two_digits(2.0 * error)} {unit}"
             yield TYPES["asymmetric_friction"].finding(
                 titled(f"{VISCOUS.meaning} of {name} differs between the directions", size),
-                Action("call", {"model": modelled(AUTO, True)}, function="identify_robot"),
+                Action(
+                    "call", {"model": modelled(AUTO, asymmetric=True)}, function="identify_robot"
+                ),
                 details=f"the difference is {size}; it explains {percent(explained)} of the joint's squared residual "
                 "in motion that was held out",
                 evidence={"difference": Measured(value, unit), "explained": Measured(explained)},

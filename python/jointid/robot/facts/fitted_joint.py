@@ -17,13 +17,24 @@ from jointid.identification.causes.fitted_balance import FittedBalance
 from jointid.identification.causes.samples import Motion, Samples
 from jointid.robot.balance.columns import Summing
 from jointid.robot.fit.attempt import Attempt
-from jointid.robot.links.models import MODELS, is_asymmetric, modelled, name_of, terms_of
+from jointid.robot.links.models import (
+    LOAD,
+    MODELS,
+    PLAIN,
+    SHAPED,
+    is_asymmetric,
+    is_loaded,
+    modelled,
+    name_of,
+    terms_of,
+)
 from jointid.robot.links.parameters import FRICTION, MOTOR_TERMS, SHAPES
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 _HELD = ("inertia_scale",)  # of a link: it acts on other joints, too
+_NO_LOAD = ("torque_offset", "rotor_inertia")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,9 +159,10 @@ class FittedJoint(FittedBalance):
         own = [
             number
             for number, name in enumerate(self.names[: len(self.terms)])
-            if name in FRICTION or name == "torque_offset"
+            if name in FRICTION or name in _NO_LOAD
         ]
-        torque = self.attempt.balance.rows.torque[self.kept]
+        balance = self.attempt.balance
+        torque = balance.rows.torque[self.kept] - balance.known[self.kept]
         return np.asarray(torque - self.residual - self.columns[:, own] @ self.best[own])
 
     @property
@@ -198,25 +210,33 @@ class FittedJoint(FittedBalance):
         return every[:, 0] if values.ndim == 1 else every
 
     def identified_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `identify`, where a robot can have such a model."""
+        """A call of `identify` with another model of this joint, where a robot can have it."""
         changed = self._changed(changes)
         if changed is None:
             return self._alone()
-        return (Action("call", {"model": changed}, function="identify_robot"),)
+        models = {self.attempt.robot.names[self.joint]: changed}
+        return (Action("call", {"model": models}, function="identify_robot"),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
         """A call of `compare`, where a robot can have such a model."""
         changed = self._changed(changes)
         if changed is None:
             return self._alone()
+        if LOAD.option in changes or changes.get("name") not in (None, PLAIN, SHAPED):
+            return self.identified_with(**changes)  # of the joints that it was found for
         return (Action("call", {"models": [self.model, changed]}, function="compare_robot_models"),)
 
     def _changed(self, changes: Mapping[str, Any]) -> str | None:
         """The model with these fields; None where a robot's joint has no such model."""
-        wanted = {"name": self.model_name, "asymmetric": self.is_asymmetric, **changes}
-        if len(wanted) > 2 or wanted["name"] not in MODELS:
+        wanted = {
+            "name": self.model_name,
+            "asymmetric": self.is_asymmetric,
+            LOAD.option: is_loaded(self.model),
+            **changes,
+        }
+        if len(wanted) > 3 or wanted["name"] not in MODELS:
             return None
-        return modelled(wanted["name"], wanted["asymmetric"])
+        return modelled(**wanted)
 
     def _alone(self) -> tuple[Action, ...]:
         name = self.attempt.robot.names[self.joint]

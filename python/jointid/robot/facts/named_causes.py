@@ -17,7 +17,7 @@ from jointid.robot.facts.fitted_joint import FittedJoint
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES
 
-CAUSES = ("springs and counterweights", "a low-pass filter on the torque", "soft gears")
+CAUSES = ("springs and counterweights", "soft gears")
 UNEXAMINED = f"not examined for a robot: {', '.join(CAUSES)}"
 _SHOWN = (
     0.5  # of the mean square that all rows leave: with less, the excerpts do not show the misfit
@@ -39,7 +39,9 @@ def causes_of_joint(attempt: Attempt, name: str) -> Causes:
 
 
 def cause_finding(cause: Cause, name: str, parameters: tuple[str, ...]) -> Finding:
-    """Return the finding of a joint's cause."""
+    """Return the finding of a joint's cause; it concerns the values that it moves, or all where none is known."""
+    moved = tuple(f"{name}.{each}" for each in cause.relative)
+    parameters = tuple(each for each in parameters if each in moved) or parameters
     kind = TYPES.get(_CALLED.get(cause.name, cause.name))
     found = finding_of_cause(cause, parameters, name, kind)
     return replace(found, details=f"{found.details}; {UNEXAMINED}")

@@ -12,7 +12,9 @@ from jointid.base.advice import Action
 from jointid.estimate.causes import Causes
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
+from jointid.identification.causes.suspicion import slow_misfit
 from jointid.robot.facts.named_causes import UNEXAMINED, cause_finding, causes_of_joint
+from jointid.robot.facts.one_call import with_one_call
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES
 from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
@@ -27,32 +29,37 @@ _MATTERS = 0.005  # of the torque: the part of the residual that is no noise
 _EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
 _MOST_LEFT = 0.5  # of a joint's misfit, by the causes that were found, harmless ones too
 _MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
+_LOUD = 3.0  # misfit of the slow windows over that of the others
 
 
 def misfit_findings(
-    attempt: Attempt, corrected: Attempt, *, named: bool = True
+    attempt: Attempt, corrected: Attempt, models: Sequence[str], *, named: bool = True
 ) -> Iterator[Finding]:
     """Findings of joints whose residual is no noise: its causes, or what was not examined; both cap the verdict.
 
-    Where wrong facts that were named explain it, it is for information: another cause may look like them. Without
-    `named` no cause is looked for: what is known of the recording already may look like one.
+    `models` are those that the call asked for, one a joint. Where wrong facts that were named explain it, it is for
+    information: another cause may look like them. Without `named` no cause is looked for: what is known of the
+    recording already may look like one.
     """
     estimate = attempt.estimate
     shares = {name: _structured(joint) for name, joint in estimate.joints.items()}
     left = {name: _structured(joint) for name, joint in corrected.estimate.joints.items()}
     concerned = sorted((name for name in shares if shares[name]), key=lambda name: -shares[name])
-    if not concerned:
-        return
+    joints = corrected.estimate.joints.items()
+    loud = [name for name, joint in joints if not shares[name] and _loud_at_low_speed(joint)]
     explained = max(left.values()) < _EXPLAINED * max(shares.values())
-    notes = []
-    for name in [*concerned] if named and not explained else []:
-        causes = causes_of_joint(corrected, name) if left[name] else Causes(found=())
-        for cause in causes.found:
-            yield cause_finding(cause, name, _all_of(estimate, name))
+    notes, told = [], []
+    for name in [*concerned, *loud] if named and not explained else []:
+        tried = left[name] or name in loud
+        causes = causes_of_joint(corrected, name) if tried else Causes(found=())
+        told += [cause_finding(cause, name, _all_of(estimate, name)) for cause in causes.found]
+        if name not in concerned:
+            continue
         known = (*causes.found, *causes.harmless)
         if math.prod(1.0 - cause.share for cause in known) < _MOST_LEFT:
             concerned.remove(name)
         notes += [f"{name}: {cause}" for cause in causes.harmless]
+    yield from with_one_call(told, estimate.robot.names, models)
     if concerned:
         left_over = {name: shares[name] for name in concerned}
         yield _unexamined(
@@ -110,6 +117,13 @@ def _structured(joint: RobotJoint) -> float:
         if alike > _SURE / np.sqrt(count) and share > least:
             found = max(found, share)
     return found
+
+
+def _loud_at_low_speed(joint: RobotJoint) -> bool:
+    """Whether slow windows leave far more than the others: of friction there, neighbours need not be alike."""
+    table = joint.windows
+    slow = slow_misfit(table.measured - table.fitted, table.duration, table.velocity)
+    return slow > _LOUD and joint.relative_residual > _MATTERS
 
 
 def _alike(rest: Array, lag: int) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,8 +15,9 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.fit.attempt import Attempt, Request, attempted
 from jointid.robot.fit.delays import TorqueDelay, coarse_delay, torque_delay
 from jointid.robot.fit.gravity import found_gravity
+from jointid.robot.fit.lags import TorqueLag, torque_lag_of
 from jointid.robot.links.robot import Robot
-from jointid.robot.motion.shifts import requested_delay, shift_option
+from jointid.robot.motion.shifts import requested_delay, shift_option, torque_lag
 from jointid.robot.result.finding_types import TYPES
 
 Array = NDArray[np.float64]
@@ -36,6 +37,8 @@ class Alignment:
     attempt: Attempt
     left: TorqueDelay  # delay after what was taken away
     chosen: bool  # whether what was taken away was found, not given
+    request: Request  # with the filters of the torques
+    lag: TorqueLag | None = None  # filters that were found in place of a delay
 
 
 def aligned(
@@ -48,11 +51,14 @@ def aligned(
     delay = requested_delay(shift, robot)
     free = delay is None
     delay = np.zeros(robot.n) if delay is None else delay
+    if isinstance(shift, Mapping):
+        request = replace(request, lag=torque_lag(shift, robot))
     attempt = attempted(recordings, robot, request, delay)
     robot, attempt = _levelled(recordings, robot, request, attempt)
     if free and robot.drive is not None:
         delay = np.full(robot.n, coarse_delay(attempt.balance, attempt.fit, attempt.excerpts))
         attempt = attempted(recordings, robot, request, delay)
+    first = attempt
     left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
     for _ in range(_TURNS if free else 0):
         step = left.taken if left.certain else _short(delay, left)
@@ -65,7 +71,12 @@ def aligned(
         attempt = attempted(recordings, robot, request, delay)
         robot, attempt = _levelled(recordings, robot, request, attempt)
         left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
-    return Alignment(attempt=attempt, left=left, chosen=free)
+    lag = torque_lag_of(first, delay) if free and robot.drive is None and delay.any() else None
+    if lag is not None:
+        request = replace(request, lag=lag.values)
+        attempt = attempted(recordings, robot, request, np.zeros(robot.n))
+        left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
+    return Alignment(attempt=attempt, left=left, chosen=free, request=request, lag=lag)
 
 
 def _levelled(
@@ -84,10 +95,33 @@ def _levelled(
 def delay_findings(found: Alignment) -> Iterator[Finding]:
     """Findings of the delay that was taken away, and of what is certain and left."""
     attempt, left = found.attempt, found.left
+    if found.lag is not None:
+        yield _lag_finding(found.lag, attempt.robot.names)
     if found.chosen and attempt.delay.any():
         yield _delay_finding("delay_removed", attempt.delay, found)
     if left.certain and np.abs(left.taken).max() >= _SMALL and (found.chosen or left.sure):
         yield _delay_finding("signal_lag", np.zeros_like(left.taken), found)
+
+
+def _lag_finding(lag: TorqueLag, names: Sequence[str]) -> Finding:
+    sizes = {
+        name: f"{rounded(1e3 * value, 1e3 * error)} ± {two_digits(1e3 * error)} ms"
+        for name, value, error in zip(names, lag.values, lag.errors, strict=True)
+        if value
+    }
+    name, size = next(iter(sizes.items()))
+    more = f", and {len(sizes) - 1} more" if len(sizes) > 1 else ""
+    every = ", ".join(f"{each} {text}" for each, text in sizes.items())
+    return TYPES["torque_filtered"].finding(
+        f"the torque of {name} passed a low-pass filter of {size}{more}",
+        details=f"time constants of first order: {every}; they explain more in motion that was held out than a delay, "
+        "and were undone before the identification",
+        evidence={
+            f"{each}.time_constant": Measured(float(value), "s")
+            for each, value in zip(names, lag.values, strict=True)
+            if value
+        },
+    )
 
 
 def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:

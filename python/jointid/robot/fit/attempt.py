@@ -15,24 +15,26 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance.balance import Balance, balance_of
 from jointid.robot.balance.choice import certainty, with_shapes
 from jointid.robot.balance.fit import Fit
-from jointid.robot.balance.inertia import basis_of, inertia_columns
+from jointid.robot.balance.inertia import InertiaColumns, basis_of, inertia_columns
+from jointid.robot.balance.loads import loaded
 from jointid.robot.balance.products import Products
 from jointid.robot.balance.shaped_terms import ShapedTerms, solved_with_shapes
 from jointid.robot.balance.solving import PriorRows, solved
 from jointid.robot.fit.conclusion import concluded
 from jointid.robot.fit.resampling import draws_of
 from jointid.robot.fit.zeros import Zeros, zeros_of
-from jointid.robot.links.models import PLAIN, SHAPED, is_asymmetric, modelled, name_of
+from jointid.robot.links.models import PLAIN, SHAPED, is_loaded, name_of, renamed
 from jointid.robot.links.parameters import POSITION_GAIN
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.motion import Motion, part_of
 from jointid.robot.motion.request import duration_of
-from jointid.robot.motion.shifts import without_delay
+from jointid.robot.motion.shifts import without_delay, without_lag
 from jointid.robot.result.result import RobotEstimate
 
 Array = NDArray[np.float64]
 
 _PIECE = 120_000  # samples of a long recording that are looked at at once
+_TURNS = 3  # of friction under load, which follows from the links, and the links
 _EXCERPTS = 4  # recordings by whose beginnings facts are judged
 
 
@@ -45,9 +47,9 @@ class Request:
     windows: float | None
     slowest: Array  # (n,), least speeds
     mask_standstill: bool
-    recorded: tuple[
-        int, ...
-    ] = ()  # joints by the velocity in the recording, not by the derived one
+    # Joints by the velocity in the recording, not by the derived one.
+    recorded: tuple[int, ...] = ()
+    lag: Array | None = None  # (n,), time constants of the torques' filters, to be undone [s]
     further_modes: tuple[str, ...] = ()  # further modes of inertia that the balance is to hold
 
 
@@ -71,7 +73,8 @@ def attempted(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, delay: Array
 ) -> Attempt:
     """Return the identification of recordings on even clocks, with a delay of each torque taken away [s]."""
-    runs = [without_delay(run, robot, delay) for run in recordings]
+    lag = np.zeros(robot.n) if request.lag is None else request.lag
+    runs = [without_delay(without_lag(run, robot, lag), robot, delay) for run in recordings]
     pieces = _pieces(runs)
     numbers = [number for number, _, _ in pieces]
     firsts = [numbers.index(number) for number in range(len(runs))][:_EXCERPTS]
@@ -140,10 +143,27 @@ def _gains(fit: Fit) -> dict[int, float]:
 def fitted(
     robot: Robot, balance: Balance, mode: str, models: Sequence[str]
 ) -> tuple[Fit, PriorRows]:
-    """Return the values of all parameters, and what was known of them beforehand; the balance must hold the mode."""
+    """Return the values of all parameters, and what was known of them beforehand; the balance must hold the mode.
+
+    What the load adds to friction comes from the links as the URDF has them; where they are identified, then from the
+    links as they were found.
+    """
+    columns = inertia_columns(robot, mode)
+    links = columns.start
+    turns = _TURNS if links.size and any(map(is_loaded, models)) else 1
+    for _ in range(turns):
+        with_loads = loaded(balance, models, columns.loading(links))
+        fit, prior = _fitted(with_loads, columns, models)
+        first = len(balance.columns_of(fit.models, columns.dropped))
+        links = fit.values[first : first + links.size]
+    return fit, prior
+
+
+def _fitted(
+    balance: Balance, columns: InertiaColumns, models: Sequence[str]
+) -> tuple[Fit, PriorRows]:
     chosen = [joint for joint, model in enumerate(models) if name_of(model) == AUTO]
     models = _renamed(models, chosen, SHAPED)
-    columns = inertia_columns(robot, mode)
     kept = balance.columns_of(models, columns.dropped)
     target = balance.rows.torque - columns.known(balance)
     inertial = columns.columns(balance)
@@ -178,8 +198,7 @@ def fitted(
 def _renamed(models: Sequence[str], joints: Collection[int], name: str) -> list[str]:
     """Models with another name for some joints."""
     return [
-        modelled(name, is_asymmetric(model)) if joint in joints else model
-        for joint, model in enumerate(models)
+        renamed(model, name) if joint in joints else model for joint, model in enumerate(models)
     ]
 
 

@@ -30,6 +30,7 @@ class Share:
     values: Array  # (columns,); 0 of a column that the parameters follow
     # clustered over stretches of motion; infinite of a column that the parameters follow
     errors: Array
+    gains: Array  # (FOLDS,), that fall in each stretch
     wald: float  # squared values in terms of their errors, per column: 1 by chance
 
 
@@ -75,7 +76,14 @@ class ExcerptRows:
         seen = (lengths > _NOTHING * raw) & (raw > _NOTHING * raw.max(initial=0.0))
         values, errors = np.zeros(raw.size), np.full(raw.size, np.inf)
         if not seen.any():
-            return Share(share=0.0, certainty=0.0, values=values, errors=errors, wald=0.0)
+            return Share(
+                share=0.0,
+                certainty=0.0,
+                values=values,
+                errors=errors,
+                gains=np.zeros(FOLDS),
+                wald=0.0,
+            )
         unit, edges = rest[:, seen] / lengths[seen], np.searchsorted(self._fold, np.arange(FOLDS))
         gram = np.array([part.T @ part for part in np.split(unit, edges[1:])])
         push = np.add.reduceat(unit * self.residual[:, None], edges, axis=0)
@@ -98,5 +106,6 @@ class ExcerptRows:
             certainty=float(gain.sum() / max(scatter, 1e-300)),
             values=values,
             errors=errors,
+            gains=gain,
             wald=float(wald) / int(seen.sum()),
         )

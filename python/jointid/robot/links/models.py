@@ -1,4 +1,7 @@
-"""The friction model of each joint as text: a name, and ``:asymmetric`` where the directions differ; and its terms."""
+"""The friction model of each joint as text, and its terms.
+
+The text is a name, with ``:asymmetric`` where the directions differ and ``:load_friction`` where the load adds to it.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,14 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.joint.model import AUTO, FIELDS, Model
 
+LOAD = next(term for term in _core.terms() if term.needs_load and term.behind_gear)
+"""Friction in proportion to the torque of the links."""
+
 
 def terms_of(model: str) -> list[_core.Term]:
     """Return the terms of a model, each for both directions."""
-    return [_core.term(key) for key in _core.model_terms(name_of(model))]
+    of_speed = [_core.term(key) for key in _core.model_terms(name_of(model))]
+    return [*of_speed, LOAD] if is_loaded(model) else of_speed
 
 
 def linear_terms(model: str) -> list[_core.Term]:
@@ -46,20 +53,33 @@ def _named(model: object, usual: str) -> str:
     chosen = Model.of(model)
     if not chosen.stated():
         return usual
-    stated = {name for name in chosen.stated() if name not in ("name", "asymmetric")}
-    if chosen.name not in (None, *MODELS, AUTO) or stated:
+    stated = {name for name in chosen.stated() if name not in _FIELDS}
+    if chosen.name not in (None, *MODELS, AUTO) or stated or chosen.load_friction == "drive":
         raise InputError(
             f"of a whole robot's friction, one of {', '.join((*MODELS, AUTO))} is identified, each also as "
-            "NAME:asymmetric",
+            "NAME:asymmetric, NAME:load_friction (of the links' torque), or both",
             argument="model",
             value=str(chosen),
         )
-    return modelled(chosen.name or AUTO, bool(chosen.asymmetric))
+    return modelled(
+        chosen.name or AUTO,
+        asymmetric=bool(chosen.asymmetric),
+        load_friction=bool(chosen.load_friction),
+    )
 
 
-def modelled(name: str, asymmetric: bool) -> str:
+_FIELDS = ("name", "asymmetric", LOAD.option)
+
+
+def modelled(name: str, *, asymmetric: bool = False, load_friction: bool = False) -> str:
     """Return a model's text."""
-    return f"{name}:asymmetric" if asymmetric else name
+    options = {"asymmetric": asymmetric, LOAD.option: load_friction}
+    return ":".join([name, *(option for option, stated in options.items() if stated)])
+
+
+def renamed(model: str, name: str) -> str:
+    """Return a model's text with another name and the same options."""
+    return ":".join([name, *model.split(":")[1:]])
 
 
 def name_of(model: str) -> str:
@@ -69,7 +89,12 @@ def name_of(model: str) -> str:
 
 def is_asymmetric(model: str) -> bool:
     """Return whether a model's friction differs between the directions."""
-    return bool(Model.parse(model).asymmetric)
+    return "asymmetric" in model.split(":")[1:]
+
+
+def is_loaded(model: str) -> bool:
+    """Return whether a model's friction grows with the load."""
+    return LOAD.option in model.split(":")[1:]
 
 
 MODELS = tuple(

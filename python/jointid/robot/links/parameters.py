@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from jointid import _core
-from jointid.robot.links.models import MODELS, PLAIN, linear_terms, terms_of
+from jointid.robot.links.models import LOAD, MODELS, PLAIN, linear_terms, modelled, terms_of
 
 LINEAR_TERMS = {term.key: term for model in MODELS for term in linear_terms(model)}
-"""Terms without shape parameters that some model has, by key."""
+"""Terms of the speed without shape parameters that some model has, by key."""
 CONSTANT, VISCOUS = (
     next(term for term in linear_terms(PLAIN) if term.basis == basis)
     for basis in ("constant", "linear")
@@ -55,16 +55,16 @@ def _facts(row: _core.Term | _core.Shape, meaning: str) -> tuple[str, str, str]:
     return meaning, row.unit, row.unit_prismatic
 
 
-PARAMETERS = tuple(parameter_facts(*MODELS))
+PARAMETERS = tuple(parameter_facts(*MODELS, modelled(PLAIN, load_friction=True)))
 """Names of a joint's parameters, in the order of tables."""
 FRICTION = frozenset(PARAMETERS) - {
     *("torque_offset", "rotor_inertia", "inertia_scale", POSITION_GAIN)
 }
 """Those that are friction."""
 SHAPES = frozenset(name for model in MODELS for term in terms_of(model) for name in term.shapes)
-JOINT_FRICTION = tuple(dict.fromkeys(term.name for term in LINEAR_TERMS.values()))
+JOINT_FRICTION = (*dict.fromkeys(term.name for term in LINEAR_TERMS.values()), LOAD.name)
 LINEAR_FRICTION = (*JOINT_FRICTION, *MOTOR_TERMS)
-"""Friction without shape parameters: of joints on their own speed, and with that of motors."""
+"""Friction without shape parameters: of joints on their own speed and load, and with that of motors."""
 
 
 def least_of(term: _core.Term) -> float:

@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 Shift = Mapping[str, float | Sequence[float] | Mapping[str, float]]
 """Delays by signal, of all joints alike, one a joint, or by joints' names [s]; positive: the signal is late."""
 
+FILTER = "torque_filter"
+"""Key of a `shift` for the time constants of low-pass filters of first order that the torques passed [s]."""
 _DRIVE = ("torque", "motor_torque")
 _FEWEST = 8  # samples
 COMMAND = "reference"
@@ -43,7 +45,7 @@ def torque_shift(shift: object, robot: Robot) -> Array:
     assert isinstance(shift, Mapping)
     moved = _moved(robot)
     for signal in shift:
-        if signal == moved:
+        if signal == moved or (signal == FILTER and moved != COMMAND):
             continue
         if moved == COMMAND:
             raise InputError(
@@ -66,7 +68,23 @@ def torque_shift(shift: object, robot: Robot) -> Array:
             value=signal,
             remedy="leave it out",
         )
-    given: Any = shift.get(moved, 0.0)
+    return _of_joints(shift, moved, robot)
+
+
+def torque_lag(shift: Mapping[str, Any], robot: Robot) -> Array:
+    """Return the time constant of each torque's low-pass filter [s] from a `shift` that `torque_shift` has checked."""
+    found = _of_joints(shift, FILTER, robot)
+    if found.min() < 0.0:
+        raise InputError(
+            "a time constant of at least 0 is expected",
+            argument=f"shift.{FILTER}",
+            value=shift[FILTER],
+        )
+    return found
+
+
+def _of_joints(shift: Mapping[str, Any], key: str, robot: Robot) -> Array:
+    given = shift.get(key, 0.0)
     if isinstance(given, Mapping):
         for name in given:
             if name not in robot.names:
@@ -76,7 +94,7 @@ def torque_shift(shift: object, robot: Robot) -> Array:
         if len(given) != robot.n:
             raise InputError(
                 f"one for all or one for each of the {robot.n} joints is expected",
-                argument=f"shift.{moved}",
+                argument=f"shift.{key}",
                 value=given,
             )
         return np.array([checked_shift({"torque": each}).get("torque", 0.0) for each in given])
@@ -88,14 +106,35 @@ def _moved(robot: Robot) -> str:
     return "torque" if robot.drive is None else COMMAND
 
 
-def shift_option(delay: Array, robot: Robot) -> dict[str, float | dict[str, float]]:
-    """Return delays as a call takes them: one for all joints if they are alike, otherwise by name."""
-    if not delay.any():
-        return {}
-    if np.all(delay == delay[0]):
-        return {_moved(robot): round(float(delay[0]), 7)}
-    named = zip(robot.names, delay.tolist(), strict=True)
-    return {_moved(robot): {name: round(each, 7) for name, each in named if each}}
+def shift_option(
+    delay: Array, robot: Robot, lag: Array | None = None
+) -> dict[str, float | dict[str, float]]:
+    """Return delays and filters as a call takes them: one for all joints if they are alike, otherwise by name."""
+    found: dict[str, float | dict[str, float]] = {}
+    for key, values in ((_moved(robot), delay), (FILTER, lag)):
+        if values is None or not values.any():
+            continue
+        if np.all(values == values[0]):
+            found[key] = round(float(values[0]), 7)
+        else:
+            named = zip(robot.names, values.tolist(), strict=True)
+            found[key] = {name: round(each, 7) for name, each in named if each}
+    return found
+
+
+def without_lag(recording: RobotRecording, robot: Robot, lag: Array) -> RobotRecording:
+    """Return a recording with torques as they were before a low-pass filter of first order with time constants [s]."""
+    if not lag.any():
+        return recording
+    fields = recording.fields()
+    for signal in _DRIVE:
+        if fields.get(signal) is None:
+            continue
+        values = np.array(fields[signal])
+        for joint, column in enumerate(robot.columns_of(recording)):
+            values[:, column] += lag[joint] * np.gradient(values[:, column], recording.time)
+        fields[signal] = values
+    return RobotRecording(**{**fields, "extra": {}})
 
 
 def without_delay(recording: RobotRecording, robot: Robot, delay: Array) -> RobotRecording:

@@ -48,7 +48,7 @@ class CrossCheck:
     reason : str
         Why there is no second look.
     explained : bool
-        Whether both agree once the wrong facts that are named are corrected.
+        Whether both agree once the wrong facts that are named are corrected, or with the models that are advised.
     """
 
     parameters: Mapping[str, Compared] = field(default_factory=dict)
@@ -64,7 +64,7 @@ class CrossCheck:
         apart = [name for name, each in self.parameters.items() if each.agrees is False]
         if not self.agrees:
             what = f"disagrees: {', '.join(apart)}" if apart else "explains far more"
-            also = "; the wrong facts that are named explain it" if self.explained else ""
+            also = "; what the findings name explains it" if self.explained else ""
             return f"a plain filtered least squares {what}{also}"
         return (
             f"a plain filtered least squares agrees ({compared} of {len(self.parameters)} values)"

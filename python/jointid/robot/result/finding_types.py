@@ -195,6 +195,13 @@ TYPES = {
             advice="nothing, or state `gravity`",
         ),
         FindingType(
+            code="torque_filtered",
+            severity="info",
+            meaning="a low-pass filter of first order on the torque explains held-out motion better than a delay, and "
+            "was undone before the identification",
+            advice="nothing, or state `shift` with `torque_filter`",
+        ),
+        FindingType(
             code="unexamined_causes",
             meaning="the rest of the torque is not noise: neighbouring windows are alike, and no known cause explains "
             "most of it. The finding lists causes that are not examined for a robot, and makes the verdict "

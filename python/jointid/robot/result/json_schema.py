@@ -13,7 +13,14 @@ _TRIPLE = ListOf(_SIZE, 3, 3)
 
 _JOINT = Record(
     {
-        "model": Text(known=tuple(modelled(n, a) for n in MODELS for a in (False, True))),
+        "model": Text(
+            known=tuple(
+                modelled(name, asymmetric=asymmetric, load_friction=load)
+                for name in MODELS
+                for asymmetric in (False, True)
+                for load in (False, True)
+            )
+        ),
         "parameters": TableOf(PARAMETER),
         "residuals": RESIDUALS,
         "windows": OrNull(WINDOWS),
@@ -46,7 +53,10 @@ _ROBOT = Record(
         "side": OrNull(Text(known=("joint", "motor"))),
     },
     {
-        **{key: OrNull(ListOf(_SIZE)) for key in ("torque_scales", "directions", "torque_constants")},
+        **{
+            key: OrNull(ListOf(_SIZE))
+            for key in ("torque_scales", "directions", "torque_constants")
+        },
         "drive": OrNull(_DRIVE),
     },
 )

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance.balance import Balance, balance_of
+from jointid.robot.balance.inertia import inertia_columns
+from jointid.robot.balance.loads import loaded
 from jointid.robot.balance.shaped_terms import ShapedTerms
 from jointid.robot.motion.motion import Motion
-from jointid.robot.motion.shifts import torque_shift, without_delay
+from jointid.robot.motion.shifts import torque_lag, torque_shift, without_delay, without_lag
 from jointid.robot.motion.stamps import on_even_clock
 from jointid.robot.result.record import RobotEstimateRecord
 
@@ -40,9 +42,12 @@ class RobotPrediction:
 def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> RobotPrediction:
     """Predict the window integrals of a recording's torques; see `RobotEstimate.predict`."""
     robot, settings = estimate.robot, estimate.settings
+    shift = settings.get("shift", {})
     motion = Motion.of(
         without_delay(
-            on_even_clock(recording), robot, torque_shift(settings.get("shift", {}), robot)
+            without_lag(on_even_clock(recording), robot, torque_lag(shift, robot)),
+            robot,
+            torque_shift(shift, robot),
         ),
         robot,
         np.array(settings["min_speed"]),
@@ -53,8 +58,8 @@ def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> R
             if name in settings.get("recorded_velocity", ())
         ],
     )
-    whole = estimate.inertial.reshape(-1, 1)
-    balance = balance_of(robot, [motion], float(settings["window_duration"]), whole)
+    basis = np.column_stack([estimate.inertial.ravel(), loading_of(estimate)])
+    balance = balance_of(robot, [motion], float(settings["window_duration"]), basis)
     predicted = balance.inertia[:, 0] + balance.known + _friction(estimate, balance)
     residual, measured = balance.rows.torque - predicted, balance.rows.torque
     shares = {}
@@ -70,6 +75,17 @@ def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> R
     )
 
 
+def loading_of(estimate: RobotEstimateRecord) -> Array:
+    """Return the inertial parameters whose torque loads the gears, shape (10 n,)."""
+    columns, joints = inertia_columns(estimate.robot, estimate.inertia), [*estimate.joints.values()]
+    values = (
+        [joints[joint].parameters["inertia_scale"].value for joint in columns.joints]
+        if columns.scales
+        else [p.value for p in estimate.base_parameters.values()]
+    )
+    return columns.loading(np.array(values))
+
+
 def _friction(estimate: RobotEstimateRecord, balance: Balance) -> Array:
     """Integrals of friction, offsets and the rotors that the links' parameters do not contain."""
     joints = list(estimate.joints.values())
@@ -79,6 +95,7 @@ def _friction(estimate: RobotEstimateRecord, balance: Balance) -> Array:
         for number, joint in enumerate(joints)
         for name, p in joint.parameters.items()
     }
+    balance = loaded(balance, models, balance.basis[:, 1])
     total = ShapedTerms.of(balance, models).torque(values)
     for place in balance.columns_of(models):
         if balance.labels[place] in values:

@@ -29,7 +29,7 @@ from jointid.robot.links.parameters import (
 )
 from jointid.robot.links.position_drive import PositionDrive
 from jointid.robot.links.robot import Robot
-from jointid.robot.motion.shifts import torque_shift
+from jointid.robot.motion.shifts import torque_lag, torque_shift
 from jointid.robot.result.cross_check import Compared, CrossCheck
 from jointid.robot.result.document import KIND, SCHEMA
 from jointid.robot.result.json_schema import ROBOT_ESTIMATE
@@ -67,7 +67,9 @@ def _estimate(d: Mapping[str, Any], cls: type[Saved]) -> Saved:
     base = [parameter_of(each) for each in d["base_parameters"]]
     robot = _robot(d["robot"], d["name"])
     try:
-        torque_shift(d["settings"].get("shift", {}), robot)
+        shift = d["settings"].get("shift", {})
+        torque_shift(shift, robot)
+        torque_lag(shift, robot)
     except InputError as error:
         raise error.at("settings") from None
     return cls(

@@ -10,6 +10,7 @@ from jointid.base.text_table import aligned
 from jointid.estimate.wording import number, percent, two_digits
 from jointid.joints.tables import value_with_error
 from jointid.robot.links.parameters import PARAMETERS
+from jointid.robot.motion.shifts import FILTER
 from jointid.robot.result.record import RobotEstimateRecord
 from jointid.robot.result.verdict import judged_robot
 
@@ -94,11 +95,13 @@ def _turning(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
         row = robot.couplings[motor]
         shares = [f"{row[joint]:.4g} {robot.names[joint]}" for joint in map(int, row.nonzero()[0])]
         found.append(("coupling", f"motor {robot.names[motor]} turns with {' + '.join(shares)}"))
-    shift = estimate.settings.get("shift", {}).get("torque")
-    if shift:
-        late = shift.items() if isinstance(shift, Mapping) else [("all joints", shift)]
-        delays = ", ".join(f"{1e3 * value:.3g} ms of {name}" for name, value in late)
-        found.append(("delay", f"torques' delay taken away: {delays}"))
+    shift = estimate.settings.get("shift", {})
+    for key, what in (("torque", "delay taken away"), (FILTER, "low-pass filter undone")):
+        given = shift.get(key)
+        if given:
+            each = given.items() if isinstance(given, Mapping) else [("all joints", given)]
+            sizes = ", ".join(f"{1e3 * value:.3g} ms of {name}" for name, value in each)
+            found.append(("delay", f"torques' {what}: {sizes}"))
     return found
 
 

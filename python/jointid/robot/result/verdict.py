@@ -29,7 +29,18 @@ def judged_robot(estimate: RobotEstimateRecord) -> Verdict:
         "simulation": use_by([*every, *bounded], names, lambda _: True),
         "monitoring": use_by(to_changes(objections, estimate.parameters), names, lambda _: True),
     }
-    return concluded(uses, [*every, *bounded], estimate.within)
+    # Where a value is known to move, chance alone does not say how good it is.
+    moved = {
+        found.code
+        for found in estimate.warnings
+        if any(name.endswith(".shift") for name in found.evidence)
+    }
+    within = {
+        purpose: size
+        for purpose, size in estimate.within.items()
+        if not moved & set(uses[purpose].codes)
+    }
+    return concluded(uses, [*every, *bounded], within)
 
 
 def _objections(estimate: RobotEstimateRecord) -> Iterable[Objection]:
