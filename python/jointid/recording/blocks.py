@@ -16,7 +16,7 @@ _UNIT = r"\s*[\[(][^\[\](),]*[\])]\s*$"
 OF_BLOCKS = Action(
     "call",
     {"columns": {"time": "COLUMN", "position": "FIRST:LAST"}},
-    "of several joints: blocks of columns by their numbers from 0, and another one for the torque",
+    "for several joints: blocks of columns, numbered from 0, both ends included; another for the torque",
     function="load_robot",
 )
 """The call for a file with a block of columns for each signal."""

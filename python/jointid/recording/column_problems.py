@@ -166,6 +166,13 @@ def missing(
                     argument=f"columns.{owner}",
                     place=table.header_place,
                 )
+    unnamed = all(header == f"column {k}" for k, header in enumerate(table.headers))
+    if unnamed and set(signals) == set(NEEDED) and len(table.headers) > _OF_ONE_JOINT:
+        return InputError(
+            f"{len(table.headers)} columns without names: the numbers do not show what each is",
+            place=table.header_place,
+            remedy=OF_BLOCKS,
+        )
     headerless = by_numbers(table) if set(signals) == set(NEEDED) else {}
     proposed: dict[str, int] = dict(headerless)
     shown = [table.headers[index] for index in proposed.values()]
@@ -184,13 +191,11 @@ def missing(
     if not any(found.of.get(signal) or signal in proposed for signal in TORQUES) and proposed:
         proposed |= _torque(table, found, {*owners, *proposed.values()}, proposed, kind)
     arguments = _proposal(table, proposed, kind)
-    unnamed = all(header == f"column {k}" for k, header in enumerate(table.headers))
-    blocks = (OF_BLOCKS,) if unnamed and len(table.headers) > _OF_ONE_JOINT else ()
     return InputError(
         _not_recognised(table, signals, absent, shown)
         + _asked(table, found, proposed, headerless=bool(headerless)),
         place=table.header_place,
-        remedy=(_with_absent(arguments, absent), *blocks),
+        remedy=_with_absent(arguments, absent),
     )
 
 

@@ -198,9 +198,8 @@ def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, b
     present = np.all(np.isfinite(recorded[:, columns]), axis=0)
     if not present.all():
         raise InputError(
-            "this joint has no torque",
-            argument="recordings",
-            value=robot.names[int(np.argmin(present))],
+            f"{robot.names[int(np.argmin(present))]} has no torque",
+            place=recording.name,
             remedy="name the joints that have one",
         )
     if torque is not None:
@@ -235,8 +234,7 @@ def _of_currents(recording: RobotRecording, robot: Robot, columns: list[int]) ->
     if recording.current is None:
         raise InputError(
             "the recording has no torque",
-            argument="recordings",
-            value=recording.name,
+            place=recording.name,
             remedy=() if recording.reference is None else facts_of_drive(robot.names),
         )
     if robot.torque_constants is None:
