@@ -199,7 +199,7 @@ LIBRARY = {
     *("string", "tomllib", "zlib"),
 }
 COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
-    "identify": (["identify", "RUN", "--quiet"], IDENTIFYING, 253),
+    "identify": (["identify", "RUN", "--quiet"], IDENTIFYING, 254),
     "identify --report": (
         ["identify", "RUN", "--quiet", "--report", "PAGE"],
         IDENTIFYING
@@ -207,7 +207,7 @@ COMMANDS: dict[str, tuple[list[str], set[str], int]] = {
         | {"report.page", "report.renderers", "report.sections"},
         302,
     ),
-    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 273),
+    "compare": (["compare", "RUN", "--quiet"], IDENTIFYING | {"comparison"}, 274),
     "info": (["info", "RUN"], IDENTIFYING, 220),
 }
 

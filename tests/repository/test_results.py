@@ -181,7 +181,7 @@ def example(name: str) -> Result:
 def test_every_result_is_of_a_kind() -> None:
     assert {name: each._KIND for name, each in CLASSES.items()} == {name: name for name in KINDS}
     assert EXAMPLES.keys() == CLASSES.keys()
-    texts = (path.read_text(encoding="utf-8") for path in Path(jid.__path__[0]).rglob("*.py"))
+    texts = (path.read_text(encoding="utf-8") for path in Path(jid.__file__).parent.rglob("*.py"))
     found = {name for text in texts for name in _SUBCLASS.findall(text)}
     assert found - {"KeptResult"} == {each.__name__ for each in CLASSES.values()}
 

@@ -27,6 +27,7 @@ RUN_BY = {
     "docs/own_terms.md": "test_documents.py",
     "docs/reports.md": "test_documents.py",
     "docs/robot_logs.md": "test_robot_logs_document.py",
+    "docs/robot_reference.md": "test_robots_document.py",
     "docs/robots.md": "test_robots_document.py",
     "docs/servos.md": "test_servos_document.py",
     "docs/several_joints.md": "test_several_joints_document.py",

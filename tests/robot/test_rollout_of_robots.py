@@ -49,18 +49,28 @@ def test_a_wrong_friction_is_seen(path: Path, found: jid.RobotEstimate, rolled: 
     assert again.runs[0].error > 10.0 * rolled.runs[0].error
 
 
+def test_friction_under_load_moves_the_arm_as_logged(path: Path) -> None:
+    share = (0.15, 0.1)
+    first, second = (
+        small_arm.recording(path, seed=seed, under_load=share, duration=8.0) for seed in (0, 3)
+    )
+    model = "coulomb_viscous:load_friction"
+    found = jid.identify(first, jid.Robot.from_urdf(path), model=model)
+    rolled = jid.simulate(found, recordings=second)
+    assert max(run.error for run in rolled.runs) < np.radians(0.1)
+
+
 def test_a_joint_that_friction_holds_stands_still(found: jid.RobotEstimate) -> None:
     arm = Arm.of(found)
-    position, velocity = np.array([0.1, 0.0]), np.zeros(2)
-    held = arm.bias(position, velocity) + np.array(
-        [3.9, -1.9]
-    )  # below Coulomb friction, 4 and 2 N·m
+    position, velocity, still = np.array([0.1, 0.0]), np.zeros(2), np.zeros(2)
+    below = np.array([3.9, -1.9])  # Coulomb friction is 4 and 2 N·m
+    held = arm.bias(position, velocity) + below
     for _ in range(200):
-        position, velocity = moved(arm, position, velocity, held, 1e-3)
+        position, velocity = moved(arm, position, velocity, still, held, 1e-3)
     assert velocity == pytest.approx([0.0, 0.0], abs=1e-12)
     assert position == pytest.approx([0.1, 0.0], abs=1e-12)
     beyond = arm.bias(position, velocity) + np.array([4.1, 0.0])
-    _, velocity = moved(arm, position, velocity, beyond, 1e-3)
+    _, velocity = moved(arm, position, velocity, still, beyond, 1e-3)
     assert velocity[0] > 0.0
 
 
@@ -74,13 +84,13 @@ def test_mujoco_moves_alike(path: Path, found: jid.RobotEstimate) -> None:
         model.dof_armature[k] = values["rotor_inertia"]
     data = mujoco.MjData(model)
     arm = Arm.of(found)
-    position, velocity = np.array([0.5, -0.3]), np.zeros(2)
+    position, velocity, still = np.array([0.5, -0.3]), np.zeros(2), np.zeros(2)
     data.qpos[:], data.qvel[:] = position, velocity
     for number in range(1000):
         torque = np.array([15.0, 6.0]) * np.sin(np.array([5.0, 8.0]) * number * 1e-3)
         data.qfrc_applied[:] = torque
         mujoco.mj_step(model, data)
-        position, velocity = moved(arm, position, velocity, torque, 1e-3)
+        position, velocity = moved(arm, position, velocity, still, torque, 1e-3)
     assert np.abs(position).max() > 0.2
     assert position == pytest.approx(data.qpos, abs=np.radians(1.0))
 

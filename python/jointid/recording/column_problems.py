@@ -190,12 +190,11 @@ def missing(
     absent = [signal for signal in signals if signal not in proposed]
     if not any(found.of.get(signal) or signal in proposed for signal in TORQUES) and proposed:
         proposed |= _torque(table, found, {*owners, *proposed.values()}, proposed, kind)
-    arguments = _proposal(table, proposed, kind)
+    question = _asked(table, found, proposed) if headerless else ""
     return InputError(
-        _not_recognised(table, signals, absent, shown)
-        + _asked(table, found, proposed, headerless=bool(headerless)),
+        _not_recognised(table, signals, absent, shown) + question,
         place=table.header_place,
-        remedy=_with_absent(arguments, absent),
+        remedy=_with_absent(_proposal(table, proposed, kind), absent),
     )
 
 
@@ -210,14 +209,12 @@ def _not_recognised(
     return f"no column is recognised as {names}; candidates are {listed(shown)}"
 
 
-def _asked(
-    table: Table, found: Candidates, proposed: Mapping[str, int], *, headerless: bool
-) -> str:
+def _asked(table: Table, found: Candidates, proposed: Mapping[str, int]) -> str:
     """Return what is asked about a torque of which nothing shows the column."""
     torque = any(found.of.get(signal) or signal in proposed for signal in TORQUES)
     known = {each.index for columns in found.of.values() for each in columns}
     left = len(table.headers) - len({*known, *proposed.values()})
-    if torque or not headerless or left < 1:
+    if torque or left < 1:
         return ""
     return "; which column is the torque or current? The numbers do not show it"
 

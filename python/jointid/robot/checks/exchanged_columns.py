@@ -48,7 +48,7 @@ def joint_order(
     `given` is what the joints' rows say as they are taken.
     """
     before = _left(given, robot.n)
-    if before < _WELL**2:
+    if robot.n < 2 or before < _WELL**2:
         return None
     few = [sampled(run, _SAMPLES) for run in recordings[:_RECORDINGS]]
     torques = _climbed(robot.n, _score_of_torques(few, robot))

@@ -9,7 +9,7 @@ from jointid.estimate.types_of_findings import FindingType
 _LONGEST = 90  # characters of a title
 _COLUMNS = "check the order and the names of the columns"
 
-# In the order of docs/robots.md: what spoils everything first.
+# In the order of docs/robot_reference.md: what spoils everything first.
 TYPES = {
     each.code: each
     for each in (

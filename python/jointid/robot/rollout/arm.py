@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
 from jointid.robot.links.link_tree import LinkTree
+from jointid.robot.links.models import LOAD
 from jointid.robot.links.parameters import MOTOR_TERMS, VISCOUS
 from jointid.robot.result.friction import joint_friction
 from jointid.robot.result.record import RobotEstimateRecord
@@ -95,10 +96,24 @@ class Arm:
 
     @property
     def _offsets(self) -> Array:
+        return self._values(_OFFSET)
+
+    def _values(self, name: str) -> Array:
+        """A parameter of all joints, 0 where a joint has none."""
         if self.estimate is None:
             return np.zeros(self.model.nv)
-        found = (joint.parameters.get(_OFFSET) for joint in self.estimate.joints.values())
+        found = (joint.parameters.get(name) for joint in self.estimate.joints.values())
         return np.array([0.0 if each is None else each.value for each in found])
+
+    def friction_under_load(self, position: Array, velocity: Array, acceleration: Array) -> Array:
+        """Return the friction that the torque of the links adds."""
+        import pinocchio
+
+        share = self._values(LOAD.name)
+        if not share.any():
+            return share
+        links = pinocchio.rnea(self.model, self.data, position, velocity, acceleration)
+        return np.asarray(share * np.abs(links))
 
     def friction_rows(self) -> Array:
         """Return the directions in which friction acts: the joints, and the motors that turn with several."""
@@ -108,8 +123,8 @@ class Arm:
         robot = self.estimate.robot
         return np.vstack([eye, robot.couplings[robot.coupled]])
 
-    def friction_sizes(self, velocity: Array) -> Array:
-        """Return how large friction is at most in each of the rows, at these speeds of the joints."""
+    def friction_sizes(self, velocity: Array, under_load: Array) -> Array:
+        """Return how large friction is at most in each of the rows, at these speeds and loads of the joints."""
         if self.estimate is None:
             return np.zeros(0)
         robot, joints = self.estimate.robot, list(self.estimate.joints.values())
@@ -121,15 +136,16 @@ class Arm:
         motors = robot.couplings @ velocity
         at_motors = np.zeros(robot.n)
         for name, term in MOTOR_TERMS.items():
-            found = (joint.parameters.get(name) for joint in joints)
-            values = np.array([0.0 if each is None else each.value for each in found])
+            values = self._values(name)
             if term.basis == VISCOUS.basis:
                 # A joint's own contains what the motors add at its speed.
                 own = own - (robot.couplings**2).T @ values * velocity
                 at_motors = at_motors + values * np.abs(motors)
             else:
                 at_motors = at_motors + values
-        return np.asarray(np.maximum(np.concatenate([own * ways, at_motors[robot.coupled]]), 0.0))
+        return np.asarray(
+            np.maximum(np.concatenate([own * ways + under_load, at_motors[robot.coupled]]), 0.0)
+        )
 
 
 def _mechanism(tree: LinkTree, inertial: Array) -> Any:

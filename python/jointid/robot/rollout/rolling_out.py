@@ -85,10 +85,12 @@ def _along(arm: Arm, motion: Motion, horizon: float, longest: float) -> tuple[Ar
     """Positions and velocities (n, samples) that the logged torques give."""
     time, torque = motion.time, motion.torque
     position, velocity = np.empty_like(motion.position), np.empty_like(motion.velocity)
+    slopes = np.gradient(motion.velocity, time, axis=1)
     began = -np.inf
     for row in range(len(time)):
         if time[row] - began >= horizon or row == 0:
             began, q, v = time[row], motion.position[:, row].copy(), motion.velocity[:, row].copy()
+            a = slopes[:, row]
         position[:, row], velocity[:, row] = q, v
         if row + 1 == len(time):
             break
@@ -102,7 +104,9 @@ def _along(arm: Arm, motion: Motion, horizon: float, longest: float) -> tuple[Ar
                 if held
                 else (1.0 - share) * torque[:, row] + share * torque[:, row + 1]
             )
-            q, v = moved(arm, q, v, now, duration / count)
+            before = v
+            q, v = moved(arm, q, v, a, now, duration / count)
+            a = (v - before) * count / duration
         if not np.abs(v).max() < _OUT_OF_BOUNDS:
             raise InputError(
                 "the simulated motion leaves all bounds",

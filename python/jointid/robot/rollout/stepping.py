@@ -14,14 +14,23 @@ _SETTLED = 1e-10
 
 
 def moved(
-    arm: Arm, position: Array, velocity: Array, torque: Array, duration: float
+    arm: Arm,
+    position: Array,
+    velocity: Array,
+    acceleration: Array,
+    torque: Array,
+    duration: float,
 ) -> tuple[Array, Array]:
-    """Return position and velocity of the joints after a duration [s] under a torque."""
+    """Return position and velocity of the joints after a duration [s] under a torque.
+
+    The acceleration of the step before stands for this one's in the load of the gears.
+    """
     mass = arm.mass(position)
     free = velocity + duration * np.linalg.solve(mass, torque - arm.bias(position, velocity))
     rows = arm.friction_rows()
     if rows.size:
-        reach = duration * arm.friction_sizes(velocity)
+        loaded = arm.friction_under_load(position, velocity, acceleration)
+        reach = duration * arm.friction_sizes(velocity, loaded)
         impulses = np.linalg.solve(mass, rows.T)
         free = free + impulses @ _impulse(rows @ impulses, rows @ free, reach)
     return position + duration * free, free
