@@ -45,6 +45,36 @@ def test_gains_stand_for_a_torque(tmp_path: Path, truth: Truth, seed: int, delay
     assert found.verdict.level == "usable"
 
 
+def test_the_closed_loop_moves_the_leg_as_mujoco_does(tmp_path: Path) -> None:
+    drive = drive_of(LEG_TRUTH)
+    (path, log), (_, other) = (
+        pd_driven.driven(LEG_TRUTH, tmp_path, seed, delay=0.0021, duration=duration)
+        for seed, duration in ((1, 8.0), (2, 2.0))
+    )
+    found = jid.identify(log, jid.Robot.from_urdf(path, drive=drive))
+    rolled = jid.simulate(found, recordings=other)
+    assert rolled.horizon is None
+    for run in rolled.runs:
+        assert run.closed
+        assert run.before is not None
+        assert run.error < np.radians(0.1)
+        assert run.before > 10.0 * run.error
+    ratios = np.array([9.0, -9.0, 9.0])
+    geared = replace(found.robot, gear_ratios=tuple(ratios), side="motor")
+    assert geared.drive is not None
+    assert other.reference is not None
+    motors = jid.RobotRecording(
+        time=other.time,
+        position=other.position * ratios,
+        reference=other.reference * ratios,
+        names=other.names,
+    )
+    small = tuple(tuple(np.array(each) / 81.0) for each in (geared.drive.kp, geared.drive.kd))
+    geared = replace(geared, drive=replace(geared.drive, kp=small[0], kd=small[1]))
+    again = jid.simulate(replace(found, robot=geared), recordings=motors)
+    assert again.errors == pytest.approx(rolled.errors, rel=1e-3)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("truth", [LEG_TRUTH, ARM_TRUTH])
 def test_twenty_motions(tmp_path: Path, truth: Truth) -> None:

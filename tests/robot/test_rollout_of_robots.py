@@ -10,7 +10,7 @@ import small_arm
 import jointid as jid
 from jointid.estimate.rollout import Rollout
 from jointid.robot.rollout.arm import Arm
-from jointid.robot.rollout.stepping import moved
+from jointid.robot.rollout.stepping import State, moved
 
 pytest.importorskip("pinocchio")
 
@@ -62,16 +62,16 @@ def test_friction_under_load_moves_the_arm_as_logged(path: Path) -> None:
 
 def test_a_joint_that_friction_holds_stands_still(found: jid.RobotEstimate) -> None:
     arm = Arm.of(found)
-    position, velocity, still = np.array([0.1, 0.0]), np.zeros(2), np.zeros(2)
+    still, position = np.zeros(2), np.array([0.1, 0.0])
+    state = State(position, still, still)
     below = np.array([3.9, -1.9])  # Coulomb friction is 4 and 2 N·m
-    held = arm.bias(position, velocity) + below
+    held = arm.bias(position, still) + below
     for _ in range(200):
-        position, velocity = moved(arm, position, velocity, still, held, 1e-3)
-    assert velocity == pytest.approx([0.0, 0.0], abs=1e-12)
-    assert position == pytest.approx([0.1, 0.0], abs=1e-12)
-    beyond = arm.bias(position, velocity) + np.array([4.1, 0.0])
-    _, velocity = moved(arm, position, velocity, still, beyond, 1e-3)
-    assert velocity[0] > 0.0
+        state = moved(arm, state, held, still, 1e-3)
+    assert state.velocity == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert state.position == pytest.approx([0.1, 0.0], abs=1e-12)
+    beyond = arm.bias(position, still) + np.array([4.1, 0.0])
+    assert moved(arm, state, beyond, still, 1e-3).velocity[0] > 0.0
 
 
 def test_mujoco_moves_alike(path: Path, found: jid.RobotEstimate) -> None:
@@ -84,15 +84,16 @@ def test_mujoco_moves_alike(path: Path, found: jid.RobotEstimate) -> None:
         model.dof_armature[k] = values["rotor_inertia"]
     data = mujoco.MjData(model)
     arm = Arm.of(found)
-    position, velocity, still = np.array([0.5, -0.3]), np.zeros(2), np.zeros(2)
-    data.qpos[:], data.qvel[:] = position, velocity
+    still = np.zeros(2)
+    state = State(np.array([0.5, -0.3]), still, still)
+    data.qpos[:], data.qvel[:] = state.position, state.velocity
     for number in range(1000):
         torque = np.array([15.0, 6.0]) * np.sin(np.array([5.0, 8.0]) * number * 1e-3)
         data.qfrc_applied[:] = torque
         mujoco.mj_step(model, data)
-        position, velocity = moved(arm, position, velocity, still, torque, 1e-3)
-    assert np.abs(position).max() > 0.2
-    assert position == pytest.approx(data.qpos, abs=np.radians(1.0))
+        state = moved(arm, state, torque, still, 1e-3)
+    assert np.abs(state.position).max() > 0.2
+    assert state.position == pytest.approx(data.qpos, abs=np.radians(1.0))
 
 
 def test_the_page_shows_each_joint(

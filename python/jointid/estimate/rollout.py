@@ -36,7 +36,7 @@ class RunRollout:
     spread : float or None
         How far the rollout moves at most when the motor's torque changes by 1 % [rad]; None: not tried.
     closed : bool
-        Whether the position loop was closed; otherwise the logged duty or torque drove the motor.
+        Whether the position loop was closed; otherwise the logged duty or torque drove the motor or the joint.
     before : float or None
         The same error of the URDF without friction [rad or m]; None: not tried.
     kind : {"revolute", "prismatic"}

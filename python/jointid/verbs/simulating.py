@@ -52,7 +52,7 @@ def simulate(
     subject: RobotEstimate,
     *,
     recordings: RobotRecording | Sequence[RobotRecording],
-    horizon: float = 0.5,
+    horizon: float | None = None,
     step: float = STEP,
 ) -> Rollout: ...
 
@@ -67,7 +67,7 @@ def simulate(
 ) -> Rollout: ...
 
 
-@shows(simulation.simulate, others={"step": STEP, "threads": 0, "horizon": 0.5})
+@shows(simulation.simulate, others={"step": STEP, "threads": 0, "horizon": None})
 def simulate(
     subject: Any = None,
     controller: Any = None,
@@ -84,7 +84,8 @@ def simulate(
     With `recordings`, the closed loop of a servo is simulated from their initial states and compared with their
     positions. Only the reference, the supply and when the motor is driven are taken from the log; where the position
     loop is not known, the logged duty instead of the reference. A robot is moved by its logged torques, in stretches
-    that begin at the logged state, and compared with the URDF without friction, too.
+    that begin at the logged state; a robot with a `drive` by its loop and the wanted positions. Both are compared with
+    the URDF without friction, too.
 
     Parameters
     ----------
@@ -125,8 +126,9 @@ def simulate(
         Servo, robot: the logs, as for `identify`.
     step : float
         Servo, robot: longest integration step [s]. Default 1 ms.
-    horizon : float
-        Robot: length of a stretch [s]. Default 0.5: errors of an open loop grow without a bound.
+    horizon : float, optional
+        Robot: length of a stretch [s]. Default: 0.5 of logged torques, since errors of an open loop grow without a
+        bound; all of a closed loop.
     threads : int
         Servo: 0 (default): all. The results do not depend on it, to the last bit.
 

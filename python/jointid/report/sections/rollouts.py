@@ -17,6 +17,7 @@ _SERVO = (
     "driven come from the log."
 )
 _ROBOT = "The logged torques move the arm."
+_DRIVEN = "The position loop moves the arm; only the wanted positions and the initial state come from the log."
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
@@ -31,7 +32,9 @@ def content(result: Result, extras: Extras) -> list[Part]:
         )
         for run in runs[:_MOST]
     )
-    what = paragraph(f"{rollout.sentence} {_SERVO if rollout.horizon is None else _ROBOT}")
+    driven = _SERVO if any(run.before is None for run in runs) else _ROBOT
+    closed = driven == _ROBOT and all(run.closed for run in runs)
+    what = paragraph(f"{rollout.sentence} {_DRIVEN if closed else driven}")
     more = len(runs) - len(pictures)
     others: list[Block] = [Multiples(pictures[1:])] if pictures[1:] else []
     if more > 0:

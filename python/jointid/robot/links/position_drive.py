@@ -104,6 +104,10 @@ class PositionDrive:
         )
         return -self._stiffness * _means(position) - np.array(self.kd)[:, None] * slope
 
+    def torque_at(self, position: Array, velocity: Array) -> Array:
+        """The same at one instant, (n,)."""
+        return -self._stiffness[:, 0] * position - np.array(self.kd) * velocity
+
     @property
     def _stiffness(self) -> Array:
         return np.array([each or 0.0 for each in self.kp])[:, None]

@@ -221,6 +221,14 @@ def _driven(recording: RobotRecording, robot: Robot) -> Driven | None:
     return Driven.of(recording, robot.drive, columns, factor)
 
 
+def ratios_of_positions(recording: RobotRecording, robot: Robot) -> Array:
+    """Recorded positions per position of the joints, signed; without couplings."""
+    directions = np.array(robot.directions or (1.0,) * robot.n)
+    if (robot.side or recording.side) != MOTOR:
+        return directions
+    return np.asarray(directions * _ratios(recording, robot, robot.columns_of(recording)))
+
+
 def _of_unit_gain(recording: RobotRecording, robot: Robot) -> Array | None:
     if robot.drive is None or not robot.drive.free:
         return None

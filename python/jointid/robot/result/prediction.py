@@ -42,22 +42,7 @@ class RobotPrediction:
 def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> RobotPrediction:
     """Predict the window integrals of a recording's torques; see `RobotEstimate.predict`."""
     robot, settings = estimate.robot, estimate.settings
-    shift = settings.get("shift", {})
-    motion = Motion.of(
-        without_delay(
-            without_lag(on_even_clock(recording), robot, torque_lag(shift, robot)),
-            robot,
-            torque_shift(shift, robot),
-        ),
-        robot,
-        np.array(settings["min_speed"]),
-        bool(settings["mask_standstill"]),
-        [
-            joint
-            for joint, name in enumerate(robot.names)
-            if name in settings.get("recorded_velocity", ())
-        ],
-    )
+    motion = motion_of(estimate, recording, mask_standstill=bool(settings["mask_standstill"]))
     basis = np.column_stack([estimate.inertial.ravel(), loading_of(estimate)])
     balance = balance_of(robot, [motion], float(settings["window_duration"]), basis)
     predicted = balance.inertia[:, 0] + balance.known + _friction(estimate, balance)
@@ -72,6 +57,25 @@ def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> R
         relative_residual=float(np.linalg.norm(residual))
         / (float(np.linalg.norm(measured)) or 1.0),
         windows=measured.size,
+    )
+
+
+def motion_of(
+    estimate: RobotEstimateRecord, recording: RobotRecording, *, mask_standstill: bool
+) -> Motion:
+    """Return a recording's motion and torques as the estimate takes them: its clock, delays, lags and velocities."""
+    robot, settings = estimate.robot, estimate.settings
+    shift, recorded = settings.get("shift", {}), settings.get("recorded_velocity", ())
+    return Motion.of(
+        without_delay(
+            without_lag(on_even_clock(recording), robot, torque_lag(shift, robot)),
+            robot,
+            torque_shift(shift, robot),
+        ),
+        robot,
+        np.array(settings["min_speed"]),
+        mask_standstill,
+        [joint for joint, name in enumerate(robot.names) if name in recorded],
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,27 +15,31 @@ _SWEEPS = 50  # of projected Gauss-Seidel; a few settle it
 _SETTLED = 1e-10
 
 
-def moved(
-    arm: Arm,
-    position: Array,
-    velocity: Array,
-    acceleration: Array,
-    torque: Array,
-    duration: float,
-) -> tuple[Array, Array]:
-    """Return position and velocity of the joints after a duration [s] under a torque.
+@dataclass(frozen=True, slots=True)
+class State:
+    """Positions, velocities and the last accelerations of the joints."""
 
-    The acceleration of the step before stands for this one's in the load of the gears.
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+def moved(arm: Arm, state: State, torque: Array, damping: Array, duration: float) -> State:
+    """Return the state after a duration [s] under a torque.
+
+    The torque falls by `damping` per speed that is gained, [N·m·s/rad]. The acceleration of the step before stands for
+    this one's in the load of the gears.
     """
-    mass = arm.mass(position)
+    position, velocity = state.position, state.velocity
+    mass = arm.mass(position) + duration * np.diag(damping)
     free = velocity + duration * np.linalg.solve(mass, torque - arm.bias(position, velocity))
     rows = arm.friction_rows()
     if rows.size:
-        loaded = arm.friction_under_load(position, velocity, acceleration)
+        loaded = arm.friction_under_load(position, velocity, state.acceleration)
         reach = duration * arm.friction_sizes(velocity, loaded)
         impulses = np.linalg.solve(mass, rows.T)
         free = free + impulses @ _impulse(rows @ impulses, rows @ free, reach)
-    return position + duration * free, free
+    return State(position + duration * free, free, (free - velocity) / duration)
 
 
 def _impulse(response: Array, speeds: Array, reach: Array) -> Array:
