@@ -1,12 +1,11 @@
 """Random arms, each with one random fault that the call does not know, and clean ones. Writes docs/robot_faults.md.
 
-python benchmarks/robot_faults.py [--faulty 100] [--clean 50] [--only FAULT] [--logs FOLDER] [--output FILE]
+python benchmarks/robot_faults.py [--faulty 100] [--clean 50] [--only FAULT] [--output FILE]
 """
 
 from __future__ import annotations
 
 import argparse
-import pickle
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -106,19 +105,6 @@ def cases(faulty: int, clean: int, only: str) -> Iterator[tuple[int, str]]:
     yield from (each for each in every if only in each[1])
 
 
-def log_of(seed: int, fault: str, folder: Path | None) -> FaultyLog:
-    """The log; kept in the folder, if there is one."""
-    if folder is None:
-        return faulty_log(seed, fault)
-    path = folder / f"{fault}-{seed}.pickle"
-    if not path.is_file():
-        folder.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(pickle.dumps(faulty_log(seed, fault)))
-    kept = pickle.loads(path.read_bytes())
-    assert isinstance(kept, FaultyLog)
-    return kept
-
-
 def table(found: Sequence[Outcome]) -> Iterator[str]:
     """Yield one row a fault, then the cases that end wrong."""
     kinds = ("wrong", "refused", "doubted", "right")
@@ -160,12 +146,11 @@ def main() -> None:
     parser.add_argument("--faulty", type=int, default=100, help="arms with a fault")
     parser.add_argument("--clean", type=int, default=50, help="arms without")
     parser.add_argument("--only", default="", help="faults whose name contains this")
-    parser.add_argument("--logs", type=Path, help="a folder that keeps the simulated logs")
     parser.add_argument("--output", type=Path, help="a file to write, besides printing")
     given = parser.parse_args()
     found = []
     for seed, fault in cases(given.faulty, given.clean, given.only):
-        found.append(outcome(log_of(seed, fault, given.logs), seed))
+        found.append(outcome(faulty_log(seed, fault), seed))
         print(f"{found[-1].kind:8} {found[-1].seconds:5.1f} s  {line(found[-1])}", flush=True)
     text = "\n".join([_TEXT, "", *table(found)]) + "\n"
     if given.output is None:

@@ -81,7 +81,8 @@ def test_every_model_says_what_a_delay_costs(
     found = estimate.delays[signal]
     assert found.value == pytest.approx(0.003, abs=5e-4)
     # Of the torque only beside a friction that fits.
-    assert found.certain == (signal != "torque" or model != "coulomb_viscous")
+    fits = model not in ("coulomb_viscous", "smooth_coulomb_viscous")
+    assert found.certain == (signal != "torque" or fits)
     assert parts.get("lag", 0.0) > 0.0 or not found.certain
 
 

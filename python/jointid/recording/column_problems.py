@@ -29,7 +29,7 @@ from jointid.recording.units import UNITS, is_mega, unit_names
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
 _MEASURED = ("meas", "actual")
 _SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
-_OF_ONE_JOINT = 5  # columns without headers that may be one joint's
+_OF_ONE_JOINT = 7  # columns without headers that may be one joint's
 _MOST_TRIED = 200  # columns whose names say nothing
 
 

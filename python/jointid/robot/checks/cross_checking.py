@@ -31,6 +31,7 @@ _SHOWN = 5
 _PAST = 2.2  # of the speed that a shape stands for: static friction is gone
 _RISEN = 3.0  # of the same: dry friction has risen
 _GONE = 0.01  # of a coefficient
+_CLEARER = 0.25  # of the squared residuals
 _POOR, _BETTER = 0.05, 0.5  # residual of the torque, and the second look's squared one beside it
 
 
@@ -78,6 +79,12 @@ def cross_checked(
         agrees=(all(said) and not worse) if said or worse else None,
         reason="" if said or worse else "it determines none of the values",
     )
+
+
+def clearer(stamped: CrossCheck, even: CrossCheck) -> CrossCheck:
+    """The look at the even clock of the samples, if it leaves far less of the torque than the one at the stamps."""
+    left = [sum(own**2 for _, own in each.residuals.values()) for each in (even, stamped)]
+    return even if even.residuals and left[0] < _CLEARER * left[1] else stamped
 
 
 def _past_shape(joint: RobotJoint) -> float:

@@ -1,0 +1,186 @@
+"""From recordings to values with their findings: first what spoils everything, then the fit, then what it shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.estimate.findings import Finding
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.checks.cross_checking import clearer, cross_checked, disagreement, slow_motion
+from jointid.robot.checks.torque_check import wrong_torques
+from jointid.robot.facts.assumptions import assumption_findings
+from jointid.robot.facts.asymmetry import asymmetry_findings
+from jointid.robot.facts.diagnosis import Diagnosis, diagnosed
+from jointid.robot.facts.naming import turned_zeros
+from jointid.robot.facts.one_call import advised_models
+from jointid.robot.facts.unexamined_causes import misfit_findings
+from jointid.robot.fit.aligning import Alignment, aligned, delay_findings
+from jointid.robot.fit.attempt import Attempt, Request, attempted
+from jointid.robot.fit.gravity import gravity_findings
+from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
+from jointid.robot.fit.velocity_choice import velocity_findings, with_better_velocities
+from jointid.robot.links.inertia_modes import FREE
+from jointid.robot.links.robot import Robot
+from jointid.robot.motion.plain_motion import PlainSignals, plain_signals
+from jointid.robot.motion.shifts import requested_delay, without_delay
+from jointid.robot.motion.stamps import all_on_even_clocks
+from jointid.robot.result.cross_check import CrossCheck
+from jointid.robot.result.result import RobotEstimate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """What a call gives."""
+
+    recorded: Sequence[RobotRecording]
+    given: Robot
+    request: Request
+    shift: Any
+
+    @property
+    def delay(self) -> Array | None:
+        """The delay of the torques that the call states [s]."""
+        return requested_delay(self.shift, self.given)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Examined:
+    """Values, and what was found out about them."""
+
+    attempt: Attempt
+    estimate: RobotEstimate
+    request: Request  # with the velocities and the lag that were chosen
+    check: CrossCheck
+    findings: tuple[Finding, ...]
+
+
+def examined(case: Case) -> Examined:
+    """Identify, and check the values and the facts."""
+    runs, given, first = all_on_even_clocks(case.recorded), case.given, None
+    if given.drive is not None or given.gravity_free:
+        first = aligned(runs, given, case.request, case.shift)
+        # With the gains and the gravity that were found, without which nobody knows the torques.
+        found = first.attempt.robot
+        case = replace(case, given=replace(given, drive=found.drive, tree=found.tree))
+    signals = _signals(case.recorded, case.given, None if first is None else first.attempt)
+    wrong = wrong_torques(case.recorded, signals, case.given)
+    if wrong is not None:
+        return _blocked(case, runs, given, first, wrong)
+    return _diagnosed(case, runs, given, first, signals)
+
+
+def _blocked(
+    case: Case,
+    runs: Sequence[RobotRecording],
+    robot: Robot,
+    first: Alignment | None,
+    wrong: Finding,
+) -> Examined:
+    """The plain values: delays and facts are not tried, since all that they show would follow from this."""
+    delay = np.zeros(robot.n) if case.delay is None else case.delay
+    attempt = first.attempt if first else attempted(runs, robot, case.request, delay)
+    assumed = assumption_findings(runs, case.given, attempt)
+    return Examined(
+        attempt=attempt,
+        estimate=attempt.estimate,
+        request=case.request,
+        check=CrossCheck(reason="see the blocking finding"),
+        findings=(wrong, *(each for each in assumed if each.severity == "info")),
+    )
+
+
+def _diagnosed(
+    case: Case,
+    runs: Sequence[RobotRecording],
+    robot: Robot,
+    first: Alignment | None,
+    signals: Sequence[PlainSignals],
+) -> Examined:
+    """The values with the better velocities and delays, what contradicts them, and what the rest shows."""
+    if first is None:
+        choice = with_better_velocities(runs, robot, case.request, case.shift)
+        found, velocities = choice.alignment, [*velocity_findings(choice, robot)]
+    else:
+        found, velocities = first, []
+    attempt, request = found.attempt, found.request
+    estimate = attempt.estimate
+    if request.inertia == FREE:
+        estimate = with_possible_bodies(estimate, attempt.fit)
+    diagnosis = diagnosed(runs, case.given, request, attempt)
+    check = _second_look(case, runs, attempt, diagnosis, request, signals)
+    findings = (
+        *assumption_findings(runs, case.given, attempt),
+        *velocities,
+        *delay_findings(found),
+        *gravity_findings(robot, attempt),
+        *diagnosis.findings,
+        *impossible_links(estimate),
+    )
+    plain = all(each.severity == "info" for each in findings) and check.agrees is not False
+    # With another finding, a difference of the directions may follow from that.
+    rest = [*asymmetry_findings(attempt)] if plain else []
+    if not rest:
+        late = any(each.code == "signal_lag" for each in findings)  # a delay looks like friction
+        corrected = diagnosis.corrected
+        rest = [*misfit_findings(attempt, corrected, request.models, named=not late)]
+    if check.agrees is False and not check.explained:
+        better = _with_advised_models(diagnosis, request, rest)
+        if better is not None:
+            other = _signals(diagnosis.recordings, diagnosis.corrected.robot, better)
+            again = cross_checked(other, better, request, case.delay)
+            check = replace(check, explained=bool(again.agrees))
+    findings = (*disagreement(check, slow_motion(signals)), *findings, *rest)
+    if attempt.zeros is not None and attempt.zeros.found:
+        findings = (*findings, turned_zeros(attempt.zeros, attempt.robot))
+    return Examined(
+        attempt=attempt, estimate=estimate, request=request, check=check, findings=findings
+    )
+
+
+def _second_look(
+    case: Case,
+    runs: Sequence[RobotRecording],
+    attempt: Attempt,
+    diagnosis: Diagnosis,
+    request: Request,
+    signals: Sequence[PlainSignals],
+) -> CrossCheck:
+    """The look at the stamps as recorded, at the samples' even clock where that is clearer, and at corrected facts."""
+    check = cross_checked(signals, attempt, request, case.delay)
+    if check.agrees is False and any(a is not b for a, b in zip(runs, case.recorded, strict=True)):
+        even = cross_checked(_signals(runs, case.given, attempt), attempt, request, case.delay)
+        check = clearer(check, even)
+    if check.agrees is False and diagnosis.corrected is not attempt:
+        corrected = diagnosis.corrected
+        other = _signals(diagnosis.recordings, corrected.robot, corrected)
+        again = cross_checked(other, corrected, request, case.delay)
+        check = replace(check, explained=bool(again.agrees))
+    return check
+
+
+def _with_advised_models(
+    diagnosis: Diagnosis, request: Request, findings: Sequence[Finding]
+) -> Attempt | None:
+    """The identification with the facts corrected and the models that findings advise; None where they advise none."""
+    richer, last = advised_models(findings), diagnosis.corrected
+    if not richer:
+        return None
+    names = last.robot.names
+    models = tuple(richer.get(*each) for each in zip(names, request.models, strict=True))
+    return attempted(diagnosis.recordings, last.robot, replace(request, models=models), last.delay)
+
+
+def _signals(
+    recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt | None
+) -> list[PlainSignals]:
+    """What is checked, as recorded; of a drive with the command's delay: without it, nobody knows the torques."""
+    if robot.drive is not None and attempt is not None:
+        recordings = [without_delay(run, robot, attempt.delay) for run in recordings]
+    return plain_signals(recordings, robot)
