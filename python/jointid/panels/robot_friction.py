@@ -33,8 +33,8 @@ def friction_of_joint(estimate: RobotEstimate, name: str) -> Picture:
         marks=tuple(marks),
     )
     return Picture(
-        caption="Friction: a grey point is the torque over one window less all but this joint's friction, the line is "
-        "what was identified, with the other joints at rest.",
+        caption="A grey point is the torque over one window less all but this joint's speed-dependent friction. The "
+        "line is what was identified, with the other joints at rest.",
         panels=(panel,),
         title=name,
     )

@@ -21,7 +21,7 @@ _DRIVEN = "The position loop moves the arm; only the wanted positions and the in
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The worst run next to the values, then the others and the table; nothing without a rollout."""
+    """The runs of a servo, the worst one next to the values, or a robot's joints; nothing without a rollout."""
     rollout = cast("Rollout", result) if kind_of(result) == "rollout" else extras.rollout
     if rollout is None:
         return []
@@ -32,18 +32,21 @@ def content(result: Result, extras: Extras) -> list[Part]:
         )
         for run in runs[:_MOST]
     )
-    driven = _SERVO if any(run.before is None for run in runs) else _ROBOT
-    closed = driven == _ROBOT and all(run.closed for run in runs)
-    what = paragraph(f"{rollout.sentence} {_DRIVEN if closed else driven}")
     more = len(runs) - len(pictures)
-    others: list[Block] = [Multiples(pictures[1:])] if pictures[1:] else []
-    if more > 0:
-        others.append(paragraph(f"Without a picture: {more} runs with smaller errors."))
+    rest = [paragraph(f"Without a picture: {more} runs with smaller errors.")] if more > 0 else []
     head, rows = replace(rollout, runs=tuple(runs)).table()
     table = Table(tuple(map(tuple, rows)), tuple(head), numbers=True)
-    prefix = extras.prefix
-    worst = Part(
-        "Simulated along the log", (Figure(pictures[0]), what), f"{prefix}rollouts", "half"
-    )
-    parts = [worst, Part("Other runs", tuple(others), f"{prefix}others")] if others else [worst]
-    return [*parts, Part("Errors of all runs", (table,), f"{prefix}runs", "folded")]
+    title, prefix = "Simulated along the log", extras.prefix
+    errors = Part("Errors of all runs", (table,), f"{prefix}runs", "folded")
+    if any(run.before is not None for run in runs):
+        moved = _DRIVEN if all(run.closed for run in runs) else _ROBOT
+        what = paragraph(f"{rollout.sentence} {moved}")
+        return [Part(title, (what, Multiples(pictures), *rest), f"{prefix}rollouts"), errors]
+    what = paragraph(f"{rollout.sentence} {_SERVO}")
+    worst = Part(title, (Figure(pictures[0]), what), f"{prefix}rollouts", "half")
+    others: list[Block] = [Multiples(pictures[1:]), *rest] if pictures[1:] else [*rest]
+    return [
+        worst,
+        *([Part("Other runs", tuple(others), f"{prefix}others")] if others else []),
+        errors,
+    ]

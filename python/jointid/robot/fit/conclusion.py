@@ -16,7 +16,7 @@ from jointid.robot.balance.balance import Balance
 from jointid.robot.balance.fit import Fit
 from jointid.robot.links.bodies import possible
 from jointid.robot.links.inertia_modes import SCALED
-from jointid.robot.links.models import terms_of
+from jointid.robot.links.models import LOAD, terms_of
 from jointid.robot.links.parameters import DIFFERENCE, parameter_facts
 from jointid.robot.links.robot import Robot
 from jointid.robot.result.findings import findings_of
@@ -154,7 +154,7 @@ def _residuals(joint: int, balance: Balance, fit: Fit, duration: float) -> Resid
 
 def _table(joint: int, balance: Balance, fit: Fit, runs: Sequence[int]) -> WindowTable:
     mine = balance.rows.joint == joint
-    names = {DIFFERENCE, *(term.name for term in terms_of(fit.models[joint]))}
+    names = {DIFFERENCE, *(term.name for term in terms_of(fit.models[joint]))} - {LOAD.name}
     friction = [
         place for place, label in enumerate(fit.labels) if label[0] == joint and label[1] in names
     ]
