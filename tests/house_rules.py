@@ -204,6 +204,7 @@ FOLDERS: dict[str, Folder] = {
             "balance",
             "base",
             "comparison",
+            "estimate",
             "joint",
             "problem",
             "recording/wide",

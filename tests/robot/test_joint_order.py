@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from simulated_arm import JOINTS, URDF
 
 import jointid as jid
-from jointid.robot import identifying
+from jointid.robot import examining
 from jointid.robot.links.inertia_modes import Inertia
 
 pinocchio = pytest.importorskip("pinocchio")
@@ -75,7 +75,7 @@ def test_torques_in_another_order_are_named(
         raise AssertionError("a delay or a fact was tried")
 
     for name in ("aligned", "diagnosed"):
-        monkeypatch.setattr(identifying, name, tried)
+        monkeypatch.setattr(examining, name, tried)
     found = jid.identify(in_order(run, order, "torque"), jid.Robot.from_urdf(URDF), inertia=inertia)
     details = only(found, code).details
     for place, column in enumerate(order):

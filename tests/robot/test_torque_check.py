@@ -12,7 +12,7 @@ import small_arm
 
 import jointid as jid
 from jointid.problem.low_pass import low_passed
-from jointid.robot import identifying
+from jointid.robot import examining
 from jointid.robot.links.inertia_modes import Inertia
 
 pytest.importorskip("pinocchio")
@@ -80,8 +80,8 @@ def test_one_factor_is_named_with_its_remedy(
     def tried(*_: object) -> None:
         raise AssertionError("no delay or fact is tried")
 
-    monkeypatch.setattr(identifying, "with_better_velocities", tried)
-    monkeypatch.setattr(identifying, "diagnosed", tried)
+    monkeypatch.setattr(examining, "with_better_velocities", tried)
+    monkeypatch.setattr(examining, "diagnosed", tried)
     wrong = changed(run, lambda torque: torque * np.array(factors))
     robot = jid.Robot.from_urdf(path)
     told = only(jid.identify_robot(wrong, robot, inertia=inertia), "scaled_torques")

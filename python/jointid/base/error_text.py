@@ -39,3 +39,8 @@ def on_one_line(text: str) -> str:
     'topic /a\\nb'
     """
     return _UNFIT.sub(lambda found: repr(found[0])[1:-1], text)
+
+
+def joint_phrase(name: str) -> str:
+    """Return what a sentence calls a joint: "joint 3", but "joint_3" where the name says so."""
+    return name if "joint" in name.lower() else f"joint {name}"

@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self, TextIO
 
 from jointid._core import GaOptions, Generation
+from jointid.base.error_text import joint_phrase
 from jointid.base.pace import Pace
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ class JointsProgress(_Bar):
 
     def __call__(self, joint: str, number: int, count: int) -> None:
         """Show a joint."""
-        self._draw(number / count, f"joint {joint}, {number + 1} of {count}")
+        self._draw(number / count, f"{joint_phrase(joint)}, {number + 1} of {count}")
 
 
 class ComparisonProgress(_Bar):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from jointid.base.advice import Action
-from jointid.base.error_text import printable
+from jointid.base.error_text import joint_phrase, printable
 from jointid.base.errors import InputError
 from jointid.estimate.answers import cut, findings, in_line, joint_lines
 from jointid.estimate.findings import Finding
@@ -47,7 +47,7 @@ def answer(
     name, first = found[0] if found else ("", None)
     told = findings([each for _, each in found], lambda each: action(each, name), _FINDINGS, saved)
     if first is not None and first.severity != "info":  # its joint's line says how severe it is
-        told[0] = cut(f"joint {name}: {first.title}")
+        told[0] = cut(f"{joint_phrase(name)}: {first.title}")
     return printable("\n".join([*lines, *told]))
 
 
@@ -102,7 +102,7 @@ def _failures(result: JointEstimatesRecord, error: Callable[[InputError], str]) 
         return []
     others = ", ".join(each.name for each in failed[1:])
     also = f" (failed, too: {others})" if others else ""
-    return [f"joint {failed[0].name} failed: {error(failed[0].error)}{also}"]
+    return [f"{joint_phrase(failed[0].name)} failed: {error(failed[0].error)}{also}"]
 
 
 def _coupled(result: JointEstimatesRecord) -> list[str]:

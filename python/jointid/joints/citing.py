@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+from jointid.base.error_text import joint_phrase
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding, Measured
 from jointid.joints.coupling import Share
@@ -36,7 +37,7 @@ def cited(estimate: Estimate, shares: Sequence[Share]) -> Estimate:
 
 def _citing(finding: Finding, shares: Sequence[Share]) -> Finding:
     parts = [
-        f"joint {share.joint}'s {share.by} explains {max(1, round(100.0 * share.share))} % of the residual "
+        f"{joint_phrase(share.joint)}'s {share.by} explains {max(1, round(100.0 * share.share))} % of the residual "
         f"({MEANING[share.by]}{_OWN if share.own_too else ''})"
         for share in shares
     ]

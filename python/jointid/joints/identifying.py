@@ -9,6 +9,7 @@ from typing import Any, Unpack
 
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_kind
+from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
 from jointid.base.options import takes
 from jointid.identification.identification import identify
@@ -91,7 +92,7 @@ def identify_joints(
             described = _described(known[name], name, robot, recording)
             estimate = identify(recording, described, **options)
         except InputError as error:
-            failed = _of_each(error, len(names)).at(f"joint {name}")
+            failed = _of_each(error, len(names)).at(joint_phrase(name))
             results[name] = JointResult(name=name, status=FAILED, error=failed, side=side)
             continue
         results[name] = JointResult(name=name, status=IDENTIFIED, estimate=estimate, side=side)
@@ -184,7 +185,7 @@ def _with_ratios(robot: RobotRecording, known: Mapping[str, Joint | None]) -> Ro
     for name, ratio, own in zip(robot.names, ratios, robot.gear_ratio, strict=True):
         if ratio not in (1.0, own):
             raise InputError(
-                f"the recording has {own:g} for joint {name}",
+                f"the recording has {own:g} for {joint_phrase(name)}",
                 argument="gear_ratio",
                 value=ratio,
                 remedy="give it once",
@@ -202,7 +203,7 @@ def _described(
         if recording.torque is None:
             return None  # no joint says what a torque of the motor is at the joint
         joint = Joint(kind=recording.kind)
-    changes: dict[str, Any] = {} if joint.name else {"name": f"joint {name}"}
+    changes: dict[str, Any] = {} if joint.name else {"name": joint_phrase(name)}
     if robot.gear_ratio is not None and joint.gear_ratio == 1.0:
         changes["gear_ratio"] = robot.gear_ratio[robot.names.index(name)]
     return joint.replace(**changes) if changes else joint

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from jointid.base.error_text import joint_phrase
 from jointid.base.result import Overview
 from jointid.estimate.findings import Finding
 from jointid.estimate.overview import quantity_of, settings_of
@@ -22,7 +23,7 @@ def overview_of(result: JointEstimatesRecord) -> Overview:
         footer="Each joint for itself; value ± standard error.",
         answer=(
             f"{headline(result)}.",
-            *(f"joint {name} failed: {joints[name].error}" for name in result.failed),
+            *(f"{joint_phrase(name)} failed: {joints[name].error}" for name in result.failed),
             *notes(result),
         ),
         level=worst_level(result),
@@ -34,7 +35,7 @@ def overview_of(result: JointEstimatesRecord) -> Overview:
         ),
         fit=tuple(
             (
-                f"joint {name}",
+                joint_phrase(name),
                 f"{model_of(estimate)}, residual {percent(estimate.residuals.relative)}",
             )
             for name, estimate in result.items()
@@ -46,4 +47,4 @@ def overview_of(result: JointEstimatesRecord) -> Overview:
 
 
 def _of_joint(name: str, found: Finding) -> Finding:
-    return replace(found, title=f"joint {name}: {found.title}")
+    return replace(found, title=f"{joint_phrase(name)}: {found.title}")

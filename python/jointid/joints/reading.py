@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from jointid.base.advice import Action
+from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
 from jointid.base.schema import read_text
 from jointid.estimate.estimate import Estimate
@@ -60,9 +61,9 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
     if estimate is None:
         reason = found.get("error") if isinstance(found, dict) else None
         raise InputError(
-            f"joint {name} was not identified: {reason or 'no reason'}", place=str(path)
+            f"{joint_phrase(name)} was not identified: {reason or 'no reason'}", place=str(path)
         )
     try:
         return Estimate.from_json(json.dumps(estimate))
     except InputError as error:
-        raise error.at(f"{path}: joint {name}") from error
+        raise error.at(f"{path}: {joint_phrase(name)}") from error

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 
+from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
@@ -61,14 +62,14 @@ class JointResult:
 def _sentence(name: str, share: Share) -> str:
     alike = ""
     if share.alike:
-        others = " and ".join(f"joint {each}" for each in share.alike)
+        others = " and ".join(joint_phrase(each) for each in share.alike)
         alike = f"; {others} would explain it as well: they move alike"
     if share.own_too:
-        alike += f"; joint {name}'s own motion explains nearly as much"
+        alike += f"; {joint_phrase(name)}'s own motion explains nearly as much"
     verb = "explains" if share.certain else "explains perhaps"
     percent = max(1, round(100.0 * share.share))
     return (
-        f"joint {share.joint}'s {share.by} {verb} {percent} % of joint {name}'s residual "
+        f"{joint_phrase(share.joint)}'s {share.by} {verb} {percent} % of {joint_phrase(name)}'s residual "
         f"({MEANING[share.by]}{alike})"
     )
 
@@ -96,7 +97,7 @@ class JointEstimatesRecord(Mapping[str, Estimate]):
         except InputError as error:
             raise KeyError(str(error)) from None
         if result.estimate is None:
-            raise KeyError(f"joint {joint} failed: {result.error}")
+            raise KeyError(f"{joint_phrase(str(joint))} failed: {result.error}")
         return result.estimate
 
     def __iter__(self) -> Iterator[str]:

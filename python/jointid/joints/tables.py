@@ -7,7 +7,7 @@ from functools import partial
 
 from jointid import _core
 from jointid.base.advice import Action
-from jointid.base.error_text import printable
+from jointid.base.error_text import joint_phrase, printable
 from jointid.base.errors import InputError
 from jointid.base.text_table import aligned
 from jointid.estimate.estimate import Estimate
@@ -112,11 +112,11 @@ def text_report(
     lines += ["", *notes(result), *couplings(result), ""]
     for each in result.results.values():
         if each.error is not None:
-            lines.append(f"joint {each.name} failed: {error(each.error)}")
+            lines.append(f"{joint_phrase(each.name)} failed: {error(each.error)}")
         if each.estimate is not None:
             worded = partial(_of_joint, action, each.name)
             lines += [
-                f"joint {each.name}, {found.severity} ({found.code}): {found.worded(worded)}"
+                f"{joint_phrase(each.name)}, {found.severity} ({found.code}): {found.worded(worded)}"
                 for found in each.estimate.findings
                 if found.code != "motor_side"  # said once, of all
             ]

@@ -29,7 +29,7 @@ from jointid.recording.units import UNITS, is_mega, unit_names
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
 _MEASURED = ("meas", "actual")
 _SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
-_OF_ONE_JOINT = 7  # columns without headers that may be one joint's
+_OF_ONE_JOINT, _AT_MOST = 5, 7  # columns without names of one joint, usually and ever
 _MOST_TRIED = 200  # columns whose names say nothing
 
 
@@ -167,9 +167,10 @@ def missing(
                     place=table.header_place,
                 )
     unnamed = all(header == f"column {k}" for k, header in enumerate(table.headers))
-    if unnamed and set(signals) == set(NEEDED) and len(table.headers) > _OF_ONE_JOINT:
+    count = len(table.headers) if unnamed else 0
+    if set(signals) == set(NEEDED) and count > _AT_MOST:
         return InputError(
-            f"{len(table.headers)} columns without names: the numbers do not show what each is",
+            f"{count} columns without names: the numbers do not show what each is",
             place=table.header_place,
             remedy=OF_BLOCKS,
         )
@@ -190,11 +191,12 @@ def missing(
     absent = [signal for signal in signals if signal not in proposed]
     if not any(found.of.get(signal) or signal in proposed for signal in TORQUES) and proposed:
         proposed |= _torque(table, found, {*owners, *proposed.values()}, proposed, kind)
+    blocks = [OF_BLOCKS] if count > _OF_ONE_JOINT else []
     question = _asked(table, found, proposed) if headerless else ""
     return InputError(
         _not_recognised(table, signals, absent, shown) + question,
         place=table.header_place,
-        remedy=_with_absent(_proposal(table, proposed, kind), absent),
+        remedy=(_with_absent(_proposal(table, proposed, kind), absent), *blocks),
     )
 
 
@@ -211,10 +213,9 @@ def _not_recognised(
 
 def _asked(table: Table, found: Candidates, proposed: Mapping[str, int]) -> str:
     """Return what is asked about a torque of which nothing shows the column."""
-    torque = any(found.of.get(signal) or signal in proposed for signal in TORQUES)
     known = {each.index for columns in found.of.values() for each in columns}
     left = len(table.headers) - len({*known, *proposed.values()})
-    if torque or left < 1:
+    if left < 1 or any(found.of.get(signal) or signal in proposed for signal in TORQUES):
         return ""
     return "; which column is the torque or current? The numbers do not show it"
 
@@ -293,7 +294,7 @@ def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> 
     else:
         best = [k for k in of_joints if k in possible] or _likely(table, signal, possible)
     if not best and signal == "position":
-        only = [k for k in possible if len(possible) == 1 and values_of(table, k) is not None]
+        only = [k for k in possible[:1] if not possible[1:] and values_of(table, k) is not None]
         best = only or _of_velocity(table, possible, found)
     return sorted(best, key=lambda k: _doubts(plain(table.headers[k])))
 

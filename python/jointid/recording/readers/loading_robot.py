@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from jointid.base.argument_checks import require_path
+from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
 from jointid.recording.contents import Contents, read_contents
 from jointid.recording.even_rows import as_stated
@@ -134,7 +135,7 @@ def load_robot(
             held = contents(one)
             fields.append(held.fields(held.rows_where(where) if where else None))
         except InputError as error:
-            raise error.at(f"joint {each}") from None
+            raise error.at(joint_phrase(each)) from None
     if any("repeated_rows" in each.get("metadata", {}) for each in fields):
         fields = _once([contents(one) for one in tables], where)
     kept, left_out = on_one_clock(
@@ -211,7 +212,7 @@ def _at_joint(
         try:
             there = at_joint(held, own, ratio, others)
         except InputError as error:
-            raise error.at(f"{one.header_place}, joint {name}") from None
+            raise error.at(f"{one.header_place}, {joint_phrase(name)}") from None
         found.append({**held, **{key: there[key] for key in there if key != "metadata"}})
     return found
 

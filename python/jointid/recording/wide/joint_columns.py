@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import field
 
 from jointid.base.advice import Action
+from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.headers import parsed, understood
@@ -175,8 +176,8 @@ def _ask(
         return
     names = " and ".join(repr(table.headers[each.index]) for each in asked[:2])
     raise InputError(
-        f"joint {asked[0].joint} has no measured torque or current; {names} {'is' if len(asked) == 1 else 'are'} "
-        "commanded or filtered, and not used unless named",
+        f"{joint_phrase(asked[0].joint)} has no measured torque or current; "
+        f"{names} {'is' if len(asked) == 1 else 'are'} commanded or filtered, and not used unless named",
         place=table.header_place,
         remedy=(
             *(_naming(each.meaning.signal, each) for each in asked[:2] if each.meaning),
@@ -210,7 +211,7 @@ def _only(table: Table, signal: str, found: list[JointHeader]) -> JointHeader:
     names = " and ".join(f"{table.headers[each.index]!r}" for each in best[:3])
     argument = signal.replace(" ", "_")
     raise InputError(
-        f"{names} could both be the {signal} of joint {best[0].joint}",
+        f"{names} could both be the {signal} of {joint_phrase(best[0].joint)}",
         place=table.header_place,
         remedy=tuple(_naming(argument, each) for each in best[:2]),
     )

@@ -9,6 +9,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_attributes, json_mapping
 from jointid.recording.recording import Recording
@@ -174,7 +175,9 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
             for key, values in self.extra.items()
         }
         found = at_joint(fields, self.side, ratio)
-        shown = f"{self.name} joint {name}".lstrip() if self.name or name.isdigit() else name
+        shown = (
+            f"{self.name} {joint_phrase(name)}".lstrip() if self.name or name.isdigit() else name
+        )
         try:
             return Recording(
                 **found,
@@ -184,7 +187,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
                 name=shown,
             )
         except InputError as error:
-            raise error.at(f"joint {name}") from None
+            raise error.at(joint_phrase(name)) from None
 
     def to_recordings(self) -> tuple[Recording, ...]:
         """Return the recordings of all joints, in their order."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
+from jointid.base.error_text import joint_phrase
 from jointid.base.result import Result
 from jointid.joints.record import JointEstimatesRecord
 from jointid.joints.result import JointEstimates
@@ -48,4 +49,4 @@ def _shares(result: JointEstimatesRecord) -> Table:
             ]
             cells.append(", ".join(mine) or "–")
         rows.append((name, *cells))
-    return Table(tuple(rows), ("residual of", *(f"by joint {name}" for name in others)))
+    return Table(tuple(rows), ("residual of", *(f"by {joint_phrase(name)}" for name in others)))

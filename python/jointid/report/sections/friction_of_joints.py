@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import cast
 
+from jointid.base.error_text import joint_phrase
 from jointid.base.result import Result, kind_of
 from jointid.joints.result import JointEstimates
 from jointid.panels.friction import friction_map
@@ -41,7 +42,7 @@ def _of_robot(estimate: RobotEstimate) -> list[tuple[float, str, Picture]]:
 
 def _of_joints(joints: JointEstimates) -> list[tuple[float, str, Picture]]:
     return [
-        (estimate.residuals.relative, f"joint {name}", friction_map(estimate))
+        (estimate.residuals.relative, joint_phrase(name), friction_map(estimate))
         for name, estimate in joints.items()
         if estimate.windows.start.size
     ]

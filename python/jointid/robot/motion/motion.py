@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.advice import Action
+from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 from jointid.recording.sides import MOTOR
@@ -276,7 +277,7 @@ def _derived(recording: RobotRecording, position: Array, name: str) -> Recording
     try:
         return Recording(time=recording.time, position=position, torque=np.zeros(position.size))
     except InputError as error:
-        raise error.at(f"joint {name}") from None
+        raise error.at(joint_phrase(name)) from None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
