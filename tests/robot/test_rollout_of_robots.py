@@ -10,7 +10,7 @@ import small_arm
 import jointid as jid
 from jointid.estimate.rollout import Rollout
 from jointid.robot.rollout.arm import Arm
-from jointid.robot.rollout.stepping import State, moved
+from jointid.robot.rollout.stepping import Push, State, moved
 
 pytest.importorskip("pinocchio")
 
@@ -67,11 +67,11 @@ def test_a_joint_that_friction_holds_stands_still(found: jid.RobotEstimate) -> N
     below = np.array([3.9, -1.9])  # Coulomb friction is 4 and 2 N·m
     held = arm.bias(position, still) + below
     for _ in range(200):
-        state = moved(arm, state, held, still, 1e-3)
+        state = moved(arm, state, Push(held, still), 1e-3)
     assert state.velocity == pytest.approx([0.0, 0.0], abs=1e-12)
     assert state.position == pytest.approx([0.1, 0.0], abs=1e-12)
     beyond = arm.bias(position, still) + np.array([4.1, 0.0])
-    assert moved(arm, state, beyond, still, 1e-3).velocity[0] > 0.0
+    assert moved(arm, state, Push(beyond, still), 1e-3).velocity[0] > 0.0
 
 
 def test_mujoco_moves_alike(path: Path, found: jid.RobotEstimate) -> None:
@@ -91,7 +91,7 @@ def test_mujoco_moves_alike(path: Path, found: jid.RobotEstimate) -> None:
         torque = np.array([15.0, 6.0]) * np.sin(np.array([5.0, 8.0]) * number * 1e-3)
         data.qfrc_applied[:] = torque
         mujoco.mj_step(model, data)
-        state = moved(arm, state, torque, still, 1e-3)
+        state = moved(arm, state, Push(torque, still), 1e-3)
     assert np.abs(state.position).max() > 0.2
     assert state.position == pytest.approx(data.qpos, abs=np.radians(1.0))
 

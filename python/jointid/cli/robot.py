@@ -46,7 +46,12 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
     draws = arguments.bootstrap
     drawn = found.bootstrap(draws, arguments.seed) if draws is not None else None
     wording, saved = Wording.of(arguments), estimate_file(arguments)
-    rolled = rollout_robot(found, recordings) if arguments.rollout else None
+    rolled, without = None, ""
+    if arguments.rollout:
+        try:
+            rolled = rollout_robot(found, recordings)
+        except InputError as error:
+            without = f"no rollout: {error.reason}"
     if arguments.report is not None:
         save_report(found, arguments.report, wording.of_command, rollout=rolled)
     if saved is not None:
@@ -67,6 +72,8 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
             print(f"\n{drawn.report()}")
         if rolled is not None:
             print(f"\n{rolled.sentence}\n{rolled.report()}")
+        elif without:
+            print(without)
         say_written(report=arguments.report, estimate=saved)
     return required({"": found.verdict}, arguments)
 

@@ -150,7 +150,9 @@ class Rollout(Result):
         """
         del verbose
         head, rows = self.table()
-        rows.append(["median", f"{self.runs[0].shown(self.median):.2f}", *("" for _ in head[2:])])
+        if len({run.kind for run in self.runs}) == 1:
+            error = f"{self.runs[0].shown(self.median):.2f}"
+            rows.append(["median", error, *("" for _ in head[2:])])
         return "\n".join(aligned([head, *rows]))
 
     def table(self) -> tuple[list[str], list[list[str]]]:
@@ -158,7 +160,7 @@ class Rollout(Result):
         unit = " or ".join(dict.fromkeys(run.unit for run in self.runs))
         columns = {f"error [{unit}]": [f"{run.shown(run.error):.2f}" for run in self.runs]}
         if any(run.before is not None for run in self.runs):
-            columns[f"before [{unit}]"] = [_shown(run, run.before) for run in self.runs]
+            columns[f"without friction [{unit}]"] = [_shown(run, run.before) for run in self.runs]
         if any(run.spread is not None for run in self.runs):
             columns[f"moved by 1 % of torque [{unit}]"] = [
                 _shown(run, run.spread) for run in self.runs

@@ -26,10 +26,10 @@ def friction_of_joint(estimate: RobotEstimate, name: str) -> Picture:
         speeds = sign * np.linspace(1e-3, 1.0, 100) * peak
         values = joint_friction(joint, speeds)
         marks.append(Line(label="identified" if sign > 0.0 else "", across=speeds, up=values))
-    slides = estimate.robot.tree.prismatic[list(estimate.joints).index(name)]
+    unit = _unit(estimate, name)
     panel = Panel(
-        across=f"velocity [{'m/s' if slides else 'rad/s'}]",
-        up=f"friction [{'N' if slides else 'N·m'}]",
+        across=f"velocity [{'m/s' if unit == 'N' else 'rad/s'}]",
+        up=f"friction [{unit}]",
         marks=tuple(marks),
     )
     return Picture(
@@ -46,7 +46,7 @@ def windows_of_joint(estimate: RobotEstimate, name: str) -> Picture:
     windows = joint.windows
     centre = window_centres(windows)
     order = np.argsort(centre, kind="stable")
-    unit = joint.parameters["torque_offset"].unit
+    unit = _unit(estimate, name)
     time, measured, fitted, residual = with_gaps(
         centre[order],
         *(
@@ -73,3 +73,8 @@ def windows_of_joint(estimate: RobotEstimate, name: str) -> Picture:
         panels=(means, below),
         title=name,
     )
+
+
+def _unit(estimate: RobotEstimate, name: str) -> str:
+    """The unit of a joint's torque or force."""
+    return "N" if estimate.robot.tree.prismatic[list(estimate.joints).index(name)] else "N·m"

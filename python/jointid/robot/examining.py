@@ -19,11 +19,15 @@ from jointid.robot.facts.diagnosis import Diagnosis, diagnosed
 from jointid.robot.facts.naming import turned_zeros
 from jointid.robot.facts.one_call import advised_models
 from jointid.robot.facts.unexamined_causes import misfit_findings
-from jointid.robot.fit.aligning import Alignment, aligned, delay_findings
+from jointid.robot.fit.aligning import delay_findings
 from jointid.robot.fit.attempt import Attempt, Request, attempted
 from jointid.robot.fit.gravity import gravity_findings
 from jointid.robot.fit.physical_inertia import impossible_links, with_possible_bodies
-from jointid.robot.fit.velocity_choice import velocity_findings, with_better_velocities
+from jointid.robot.fit.velocity_choice import (
+    VelocityChoice,
+    velocity_findings,
+    with_better_velocities,
+)
 from jointid.robot.links.inertia_modes import FREE
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import PlainSignals, plain_signals
@@ -63,29 +67,33 @@ class Examined:
 
 def examined(case: Case) -> Examined:
     """Identify, and check the values and the facts."""
-    runs, given, first = all_on_even_clocks(case.recorded), case.given, None
-    if given.drive is not None or given.gravity_free:
-        first = aligned(runs, given, case.request, case.shift)
+    runs, choice = all_on_even_clocks(case.recorded), None
+    if case.given.drive is not None or case.given.gravity_free:
+        choice = with_better_velocities(runs, case.given, case.request, case.shift)
         # With the gains and the gravity that were found, without which nobody knows the torques.
-        found = first.attempt.robot
-        case = replace(case, given=replace(given, drive=found.drive, tree=found.tree))
-    signals = _signals(case.recorded, case.given, None if first is None else first.attempt)
+        found = choice.alignment.attempt.robot
+        case = replace(case, given=replace(case.given, drive=found.drive, tree=found.tree))
+    signals = _signals(
+        case.recorded, case.given, None if choice is None else choice.alignment.attempt
+    )
     wrong = wrong_torques(case.recorded, signals, case.given)
     if wrong is not None:
-        return _blocked(case, runs, given, first, wrong)
-    return _diagnosed(case, runs, given, first, signals)
+        return _blocked(case, runs, choice, wrong)
+    if choice is None:
+        choice = with_better_velocities(runs, case.given, case.request, case.shift)
+    return _diagnosed(case, runs, choice, signals)
 
 
 def _blocked(
-    case: Case,
-    runs: Sequence[RobotRecording],
-    robot: Robot,
-    first: Alignment | None,
-    wrong: Finding,
+    case: Case, runs: Sequence[RobotRecording], choice: VelocityChoice | None, wrong: Finding
 ) -> Examined:
     """The plain values: delays and facts are not tried, since all that they show would follow from this."""
-    delay = np.zeros(robot.n) if case.delay is None else case.delay
-    attempt = first.attempt if first else attempted(runs, robot, case.request, delay)
+    delay = np.zeros(case.given.n) if case.delay is None else case.delay
+    attempt = (
+        attempted(runs, case.given, case.request, delay)
+        if choice is None
+        else choice.alignment.attempt
+    )
     assumed = assumption_findings(runs, case.given, attempt)
     return Examined(
         attempt=attempt,
@@ -99,17 +107,11 @@ def _blocked(
 def _diagnosed(
     case: Case,
     runs: Sequence[RobotRecording],
-    robot: Robot,
-    first: Alignment | None,
+    choice: VelocityChoice,
     signals: Sequence[PlainSignals],
 ) -> Examined:
     """The values with the better velocities and delays, what contradicts them, and what the rest shows."""
-    if first is None:
-        choice = with_better_velocities(runs, robot, case.request, case.shift)
-        found, velocities = choice.alignment, [*velocity_findings(choice, robot)]
-    else:
-        found, velocities = first, []
-    attempt, request = found.attempt, found.request
+    attempt, request = choice.alignment.attempt, choice.alignment.request
     estimate = attempt.estimate
     if request.inertia == FREE:
         estimate = with_possible_bodies(estimate, attempt.fit)
@@ -117,9 +119,9 @@ def _diagnosed(
     check = _second_look(case, runs, attempt, diagnosis, request, signals)
     findings = (
         *assumption_findings(runs, case.given, attempt),
-        *velocities,
-        *delay_findings(found),
-        *gravity_findings(robot, attempt),
+        *velocity_findings(choice, case.given),
+        *delay_findings(choice.alignment),
+        *gravity_findings(case.given, attempt),
         *diagnosis.findings,
         *impossible_links(estimate),
     )

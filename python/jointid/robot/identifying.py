@@ -8,9 +8,11 @@ from dataclasses import replace
 from typing import Unpack
 
 from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.base.options import checked, takes
+from jointid.estimate.findings import Finding
 from jointid.problem.settings import MaskOptions
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.examining import Case, examined
@@ -79,6 +81,13 @@ def identify_robot(
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
         )
+    if robot.drive is not None and robot.drive.free and inertia != "urdf":
+        raise InputError(
+            "with a free gain the URDF's links are the only measure of torque, so that they are not identified, too",
+            argument="inertia",
+            value=inertia,
+            remedy=Action("call", {"inertia": "urdf"}, function="identify_robot"),
+        )
     mask = checked(MaskOptions, options)
     request = Request(
         inertia=inertia,
@@ -105,8 +114,22 @@ def identify_robot(
     }
     return replace(
         estimate,
-        findings=tuple(sorted(answer.findings, key=lambda each: RANK[each.severity])),
+        robot=replace(estimate.robot, gravity_free=False),  # it was found
+        findings=tuple(
+            sorted(_possible(answer.findings, case), key=lambda each: RANK[each.severity])
+        ),
         cross_check=answer.check,
         settings=settings,
         seconds=time.perf_counter() - started,
     )
+
+
+def _possible(findings: Sequence[Finding], case: Case) -> list[Finding]:
+    """Findings without advice to identify the links, where these are the measure of free gains."""
+    drive = case.given.drive
+    if drive is None or not drive.free:
+        return [*findings]
+    plain = [
+        tuple(a for a in each.advice if not {"inertia"} & a.arguments.keys()) for each in findings
+    ]
+    return [replace(each, advice=advice) for each, advice in zip(findings, plain, strict=True)]

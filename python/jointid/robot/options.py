@@ -36,9 +36,9 @@ class RobotFitOptions(MaskOptions, total=False):
             help='Delay of the "torque" against the position [s], to be taken away; positive: the torque is late. One '
             "for all joints, a sequence with one for each, or a mapping by joints' names, e.g. "
             '``{"torque": 0.001}``; "torque_filter" is the time constant of a low-pass filter that it passed [s]. An '
-            "empty mapping shifts nothing. Default: the delay that is certain, of all joints alike and of a joint that "
-            "clearly has another, but for a torque that is early by more than a sample; or the filter, where that "
-            "explains more. The findings tell it.",
+            "empty mapping shifts nothing. Default: found. One delay for all joints, another for a joint that clearly "
+            "differs, or a filter if that explains more. A torque that is early by more than one sample is not "
+            "shifted. The findings report it.",
         ),
     ]
 

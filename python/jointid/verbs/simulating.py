@@ -128,7 +128,7 @@ def simulate(
         Servo, robot: longest integration step [s]. Default 1 ms.
     horizon : float, optional
         Robot: length of a stretch [s]. Default: 0.5 of logged torques, since errors of an open loop grow without a
-        bound; all of a closed loop.
+        bound; all of a closed loop. Of each recording at most the first 20 s are simulated.
     threads : int
         Servo: 0 (default): all. The results do not depend on it, to the last bit.
 

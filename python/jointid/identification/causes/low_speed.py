@@ -14,8 +14,9 @@ from jointid.identification.causes.samples import Samples, WaySinceReversal
 
 Array = NDArray[np.float64]
 
-# Of a fast speed: speeds by which dry friction rises, and how many times such a speed it has risen.
-_OF_RISES = tuple(0.01 * 1.4**k for k in range(13))
+# Of a fast speed: speeds by which dry friction rises (slower rises look like viscous friction), and how many times such
+# a speed it has risen.
+_OF_RISES = tuple(0.01 * 1.4**k for k in range(10))
 _FINER = ((1.0,), (0.85, 0.92, 1.0, 1.09, 1.18))  # factors: the best of all, then the best about it
 _RISEN = 2.0
 _ENOUGH = 0.8  # of what several columns explain

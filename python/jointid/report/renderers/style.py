@@ -18,7 +18,8 @@ table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; margin: 
 th, td {{ padding: .2rem .7rem .2rem 0; border-bottom: 1px solid var(--grid); text-align: left; vertical-align: top; }}
 tbody th {{ font-weight: normal; overflow-wrap: break-word; }} table.values td:nth-child(2) {{ white-space: nowrap; }}
 table.numbers td, table.numbers th:not(:first-child) {{ text-align: right; }}
-.wide td, .wide thead th {{ white-space: nowrap; }} .wide td:last-child {{ white-space: normal; }}
+.wide td {{ white-space: nowrap; }} .wide td:last-child {{ white-space: normal; }}
+.wide thead th {{ vertical-align: bottom; }}
 pre {{ overflow-x: auto; background: var(--well); padding: .6rem .8rem; font-size: .85rem; line-height: 1.4; }}
 figure {{ margin: .5rem 0; }}
 ul.lines {{ padding-left: 1.2rem; margin: .4rem 0; }} ul.lines li {{ margin-bottom: .45rem; }}

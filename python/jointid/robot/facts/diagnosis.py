@@ -238,7 +238,7 @@ def _summary(
     if poor:
         found.append(
             TYPES["more_wrong_facts"].finding(
-                f"more than {facts} is wrong: {listed(poor)} would still fit badly",
+                f"more is wrong than {facts}: {listed(poor)} would still fit badly",
                 Action("inspect", text=f"the given facts of {listed(poor)}"),
                 evidence=evidence,
             )

@@ -16,7 +16,7 @@ from jointid.identification.causes.suspicion import slow_misfit
 from jointid.robot.facts.named_causes import UNEXAMINED, cause_finding, causes_of_joint
 from jointid.robot.facts.one_call import with_one_call
 from jointid.robot.fit.attempt import Attempt
-from jointid.robot.result.finding_types import TYPES
+from jointid.robot.result.finding_types import TYPES, listed
 from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 
 Array = NDArray[np.float64]
@@ -71,16 +71,16 @@ def _unexamined(
     estimate: RobotEstimateRecord, shares: Mapping[str, float], explained: str, notes: Sequence[str]
 ) -> Finding:
     worst, *others = shares
-    more = f" and {len(others)} more" if others else ""
+    more = f", nor a part of that of {listed(others)}" if others else ""
     every = ", ".join(f"{name} {percent(share)}" for name, share in shares.items())
     return TYPES["unexamined_causes"].finding(
-        f"{percent(shares[worst])} of the torque of {worst}{more} is neither explained nor noise",
+        f"{percent(shares[worst])} of the torque of {worst} is neither explained nor noise{more}",
         Action("inspect", text=f"{worst} as a single joint, for which more causes are examined"),
         details="; ".join(
             filter(
                 None,
                 (
-                    f"it is so for {every} of the torque" if others else "",
+                    f"shares of the torque: {every}" if others else "",
                     explained,
                     *notes,
                     UNEXAMINED,

@@ -13,7 +13,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import rounded, two_digits
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.fit.attempt import Attempt, Request, attempted
-from jointid.robot.fit.delays import TorqueDelay, coarse_delay, torque_delay
+from jointid.robot.fit.delays import LONGEST, TorqueDelay, coarse_delay, torque_delay
 from jointid.robot.fit.gravity import found_gravity
 from jointid.robot.fit.lags import TorqueLag, torque_lag_of
 from jointid.robot.links.robot import Robot
@@ -54,7 +54,8 @@ def aligned(
     if isinstance(shift, Mapping):
         request = replace(request, lag=torque_lag(shift, robot))
     attempt = attempted(recordings, robot, request, delay)
-    robot, attempt = _levelled(recordings, robot, request, attempt)
+    attempt = _levelled(recordings, robot, request, attempt)
+    robot = replace(robot, tree=attempt.robot.tree)
     if free and robot.drive is not None:
         delay = np.full(robot.n, coarse_delay(attempt.balance, attempt.fit, attempt.excerpts))
         attempt = attempted(recordings, robot, request, delay)
@@ -64,12 +65,13 @@ def aligned(
         step = left.taken if left.certain else _short(delay, left)
         if np.abs(step).max() < (_SMALL if robot.drive is None else _SMALL_OF_COMMAND):
             break
-        if np.any(delay + step < -_period(attempt)):
+        if np.any(delay + step < -_period(attempt)) or np.abs(delay + step).max() > LONGEST:
             # A torque does not come before its motion: then the position is late, as a coarse one is.
             break
         delay = delay + step
         attempt = attempted(recordings, robot, request, delay)
-        robot, attempt = _levelled(recordings, robot, request, attempt)
+        attempt = _levelled(recordings, robot, request, attempt)
+        robot = replace(robot, tree=attempt.robot.tree)
         left = torque_delay(attempt.balance, attempt.fit, attempt.excerpts)
     lag = torque_lag_of(first, delay) if free and robot.drive is None and delay.any() else None
     if lag is not None:
@@ -81,15 +83,15 @@ def aligned(
 
 def _levelled(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
-) -> tuple[Robot, Attempt]:
-    """The robot and its identification with the direction of gravity that is found, where it is free."""
+) -> Attempt:
+    """The identification with the direction of gravity that is found, where it is free."""
     for _ in range(_TURNS if robot.gravity_free else 0):
         found = found_gravity(attempt)
         if found.turn < _LEVEL:
             break
         robot = replace(robot, tree=found.robot.tree)
         attempt = attempted(recordings, robot, request, attempt.delay)
-    return robot, attempt
+    return attempt
 
 
 def delay_findings(found: Alignment) -> Iterator[Finding]:

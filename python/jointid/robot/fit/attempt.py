@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.balance.covariance import Covariance
 from jointid.base.errors import InputError
 from jointid.joint.model import AUTO
 from jointid.recording.wide.robot_recording import RobotRecording
@@ -28,7 +29,7 @@ from jointid.robot.links.parameters import POSITION_GAIN
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.motion import Motion, part_of
 from jointid.robot.motion.request import duration_of
-from jointid.robot.motion.shifts import without_delay, without_lag
+from jointid.robot.motion.shifts import on_the_clock_of_positions
 from jointid.robot.result.result import RobotEstimate
 
 Array = NDArray[np.float64]
@@ -73,8 +74,7 @@ def attempted(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, delay: Array
 ) -> Attempt:
     """Return the identification of recordings on even clocks, with a delay of each torque taken away [s]."""
-    lag = np.zeros(robot.n) if request.lag is None else request.lag
-    runs = [without_delay(without_lag(run, robot, lag), robot, delay) for run in recordings]
+    runs = [on_the_clock_of_positions(run, robot, delay, request.lag) for run in recordings]
     pieces = _pieces(runs)
     numbers = [number for number, _, _ in pieces]
     firsts = [numbers.index(number) for number in range(len(runs))][:_EXCERPTS]
@@ -111,7 +111,8 @@ def attempted(
         )
     fit, prior = fitted(robot, balance, request.inertia, request.models)
     if robot.drive is not None and gainless:
-        robot = replace(robot, drive=robot.drive.with_gains(_gains(fit)))
+        gains = _gains(fit, fit.covariance(balance))
+        robot = replace(robot, drive=robot.drive.with_gains(gains))
         excerpts = {place: motion(place) for place in firsts}
         balance = balance_of(robot, every(), duration, basis)
     covariance = fit.covariance(balance)
@@ -130,13 +131,14 @@ def attempted(
     )
 
 
-def _gains(fit: Fit) -> dict[int, float]:
-    """The gains that were found, by joint."""
-    labels = zip(fit.labels, fit.values, strict=True)
+def _gains(fit: Fit, covariance: Covariance) -> dict[int, float]:
+    """The gains that the motion determines, by joint."""
+    errors = dict(zip(np.flatnonzero(~fit.at_bound).tolist(), covariance.stderr, strict=True))
     return {
-        joint: float(value)
-        for (joint, name), value in labels
+        joint: float(fit.values[place])
+        for place, (joint, name) in enumerate(fit.labels)
         if name == POSITION_GAIN and joint is not None
+        if errors.get(place, np.inf) < fit.values[place]
     }
 
 

@@ -26,7 +26,7 @@ _ROUNDS = 8
 _FAR, _FAR_ERRORS = 5e-4, 3.0  # [s] and standard errors, from where the slope was taken
 _NEAR = 2e-5  # [s], the last step
 _STEP = 5e-4  # [s], for the torque's change with the shift
-_LONGEST_STEP, _LONGEST = 4e-3, 0.05  # [s]
+_LONGEST_STEP, LONGEST = 4e-3, 0.05  # [s]
 _COARSE = 2.5e-3  # [s]
 _FINEST = 1e-4  # [s]: no joint's delay is surer than this against the others'
 _SMALL = 3e-4  # [s]; a shorter delay is left alone
@@ -127,7 +127,7 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
 
 def _within(delay: Array, step: Array) -> Array:
     limited = np.clip(step, -_LONGEST_STEP, _LONGEST_STEP)
-    return np.asarray(np.clip(delay + limited, -_LONGEST, _LONGEST))
+    return np.asarray(np.clip(delay + limited, -LONGEST, LONGEST))
 
 
 def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, Flags]:
@@ -153,7 +153,7 @@ def coarse_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> f
     torque, n = ShiftedTorque(motions, balance), fit.scatter.size
     residual = rows.rest(fit.residual[rows.kept])
     measured = torque(np.zeros(n))
-    grid = np.arange(-_COARSE, _LONGEST + _COARSE, _COARSE)
+    grid = np.arange(-_COARSE, LONGEST + _COARSE, _COARSE)
     left = [
         np.sum((residual + rows.rest(torque(np.full(n, late)) - measured)) ** 2) for late in grid
     ]

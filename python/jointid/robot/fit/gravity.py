@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.fit.excerpt_rows import ExcerptRows
@@ -18,6 +19,8 @@ from jointid.robot.result.finding_types import TYPES
 Array = NDArray[np.float64]
 
 _NORMAL = 1.96  # standard errors of a 95 % interval
+_AXES = "xyz"
+_SEEN = 0.1  # of gravity: a component with a larger standard error is not shown
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -26,8 +29,8 @@ class Gravity:
 
     robot: Robot  # as in the attempt, with it
     turn: float  # [rad], from the attempt's direction
-    error: (
-        float  # [rad], standard error of the direction; infinite where the motion does not tell it
+    errors: (
+        Array  # (3,), of the components [m/s²]; infinite along axes that the motion does not show
     )
 
 
@@ -45,15 +48,11 @@ def found_gravity(attempt: Attempt) -> Gravity:
     size = float(np.linalg.norm(old))
     pulled = old + share.values
     length = float(np.linalg.norm(pulled))
-    if not length > 0.0:
-        return Gravity(robot=robot, turn=0.0, error=np.inf)
-    new = pulled * (size / length)
-    turn = float(np.arccos(np.clip(new @ old / size**2, -1.0, 1.0)))
-    across = np.sqrt(np.maximum(1.0 - (new / size) ** 2, 0.0))
+    new = pulled * (size / length) if length > 0.0 else old
     return Gravity(
         robot=replace(robot, tree=replace(robot.tree, gravity=new)),
-        turn=turn,
-        error=float(np.max(np.where(across > 1e-6, share.errors * across, 0.0))) / size,
+        turn=float(np.arccos(np.clip(new @ old / size**2, -1.0, 1.0))),
+        errors=share.errors,
     )
 
 
@@ -61,12 +60,25 @@ def gravity_findings(given: Robot, attempt: Attempt) -> Iterator[Finding]:
     """The direction of gravity that was found for a robot that states none."""
     if not given.gravity_free:
         return
-    pull, error = attempt.robot.tree.gravity, found_gravity(attempt).error
-    vector = ", ".join(f"{each:.3f}" for each in pull)
-    degrees = np.degrees(_NORMAL * error)
+    pull, errors = attempt.robot.tree.gravity, found_gravity(attempt).errors
+    size = float(np.linalg.norm(pull))
+    seen = np.flatnonzero(errors < _SEEN * size).tolist()
+    hidden = [axis for number, axis in enumerate(_AXES) if number not in seen]
+    if not np.any(pull[seen]):
+        yield TYPES["gravity_found"].finding(
+            "this motion does not show where gravity is",
+            Action("call", {"gravity": ...}, function="Robot.from_urdf"),
+            severity="warning",
+        )
+        return
+    # Along gravity itself only its size counts, which is given.
+    across = np.sqrt(np.maximum(1.0 - (pull / size) ** 2, 0.0))
+    error = float(max(errors[axis] * across[axis] for axis in seen)) / size
+    vector = ", ".join(f"{each:.3f}" if k in seen else "?" for k, each in enumerate(pull))
+    also = f"; the motion does not show it along {' and '.join(hidden)}" if hidden else ""
     yield TYPES["gravity_found"].finding(
-        f"gravity is ({vector}) m/s² in the base's frame, to ± {degrees:.2g}°",
-        details="its direction was identified, and its size is given",
+        f"gravity is ({vector}) m/s² in the base's frame, to ± {np.degrees(_NORMAL * error):.2g}°",
+        details=f"its direction was identified, and its size is given{also}",
         evidence={"error": Measured(error, "rad")}
-        | {axis: Measured(float(each), "m/s²") for axis, each in zip("xyz", pull, strict=True)},
+        | {_AXES[k]: Measured(float(pull[k]), "m/s²") for k in seen},
     )

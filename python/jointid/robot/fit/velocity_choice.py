@@ -28,7 +28,7 @@ from jointid.robot.fit.delays import ShiftedTorque
 from jointid.robot.fit.quick_fit import linear_system
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.motion import Motion, part_of, recorded_velocity
-from jointid.robot.motion.shifts import torque_shift, without_delay
+from jointid.robot.motion.shifts import on_the_clock_of_positions, torque_shift
 from jointid.robot.result.finding_types import TYPES, listed
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ def with_better_velocities(
     if not there:
         return VelocityChoice(request=request, alignment=found)
     attempt = found.attempt
-    derived_motions, recorded_motions, compared = _motions(recordings, attempt, request)
+    derived_motions, recorded_motions, compared = _motions(recordings, attempt, found.request)
     if not compared:
         return VelocityChoice(request=request, alignment=found)
     delays = [np.zeros(robot.n)]
@@ -144,7 +144,8 @@ def _motions(
     robot, mask = attempt.robot, (request.slowest, request.mask_standstill)
     parts, derived = [], []
     for piece, whole in attempt.excerpts.items():
-        run = without_delay(recordings[attempt.runs[piece]], robot, attempt.delay)
+        run = recordings[attempt.runs[piece]]
+        run = on_the_clock_of_positions(run, robot, attempt.delay, request.lag)
         part = part_of(run, 0, min(whole.time.size, _SAMPLES))
         parts.append(part)
         same = part.samples == whole.time.size

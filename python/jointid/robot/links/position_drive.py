@@ -26,7 +26,7 @@ _LONGEST = 0.5  # [s]
 class PositionDrive:
     """Torque = kp · (wanted position - position) - kd · velocity, within its limits; on the side of the recording.
 
-    The loop runs in the motor, without a pause. The wanted position reaches it some time after its row, and holds until
+    The loop runs continuously in the motor. The wanted position reaches it some time after its row, and holds until
     the next one.
     """
 
@@ -104,9 +104,9 @@ class PositionDrive:
         )
         return -self._stiffness * _means(position) - np.array(self.kd)[:, None] * slope
 
-    def torque_at(self, position: Array, velocity: Array) -> Array:
-        """The same at one instant, (n,)."""
-        return -self._stiffness[:, 0] * position - np.array(self.kd) * velocity
+    def torque_at(self, error: Array, velocity: Array) -> Array:
+        """The torque at one instant, (n,), without its limits."""
+        return self._stiffness[:, 0] * error - np.array(self.kd) * velocity
 
     @property
     def _stiffness(self) -> Array:
@@ -136,7 +136,7 @@ class PositionDrive:
     def document(self) -> dict[str, Any]:
         """The drive in JSON's types, as `of` takes it."""
         found: dict[str, Any] = {
-            "kp": [FREE if each is None else each for each in self.kp],
+            "kp": list(self.kp),
             "kd": list(self.kd),
             "hold": self.hold,
         }
@@ -167,13 +167,13 @@ def _values(drive: Mapping[str, Any], key: str, count: int) -> tuple[float | Non
     if isinstance(each, str) or is_finite(each):
         each = [each] * count
     wrong = not isinstance(each, Sequence | np.ndarray) or len(each) != count
-    if wrong or not all(v == FREE or (is_finite(v) and v >= 0.0) for v in each):
+    if wrong or not all(v in (FREE, None) or (is_finite(v) and v >= 0.0) for v in each):
         raise InputError(
             f'0 or more is expected, or "free", for all joints or for each of the {count}',
             argument=f"drive.{key}",
             value=drive[key],
         )
-    return tuple(None if v == FREE else float(v) for v in each)
+    return tuple(None if v in (FREE, None) else float(v) for v in each)
 
 
 def _numbers(

@@ -22,7 +22,8 @@ class Driven:
 
     drive: PositionDrive
     time: Array
-    command: Array  # (n, samples), what follows the wanted position, on the recording's side
+    wanted: Array  # (n, samples), positions, on the recording's side
+    command: Array  # what follows the wanted position, there
     state: Array  # the rest, there
     factor: Array  # (n,), to the torque at the joint
 
@@ -43,6 +44,7 @@ class Driven:
         return cls(
             drive=drive,
             time=recording.time,
+            wanted=wanted[:, columns].T,
             command=drive.torque_of_command(wanted[:, columns].T),
             state=drive.torque_of_state(recording.time, position),
             factor=factor,

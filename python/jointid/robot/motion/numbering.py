@@ -1,6 +1,6 @@
 """The number of each row on an even clock, by stamps that are late by chance, although rows are lost.
 
-Stamps modulo the period have a phase, however many rows are missing between them. A row has the number of the period in
+Stamps keep their position within the sample period, even where rows are missing. A row has the number of the period in
 which its stamp lies; where a stamp is late by more than a period, the next rows and the positions say so.
 """
 

@@ -122,6 +122,15 @@ def shift_option(
     return found
 
 
+def on_the_clock_of_positions(
+    recording: RobotRecording, robot: Robot, delay: Array, lag: Array | None
+) -> RobotRecording:
+    """Return a recording with torques without their filters, then without their delays [s]."""
+    if lag is not None:
+        recording = without_lag(recording, robot, lag)
+    return without_delay(recording, robot, delay)
+
+
 def without_lag(recording: RobotRecording, robot: Robot, lag: Array) -> RobotRecording:
     """Return a recording with torques as they were before a low-pass filter of first order with time constants [s]."""
     if not lag.any():

@@ -15,7 +15,7 @@ from jointid.identification.inference.purposes import Torques
 from jointid.robot.balance.inertia import InertiaColumns
 from jointid.robot.links.inertia_modes import FREE
 from jointid.robot.links.models import linear_terms
-from jointid.robot.links.parameters import LINEAR_FRICTION
+from jointid.robot.links.parameters import LINEAR_FRICTION, POSITION_GAIN
 from jointid.robot.result.finding_types import TYPES, listed
 from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 
@@ -81,7 +81,7 @@ def _standing(estimate: RobotEstimateRecord) -> Iterator[Finding]:
 def _of_joint(
     joint: RobotJoint, estimate: RobotEstimateRecord, torques: Torques
 ) -> Iterator[Finding]:
-    for name in LINEAR_FRICTION:
+    for name in (*LINEAR_FRICTION, POSITION_GAIN):
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
             continue
@@ -107,11 +107,12 @@ def _of_joint(
         alike = [name for name, share in held_by.items() if (share <= LARGE) == small]
         if alike:
             largest = percent(max(held_by[name] for name in alike))
-            what = f"{listed([name.replace('_', ' ') for name in alike])} of {joint.name}"
+            names = listed([name.replace("_", " ") for name in alike])
+            what = f"{names} of {joint.name} {'is' if len(alike) == 1 else 'are'}"
             yield TYPES["at_bound"].finding(
-                f"{what} is 0, its bound: at most {largest} of its friction"
+                f"{what} held at 0, the bound: at most {largest} of its friction"
                 if small
-                else f"{what} would be negative and is held at 0",
+                else f"{what} held at 0 instead of a negative value",
                 *(() if small else (_looked_at(joint),)),
                 details="" if small else "the model or a given fact is wrong",
                 severity="info" if small else "warning",

@@ -40,7 +40,7 @@ _LINK = Record(
 )
 _STIFFNESS = ListOf(Number(low=0.0, high=1e12))
 _DRIVE = Record(
-    {"kp": _STIFFNESS, "kd": _STIFFNESS, "hold": Text(known=HOLDS)},
+    {"kp": ListOf(OrNull(Number(low=0.0, high=1e12))), "kd": _STIFFNESS, "hold": Text(known=HOLDS)},
     {"torque_limits": _STIFFNESS, "delay": ListOf(Number(low=0.0, high=1.0))},
 )
 _ROBOT = Record(

@@ -14,7 +14,7 @@ from jointid.robot.balance.inertia import inertia_columns
 from jointid.robot.balance.loads import loaded
 from jointid.robot.balance.shaped_terms import ShapedTerms
 from jointid.robot.motion.motion import Motion
-from jointid.robot.motion.shifts import torque_lag, torque_shift, without_delay, without_lag
+from jointid.robot.motion.shifts import on_the_clock_of_positions, torque_lag, torque_shift
 from jointid.robot.motion.stamps import on_even_clock
 from jointid.robot.result.record import RobotEstimateRecord
 
@@ -67,10 +67,8 @@ def motion_of(
     robot, settings = estimate.robot, estimate.settings
     shift, recorded = settings.get("shift", {}), settings.get("recorded_velocity", ())
     return Motion.of(
-        without_delay(
-            without_lag(on_even_clock(recording), robot, torque_lag(shift, robot)),
-            robot,
-            torque_shift(shift, robot),
+        on_the_clock_of_positions(
+            on_even_clock(recording), robot, torque_shift(shift, robot), torque_lag(shift, robot)
         ),
         robot,
         np.array(settings["min_speed"]),

@@ -28,9 +28,10 @@ def head(estimate: RobotEstimateRecord) -> list[str]:
         for name, parameter in joint.parameters.items():
             units.setdefault(name, parameter.unit)
     shown = [
-        f"{name} [{units[name]}]" if units[name] else name for name in shown_parameters(estimate)
+        f"{name} [{units[name]}]" if units[name] not in ("", "1") else name
+        for name in shown_parameters(estimate)
     ]
-    return ["joint", "model", *shown, "residual", "left out", "warnings"]
+    return ["joint", *shown, "residual", "left out", "model", "warnings"]
 
 
 def rows(estimate: RobotEstimateRecord) -> list[list[str]]:
@@ -39,10 +40,10 @@ def rows(estimate: RobotEstimateRecord) -> list[list[str]]:
     return [
         [
             joint.name,
-            joint.model,
             *(value_with_error(joint.parameters.get(name)) for name in names),
             f"{100.0 * joint.relative_residual:.1f} %",
             percent(joint.residuals.left_out),
+            joint.model,
             _codes(estimate, joint.name),
         ]
         for joint in estimate.joints.values()

@@ -12,37 +12,35 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.driven import Driven
 from jointid.robot.motion.motion import Motion, ratios_of_positions
-from jointid.robot.rollout.stepping import State
+from jointid.robot.rollout.stepping import Push, State
 
 Array = NDArray[np.float64]
 
 
 class Driving(Protocol):
-    """Torques of the joints."""
+    """Torques of the joints along a log."""
 
-    def torque(self, row: int, share: float, state: State) -> tuple[Array, Array]:
-        """Return the torques a share of the time from a row to the next one, and by how much they fall per speed."""
-        ...
+    def push(self, row: int, share: float, state: State) -> Push:
+        """Return the torques a share of the time from a row to the next one."""
 
 
 def driving_of(motion: Motion, robot: Robot, recording: RobotRecording) -> Driving:
     """Return what drives the robot in a recording, of which `motion` is."""
     if motion.driven is None:
-        return _Logged(motion)
+        return _Logged(motion.torque, motion.torque_held)
     zeros = np.array(robot.zero_offsets or (0.0,) * robot.n)
     return _Loop(motion.driven, ratios_of_positions(recording, robot), zeros)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Logged:
-    motion: Motion
+    torque: Array
+    held: bool
 
-    def torque(self, row: int, share: float, state: State) -> tuple[Array, Array]:
+    def push(self, row: int, share: float, state: State) -> Push:
         del state
-        torque = self.motion.torque
-        share = 0.0 if self.motion.torque_held else share
-        now = (1.0 - share) * torque[:, row] + share * torque[:, row + 1]
-        return now, np.zeros(len(now))
+        torque = _between(self.torque, row, 0.0 if self.held else share)
+        return Push(torque, np.zeros(len(torque)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,13 +49,15 @@ class _Loop:
     ratios: Array  # recorded position per position of the joint
     zeros: Array  # [rad or m]
 
-    def torque(self, row: int, share: float, state: State) -> tuple[Array, Array]:
-        del share
-        drive = self.driven.drive
-        position = self.ratios * (state.position - self.zeros)
-        wanted = self.driven.command[:, row] + drive.torque_at(
-            position, self.ratios * state.velocity
-        )
-        held = drive.limited(wanted[:, None])[:, 0]
-        damping = self.driven.factor * self.ratios * np.array(drive.kd)
-        return self.driven.factor * held, np.where(held == wanted, damping, 0.0)
+    def push(self, row: int, share: float, state: State) -> Push:
+        drive, factor = self.driven.drive, self.driven.factor
+        wanted = _between(self.driven.wanted, row, 0.0 if drive.hold == "zoh" else share)
+        error = wanted - self.ratios * (state.position - self.zeros)
+        torque = drive.torque_at(error, self.ratios * state.velocity)
+        limited = drive.limited(torque[:, None])[:, 0]
+        damping = factor * self.ratios * np.array(drive.kd)
+        return Push(factor * limited, np.where(limited == torque, damping, 0.0))
+
+
+def _between(rows: Array, row: int, share: float) -> Array:
+    return np.asarray((1.0 - share) * rows[:, row] + share * rows[:, row + 1])

@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.estimate.rollout import Rollout, RunRollout
 from jointid.joint.checks import positive_number
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.motion.motion import Motion
+from jointid.robot.motion.motion import Motion, part_of
 from jointid.robot.result.prediction import motion_of
 from jointid.robot.result.record import RobotEstimateRecord
 from jointid.robot.rollout.arm import Arm
@@ -24,6 +24,9 @@ STEP = 1e-3
 """Longest integration step by default [s]."""
 HORIZON = 0.5
 """Length of a stretch of logged torques by default [s]: errors of an open loop grow without a bound."""
+
+LONGEST = 20.0
+"""Time of each recording that is simulated [s]: more of it says the same."""
 
 _OUT_OF_BOUNDS = 1e6  # rad/s
 
@@ -38,6 +41,7 @@ def rollout_robot(
     """Simulate a robot along logs by their torques or by its position loop, and compare the positions.
 
     Each stretch of `horizon` seconds begins at the logged positions and velocities; a closed loop needs only one.
+    Of each recording at most the first 20 s are simulated.
 
     Returns
     -------
@@ -47,7 +51,14 @@ def rollout_robot(
     runs = [recordings] if isinstance(recordings, RobotRecording) else list(recordings)
     if not runs:
         raise InputError("at least one recording is expected", argument="recordings", value=[])
-    step, closed = positive_number("", "step", step), estimate.robot.drive is not None
+    drive = estimate.robot.drive
+    if drive is not None and drive.free:
+        raise InputError(
+            f"the gain of {estimate.robot.names[drive.free[0]]} is not determined: its loop cannot be simulated",
+            argument="subject",
+            remedy="state its kp",
+        )
+    step, closed = positive_number("", "step", step), drive is not None
     if horizon is not None:
         horizon = positive_number("", "horizon", horizon)
     elif not closed:
@@ -55,6 +66,8 @@ def rollout_robot(
     arm, nominal = Arm.of(estimate), Arm.nominal(estimate)
     found: list[RunRollout] = []
     for number, recording in enumerate(runs):
+        end = int(np.searchsorted(recording.time, recording.time[0] + LONGEST, "right"))
+        recording = part_of(recording, 0, end)
         motion = motion_of(estimate, recording, mask_standstill=False)
         driving = driving_of(motion, estimate.robot, recording)
         simulated = _along(arm, motion, driving, horizon, step)
@@ -95,8 +108,8 @@ def _along(
         duration = float(time[row + 1] - time[row])
         count = max(1, int(np.ceil(duration / longest - 1e-9)))
         for k in range(count):
-            torque, damping = driving.torque(row, (k + 0.5) / count, state)
-            state = moved(arm, state, torque, damping, duration / count)
+            push = driving.push(row, (k + 0.5) / count, state)
+            state = moved(arm, state, push, duration / count)
         if not np.abs(state.velocity).max() < _OUT_OF_BOUNDS:
             raise InputError(
                 "the simulated motion leaves all bounds",

@@ -24,15 +24,22 @@ class State:
     acceleration: Array
 
 
-def moved(arm: Arm, state: State, torque: Array, damping: Array, duration: float) -> State:
-    """Return the state after a duration [s] under a torque.
+@dataclass(frozen=True, slots=True)
+class Push:
+    """Torques of the joints, and by how much they fall per speed that is gained."""
 
-    The torque falls by `damping` per speed that is gained, [N·m·s/rad]. The acceleration of the step before stands for
-    this one's in the load of the gears.
+    torque: Array
+    damping: Array
+
+
+def moved(arm: Arm, state: State, push: Push, duration: float) -> State:
+    """Return the state after a duration [s].
+
+    The acceleration of the step before stands for this one's in the load of the gears.
     """
     position, velocity = state.position, state.velocity
-    mass = arm.mass(position) + duration * np.diag(damping)
-    free = velocity + duration * np.linalg.solve(mass, torque - arm.bias(position, velocity))
+    mass = arm.mass(position) + duration * np.diag(push.damping)
+    free = velocity + duration * np.linalg.solve(mass, push.torque - arm.bias(position, velocity))
     rows = arm.friction_rows()
     if rows.size:
         loaded = arm.friction_under_load(position, velocity, state.acceleration)
