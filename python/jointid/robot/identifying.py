@@ -23,7 +23,7 @@ from jointid.robot.links.robot import Robot
 from jointid.robot.motion.request import least_speeds, recordings_of
 from jointid.robot.motion.shifts import shift_option
 from jointid.robot.options import RobotOptions
-from jointid.robot.result.findings import RANK
+from jointid.robot.result.findings import ranked
 from jointid.robot.result.result import RobotEstimate
 
 
@@ -115,9 +115,7 @@ def identify_robot(
     return replace(
         estimate,
         robot=replace(estimate.robot, gravity_free=False),  # it was found
-        findings=tuple(
-            sorted(_possible(answer.findings, case), key=lambda each: RANK[each.severity])
-        ),
+        findings=ranked(_possible(answer.findings, case)),
         cross_check=answer.check,
         settings=settings,
         seconds=time.perf_counter() - started,

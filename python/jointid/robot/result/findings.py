@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -26,7 +26,7 @@ _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth an inspection of the given facts
 _LEFT_OUT = "such motion says nothing about friction and is left out"
-RANK = {"blocking": 0, "warning": 1, "info": 2}
+_RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
 def findings_of(
@@ -42,7 +42,17 @@ def findings_of(
         ),
         *_of_inertia(estimate, columns),
     ]
-    return tuple(sorted(found, key=lambda each: RANK[each.severity]))
+    return ranked(found)
+
+
+def ranked(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Return the most severe findings first, and warnings with a call that takes them away before the others."""
+
+    def rank(found: Finding) -> tuple[int, bool]:
+        called = any(each.kind == "call" for each in found.advice)
+        return _RANK[found.severity], found.severity == "warning" and not called
+
+    return tuple(sorted(findings, key=rank))
 
 
 def doubtful_joints(estimate: RobotEstimateRecord) -> list[int]:
