@@ -93,7 +93,7 @@ def run_console_blocks(
         wanted = [code for word, code in (codes or {}).items() if word in arguments]
         assert main(arguments) == (wanted or [0])[0]
         printed = capsys.readouterr().out
-        same = _same(expected, printed, within)
+        same = same_text(expected, printed, within)
         assert same, f"{line}\n{printed}"
     return commands
 
@@ -101,7 +101,7 @@ def run_console_blocks(
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?![\w]|\.\d)")
 
 
-def _same(expected: str, printed: str, within: float) -> bool:
+def same_text(expected: str, printed: str, within: float) -> bool:
     """Whether a text is what a page shows; what the page leaves out at the end is left out."""
     if not within:
         return doctest.OutputChecker().check_output(

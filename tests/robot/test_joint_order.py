@@ -74,7 +74,7 @@ def test_torques_in_another_order_are_named(
     def tried(*_: object) -> None:
         raise AssertionError("a delay or a fact was tried")
 
-    for name in ("aligned", "diagnosed"):
+    for name in ("with_better_velocities", "diagnosed"):
         monkeypatch.setattr(examining, name, tried)
     found = jid.identify(in_order(run, order, "torque"), jid.Robot.from_urdf(URDF), inertia=inertia)
     details = only(found, code).details
