@@ -155,3 +155,35 @@ def test_where_stamps_hide_all_motion_the_recorded_velocity_is_used_with_care(
     assert said.severity == "warning"
     assert found.verdict.level == "usable with care"
     assert worst(found) < 0.05
+
+
+def test_a_robot_on_a_stand_has_its_better_velocity_and_only_the_gravity_that_it_shows(
+    path: Path,
+) -> None:
+    run = logged(path, seed=0, step=2e-3)
+    found = jid.identify_robot(run, jid.Robot.from_urdf(path, gravity="free"))
+    assert used(found) == ["shoulder", "elbow"]
+    assert worst(found) < 0.02
+    (said,) = [each for each in found.findings if each.code == "gravity_found"]
+    # Both joints turn about y: no torque shows gravity along it.
+    assert ", ?, -9.8" in said.title
+    assert "inf" not in str(said)
+    assert "y" not in said.evidence
+    assert said.evidence["z"].value == pytest.approx(-9.81, abs=0.01)
+    again = jid.RobotEstimate.from_json(found.to_json())
+    assert found.robot.gravity_free is again.robot.gravity_free is False
+
+
+def test_a_stated_filter_is_undone_before_velocities_are_compared(
+    path: Path, robot: jid.Robot
+) -> None:
+    run = logged(path, seed=0, step=2e-3)
+    assert run.torque is not None
+    constant, filtered = 0.006, np.array(run.torque)
+    for row in range(1, len(filtered)):
+        rise = run.torque[row] - filtered[row - 1]
+        filtered[row] = filtered[row - 1] + (1e-3 / constant) * rise
+    late = jid.RobotRecording(**{**run.fields(), "torque": filtered})
+    found = jid.identify_robot(late, robot, shift={"torque_filter": constant - 5e-4})
+    assert used(found) == ["shoulder", "elbow"]
+    assert worst(found) < 0.02

@@ -205,3 +205,31 @@ def test_a_drive_that_cannot_be_is_refused(tmp_path: Path, drive: Any, argument:
     with pytest.raises(jid.InputError) as caught:
         jid.Robot.from_urdf(path, drive=drive)
     assert caught.value.argument == argument
+
+
+def test_a_gain_that_the_motion_does_not_show_stays_free(tmp_path: Path) -> None:
+    path, log = pd_driven.driven(LEG_TRUTH, tmp_path, 1, duration=6.0)
+    assert log.reference is not None
+    position, wanted = np.array(log.position), np.array(log.reference)
+    position[:, 0] = wanted[:, 0] = position[0, 0]
+    still = jid.RobotRecording(time=log.time, position=position, reference=wanted, names=log.names)
+    robot = jid.Robot.from_urdf(path, drive={"kp": "free", "kd": "free"})
+    found = jid.identify(still, robot)
+    assert found.robot.drive is not None
+    gains = found.robot.drive.kp
+    assert gains[0] is None
+    assert gains[1] == pytest.approx(20.0, rel=0.05)
+    again = jid.RobotEstimate.from_json(found.to_json())
+    assert again.robot.drive == found.robot.drive
+    (named,) = [
+        each.parameters
+        for each in found.findings
+        if each.code == "undetermined" and "position gain" in each.title
+    ]
+    assert named == ("hip.position_gain",)
+    with pytest.raises(jid.InputError, match="the gain of hip is not determined"):
+        jid.simulate(found, recordings=still)
+    page = jid.save_report(found, tmp_path / "leg.html").read_text("utf-8")
+    assert "hip" in page
+    with pytest.raises(jid.InputError, match="with a free gain the URDF's links"):
+        jid.identify(still, robot, inertia="free")
