@@ -72,6 +72,8 @@ def test_a_block_keeps_the_units_of_its_headers(tmp_path: Path) -> None:
         ({"position": "1:99"}, "the columns are 0 to 6"),
         ({"position": "3:1"}, "its first and its last"),
         ({"speed": "1:3"}, "speed"),
+        ({"position": "1:3", "torque": 4}, "a block of 3 columns is expected, as 1:3 of position"),
+        ({"position": "1:3", "velocity": "column 5"}, "velocity.*: a block of 3 columns"),
     ],
 )
 def test_blocks_that_cannot_be(blocks: dict[str, Any], says: str, tmp_path: Path) -> None:
@@ -94,6 +96,17 @@ def test_the_command_says_how_blocks_are_given(
     filled = form.replace("COLUMN", "0").replace("FIRST:LAST", "1:3") + " --column torque=4:6"
     assert answer(["identify", path, "--joints", "all", *filled.split()], capsys)[0] == 0
     assert answer(["info", path, *filled.split()], capsys)[0] == 0
+
+
+def test_a_block_stands_next_to_headers_of_each_joint(tmp_path: Path) -> None:
+    run = motion(2, 7)
+    path = numbers(
+        tmp_path / "a.csv", run["time"], run["position"], run["torque"], header="t,x,y,f_1,f_2"
+    )
+    read = jid.load(path, joints="all", columns={"position": "1:2", "torque": "f_{joint}"})
+    assert np.array_equal(read.torque, run["torque"])  # type: ignore[arg-type]
+    one = jid.load(path, joints="all", columns={"position": "1:1", "torque": 3})
+    assert np.array_equal(one.torque, run["torque"][:, :1])  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("further", [[], ["tau_ext"], ["index", "tau_ext"]])

@@ -12,6 +12,7 @@ from jointid.recording.signals import FloatArray, check_signal_name
 from jointid.recording.table import Table, first_cell, raw_values
 
 _BLOCK = r"\s*(\d+)\s*:\s*(\d+)\s*"
+_JOINT = "{joint}"
 _UNIT = r"\s*[\[(][^\[\](),]*[\])]\s*$"
 OF_BLOCKS = Action(
     "call",
@@ -35,7 +36,8 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
     Raises
     ------
     InputError
-        A block is not in the table, two share a column, or they have not as many columns.
+        A block is not in the table, two share a column, they have not as many columns, or a single column is given
+        for a signal of several joints.
     """
     known = {header.strip() for header in table.headers}
     blocks = {
@@ -77,6 +79,16 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
                 )
             joints[index] = (signal, joint)
     rest = {signal: column for signal, column in columns.items() if signal not in blocks}
+    shown, (first, last) = next(iter(blocks.items()))
+    for signal, column in rest.items():
+        check_signal_name(signal, "columns")
+        if signal != "time" and last > first and column is not None and _JOINT not in str(column):
+            raise InputError(
+                f"a block of {last - first + 1} columns is expected, as {first}:{last} of {shown}",
+                argument=f"columns.{signal}",
+                value=column,
+                place=table.header_place,
+            )
     return BlockTable(table, joints), rest
 
 
