@@ -93,6 +93,7 @@ def test_the_command_says_how_blocks_are_given(
         code, said = answer(line, capsys)
         assert code == 2
         assert form in said
+        assert "first and last column of each signal, counted from 0, as position=1:6" in said
     filled = form.replace("COLUMN", "0").replace("FIRST:LAST", "1:3") + " --column torque=4:6"
     assert answer(["identify", path, "--joints", "all", *filled.split()], capsys)[0] == 0
     assert answer(["info", path, *filled.split()], capsys)[0] == 0

@@ -17,7 +17,7 @@ _UNIT = r"\s*[\[(][^\[\](),]*[\])]\s*$"
 OF_BLOCKS = Action(
     "call",
     {"columns": {"time": "COLUMN", "position": "FIRST:LAST"}},
-    "for several joints: blocks of columns, numbered from 0, both ends included; another for the torque",
+    "several joints: first and last column of each signal, counted from 0, as position=1:6 and torque=7:12",
     function="load_robot",
 )
 """The call for a file with a block of columns for each signal."""
