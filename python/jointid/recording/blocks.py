@@ -1,15 +1,12 @@
 """Blocks of columns, one column for each joint, where headers name no joints: ``columns={"position": "1:6"}``."""
 
 import re
-from collections.abc import Mapping, Sequence
-from typing import Any
-
-import numpy.typing as npt
+from collections.abc import Mapping
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.recording.signals import FloatArray, check_signal_name
-from jointid.recording.table import Table, first_cell, raw_values
+from jointid.recording.signals import check_signal_name
+from jointid.recording.table import RenamedTable, Table
 
 _BLOCK = r"\s*(\d+)\s*:\s*(\d+)\s*"
 _JOINT = "{joint}"
@@ -25,7 +22,7 @@ Columns = Mapping[str, str | int | None]
 
 
 def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
-    """Return a table in which a block's columns have the names of their joints, and the columns that are no blocks.
+    """Return a table whose blocks have columns ``1.position``, ``2.position``, ..., and the columns that are no blocks.
 
     Parameters
     ----------
@@ -89,50 +86,9 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
                 value=column,
                 place=table.header_place,
             )
-    return BlockTable(table, joints), rest
-
-
-class BlockTable:
-    """A table whose columns in blocks are called ``1.position``, ``2.position``, ...
-
-    Parameters
-    ----------
-    table : Table
-    joints : mapping of int to (str, int)
-        Column → signal and number of the joint, from 1.
-    """
-
-    def __init__(self, table: Table, joints: Mapping[int, tuple[str, int]]) -> None:
-        self._table = table
-        self.source, self.header_place, self.saved = table.source, table.header_place, table.saved
-        self.headers = tuple(
-            _header(header, joints.get(index)) for index, header in enumerate(table.headers)
-        )
-        self.other_names = {
-            **{header: k for k, header in enumerate(table.headers) if k not in joints},
-            **table.other_names,
-        }
-        self.notes: dict[str, Any] = dict(getattr(table, "notes", {}))
-
-    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as numbers."""
-        return self._table.numbers(columns)
-
-    def text(self, column: int) -> list[str]:
-        """Return a column as text."""
-        return self._table.text(column)
-
-    def first_cell(self, column: int) -> str:
-        """Return the first cell of a column as it stands in the file."""
-        return first_cell(self._table, column)
-
-    def raw(self, column: int) -> npt.NDArray[Any] | None:
-        """Return a column as the file has it."""
-        return raw_values(self._table, column)
-
-    def place(self, column: int, row: int) -> str:
-        """Return where a cell is."""
-        return self._table.place(column, row)
+    headers = [_header(header, joints.get(index)) for index, header in enumerate(table.headers)]
+    own = {header: index for index, header in enumerate(table.headers) if index not in joints}
+    return RenamedTable(table, headers, {**own, **table.other_names}), rest
 
 
 def _header(header: str, joint: tuple[str, int] | None) -> str:

@@ -56,3 +56,57 @@ def raw_values(table: Table, column: int) -> npt.NDArray[Any] | None:
         return None
     values = table.raw(column)
     return None if values is None else np.asarray(values)
+
+
+class RenamedTable:
+    """Columns of another table under other headers; what a reader changes in them it overrides.
+
+    Parameters
+    ----------
+    table : Table
+    headers : sequence of str, optional
+        Default: those of the table.
+    other_names : mapping of str to int, optional
+        Default: those of the table.
+    indices : sequence of int, optional
+        Of each column here its number in the table. Default: all in order.
+    """
+
+    def __init__(
+        self,
+        table: Table,
+        headers: Sequence[str] | None = None,
+        other_names: Mapping[str, int] | None = None,
+        indices: Sequence[int] | None = None,
+    ) -> None:
+        self._table = table
+        self._indices = range(len(table.headers)) if indices is None else indices
+        self.source, self.header_place, self.saved = table.source, table.header_place, table.saved
+        self.headers = table.headers if headers is None else tuple(headers)
+        self.other_names = table.other_names if other_names is None else other_names
+        self._own_notes: dict[str, Any] = {}
+
+    @property
+    def notes(self) -> dict[str, Any]:
+        """How the file was read."""
+        return {**getattr(self._table, "notes", {}), **self._own_notes}
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as numbers."""
+        return self._table.numbers([self._indices[column] for column in columns])
+
+    def text(self, column: int) -> list[str]:
+        """Return a column as text."""
+        return self._table.text(self._indices[column])
+
+    def first_cell(self, column: int) -> str:
+        """Return the first cell of a column as it stands in the file."""
+        return first_cell(self._table, self._indices[column])
+
+    def raw(self, column: int) -> npt.NDArray[Any] | None:
+        """Return a column as the file has it."""
+        return raw_values(self._table, self._indices[column])
+
+    def place(self, column: int, row: int) -> str:
+        """Return where a cell is."""
+        return self._table.place(self._indices[column], row)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from jointid.base.unpacking import TooLargeError
 from jointid.recording.contents import Contents
 from jointid.recording.damaged_rows import DROP, RepeatedHeaderError, few
 from jointid.recording.signals import FloatArray
-from jointid.recording.table import Table
+from jointid.recording.table import RenamedTable, Table
 
 
 def read_leniently(
@@ -47,21 +47,13 @@ def read_leniently(
     )
 
 
-class TolerantTable:
+class TolerantTable(RenamedTable):
     """A table whose empty and unreadable cells are NaN, in columns where they are few.
 
     Parameters
     ----------
     table : Table
     """
-
-    def __init__(self, table: Table) -> None:
-        self._table = table
-        self.source = table.source
-        self.headers = table.headers
-        self.other_names: Mapping[str, int] = table.other_names
-        self.header_place = table.header_place
-        self.saved: Mapping[str, Any] | None = table.saved
 
     def __getattr__(self, name: str) -> Any:
         """What only some tables have, such as the cells' own numbers."""
@@ -75,14 +67,6 @@ class TolerantTable:
             raise
         except InputError:
             return [self._column(column) for column in columns]
-
-    def text(self, column: int) -> list[str]:
-        """Return a column as text."""
-        return self._table.text(column)
-
-    def place(self, column: int, row: int) -> str:
-        """Return where a cell is, for messages."""
-        return self._table.place(column, row)
 
     def _column(self, column: int) -> FloatArray:
         try:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from jointid.base.errors import InputError
 from jointid.recording.runs import shifts_of_runs
 from jointid.recording.signals import FloatArray
-from jointid.recording.table import Table, first_cell, raw_values
+from jointid.recording.table import RenamedTable, Table
 from jointid.recording.wide.finding_joints import joint_headers
 
 INFO = "meta/info.json"
@@ -92,7 +92,24 @@ def joint_names(info: Mapping[str, Any], feature: str, count: int) -> list[str]:
     return found if list(joint_headers(headers)) == found else plain
 
 
-class LeRobotTable:
+def _named(headers: Sequence[str], info: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the headers, with a joint's name where the table has an element of a list."""
+    elements = [re.fullmatch(_ELEMENT, header) for header in headers]
+    counts = {name: sum(e is not None and e[1] == name for e in elements) for name in _SIGNALS}
+    names = {name: joint_names(info, name, count) for name, count in counts.items()}
+    found = []
+    for header, element in zip(headers, elements, strict=True):
+        if element is None:
+            found.append(f"{header} [s]" if header == _TIME else header)
+            continue
+        signal = _SIGNALS[element[1]]
+        joint = names[element[1]][int(element[2] or 0)]
+        unit = f" [{_UNIT}]" if signal in ("position", "velocity", "reference") else ""
+        found.append(f"{joint}.{signal}{unit}")
+    return tuple(found)
+
+
+class LeRobotTable(RenamedTable):
     """A dataset's rows: states are positions, actions wanted positions, episodes runs one after the other.
 
     Parameters
@@ -103,32 +120,10 @@ class LeRobotTable:
     """
 
     def __init__(self, table: Table, info: Mapping[str, Any]) -> None:
-        self._table = table
-        self.source, self.header_place, self.saved = table.source, table.header_place, table.saved
+        own = {header: index for index, header in enumerate(table.headers)}
+        super().__init__(table, _named(table.headers, info), own)
         self._rate = info.get("fps")
-        self.headers = self._named(info)
         self._time = table.headers.index(_TIME)
-
-    def _named(self, info: Mapping[str, Any]) -> tuple[str, ...]:
-        """The headers, with a joint's name where the table has an element of a list."""
-        elements = [re.fullmatch(_ELEMENT, header) for header in self._table.headers]
-        counts = {name: sum(e is not None and e[1] == name for e in elements) for name in _SIGNALS}
-        names = {name: joint_names(info, name, count) for name, count in counts.items()}
-        found = []
-        for header, element in zip(self._table.headers, elements, strict=True):
-            if element is None:
-                found.append(f"{header} [s]" if header == _TIME else header)
-                continue
-            signal = _SIGNALS[element[1]]
-            joint = names[element[1]][int(element[2] or 0)]
-            unit = f" [{_UNIT}]" if signal in ("position", "velocity", "reference") else ""
-            found.append(f"{joint}.{signal}{unit}")
-        return tuple(found)
-
-    @property
-    def other_names(self) -> Mapping[str, int]:
-        """The dataset's own headers."""
-        return {header: index for index, header in enumerate(self._table.headers)}
 
     @cached_property
     def _episodes(self) -> tuple[FloatArray, list[npt.NDArray[np.intp]]]:
@@ -140,7 +135,7 @@ class LeRobotTable:
     @property
     def notes(self) -> dict[str, Any]:
         """How the file was read."""
-        found = dict(getattr(self._table, "notes", {}))
+        found = super().notes
         episodes, runs = self._episodes
         if len(runs) > 1:
             shown = [f"episode {episodes[run[0]]:g}" for run in runs[:_MOST_SHOWN]]
@@ -170,18 +165,10 @@ class LeRobotTable:
 
     def raw(self, column: int) -> npt.NDArray[Any] | None:
         """Return the values of a column as the file has them."""
-        return None if column == self._time else raw_values(self._table, column)
+        return None if column == self._time else super().raw(column)
 
     def text(self, column: int) -> list[str]:
         """Return the values of a column as text."""
         if column == self._time:
             return list(map(repr, self.numbers([column])[0].tolist()))
-        return self._table.text(column)
-
-    def first_cell(self, column: int) -> str:
-        """Return the first cell of a column as it stands in the file."""
-        return first_cell(self._table, column)
-
-    def place(self, column: int, row: int) -> str:
-        """Return where a cell is."""
-        return self._table.place(column, row)
+        return super().text(column)

@@ -3,15 +3,12 @@
 import re
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
-
-import numpy.typing as npt
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
-from jointid.recording.signals import FloatArray, check_signal_name
-from jointid.recording.table import Table, first_cell, raw_values
+from jointid.recording.signals import check_signal_name
+from jointid.recording.table import RenamedTable, Table
 from jointid.recording.wide.finding_joints import columns_of, joint_headers
 from jointid.recording.wide.joint_columns import own_columns
 from jointid.recording.wide.one_joint import MARK, is_one
@@ -19,7 +16,7 @@ from jointid.recording.wide.one_joint import MARK, is_one
 Columns = Mapping[str, str | int | None]
 
 
-class JointTable:
+class JointTable(RenamedTable):
     """The columns of one joint, their headers without the joint, and those that no joint owns.
 
     Parameters
@@ -57,7 +54,6 @@ class JointTable:
         columns: Columns,
         extra: Mapping[str, str | int] = MappingProxyType({}),
     ) -> None:
-        self._table = table
         joints = {each: columns_of(table.headers, each) for each in joints_of(table, columns)}
         owned = {each.index for found in joints.values() for each in found}
         mine = joints.get(joint, [])
@@ -67,50 +63,28 @@ class JointTable:
         chosen, self.side, self.other_sides = found.of, found.side, found.other_sides
         own = {name: _extra_index(table, column, joint, name) for name, column in extra.items()}
         wanted = {index for index in (*chosen.values(), *own.values()) if index is not None}
-        self._indices = sorted(shared | {each.index for each in mine} | wanted)
-        place = {index: number for number, index in enumerate(self._indices)}
+        indices = sorted(shared | {each.index for each in mine} | wanted)
+        place = {index: number for number, index in enumerate(indices)}
         without = {each.index: each.header for each in mine}
-        self.source = table.source
-        self.header_place = table.header_place
-        self.headers = tuple(without.get(index, table.headers[index]) for index in self._indices)
+        super().__init__(
+            table,
+            [without.get(index, table.headers[index]) for index in indices],
+            {table.headers[index]: place[index] for index in indices}
+            | {name: place[index] for name, index in table.other_names.items() if index in place},
+            indices,
+        )
         self.columns = {
             signal: None if index is None else place[index] for signal, index in chosen.items()
         }
         self.extra = {name: place[index] for name, index in own.items()}
-        self.other_names = {table.headers[index]: place[index] for index in self._indices} | {
-            name: place[index] for name, index in table.other_names.items() if index in place
-        }
-        self.notes: dict[str, Any] = dict(getattr(table, "notes", {}))
         if len(found.asked) == 1 and not {"torque", "motor_torque"} & set(chosen):
-            self.notes["commanded_torque"] = found.asked[0].pattern
-        saved = table.saved
-        self.saved: Mapping[str, Any] | None = (
-            None if saved is None else {key: saved[key] for key in saved if key != "robot"}
-        )
+            self._own_notes["commanded_torque"] = found.asked[0].pattern
+        if table.saved is not None:
+            self.saved = {key: table.saved[key] for key in table.saved if key != "robot"}
 
     def in_whole(self, column: int) -> int:
         """Return the number of a column in the table of all joints."""
         return self._indices[column]
-
-    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as numbers."""
-        return self._table.numbers([self._indices[column] for column in columns])
-
-    def text(self, column: int) -> list[str]:
-        """Return a column as text."""
-        return self._table.text(self._indices[column])
-
-    def first_cell(self, column: int) -> str:
-        """Return the first cell of a column as it stands in the file."""
-        return first_cell(self._table, self._indices[column])
-
-    def raw(self, column: int) -> npt.NDArray[Any] | None:
-        """Return a column as the file has it."""
-        return raw_values(self._table, self._indices[column])
-
-    def place(self, column: int, row: int) -> str:
-        """Return where a cell is."""
-        return self._table.place(self._indices[column], row)
 
 
 def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
