@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from command_line_answers import answer
 from numpy.typing import NDArray
-from recording_files import refusal
+from recording_files import refusal, refused
 from shared_cases import case
 
 import jointid as jid
@@ -161,7 +162,14 @@ def test_the_unit_is_asked_and_what_is_printed_reads_the_file(
     code, said = answer(["info", str(folder)], capsys)
     assert code == 2
     assert "a LeRobot dataset does not say" in said
-    assert "--unit position=deg --unit reference=deg" in said
+    assert (
+        "--unit position=deg --unit reference=deg (use rad instead of deg if it is in rad; " in said
+    )
+    for each in (said, refused(folder, partial(jid.load, joints="all"))):
+        assert (
+            "if values run from −100 to 100, scale = half of the joint's range in rad / 100)"
+            in each
+        )
     pasted = ["--unit", "position=deg", "--unit", "reference=deg"]
     assert main(["info", str(folder), *pasted]) == 0
     said = capsys.readouterr().out

@@ -124,15 +124,14 @@ def _of_dataset(table: Table) -> Action:
     """Return the call that states the unit of a dataset's states and actions, which are alike."""
     read = [understood(header) for header in table.headers]
     signals = [
-        each.meaning.signal
-        for each in read
-        if each.meaning is not None and each.unit is UNITS["lerobot"]
+        each.meaning.signal for each in read if each.meaning and each.unit is UNITS["lerobot"]
     ]
     units = [each for each in ("position", "reference") if each in signals]
     return Action(
         "call",
         {"units": dict.fromkeys(units, "deg")},
-        "if they are degrees, or rad; of −100…100 --scale has π/180 times half the range in degrees over 100",
+        "use rad instead of deg if it is in rad; if values run from −100 to 100, "
+        "scale = half of the joint's range in rad / 100",
         function="load",
     )
 
