@@ -53,11 +53,15 @@ def write(path: Path, *episodes: Rows) -> Path:
 
 
 def dataset(
-    folder: Path, version: str, names: Any, episodes: list[Rows], fps: float = RATE
+    folder: Path,
+    version: str,
+    names: Any,
+    episodes: list[Rows],
+    fps: float = RATE,
+    actions: Any = ...,
 ) -> Path:
-    features = {
-        key: {"dtype": "float32", "names": names} for key in ("action", "observation.state")
-    }
+    of_features = {"observation.state": names, "action": names if actions is ... else actions}
+    features = {key: {"dtype": "float32", "names": each} for key, each in of_features.items()}
     info = {"codebase_version": version, "fps": fps, "features": features}
     (folder / "meta").mkdir(parents=True)
     (folder / "meta" / "info.json").write_text(json.dumps(info), encoding="utf-8")
@@ -153,6 +157,63 @@ def test_velocity_and_effort_of_other_robots(seed: int, tmp_path: Path) -> None:
         ("reference", "action"),
     ):
         assert np.array_equal(getattr(read, signal), rows[key].astype(float)), signal
+
+
+@pytest.mark.parametrize(
+    ("names", "actions", "expected"),
+    [
+        (["a", "b", "c"], None, ("a", "b", "c")),
+        (None, ["a", "b", "c"], ("0", "1", "2")),
+        (["a", "b", "c"], ["m_a", "m_b", "m_c"], ("a", "b", "c")),
+        (["a", "b", "c"], ["c.pos", "a.pos", "b.pos"], ("a", "b", "c")),
+    ],
+)
+def test_actions_have_the_joints_of_the_states(
+    names: Any, actions: Any, expected: tuple[str, ...], tmp_path: Path
+) -> None:
+    """By their names where the states have the same ones; otherwise in the states' order."""
+    episodes = [episode(k) for k in range(3)]
+    folder = dataset(tmp_path / "pick", "v3.0", names, episodes, actions=actions)
+    assert "'position': 'deg', 'reference': 'deg'" in refused(
+        folder, partial(jid.load, joints="all")
+    )
+    read = jid.load(folder, joints="all", units=DEGREES)
+    read = read.select(expected)
+    order = [2, 0, 1] if actions and actions[0] == "c.pos" else [0, 1, 2]
+    held = [{**each, "action": each["action"][:, np.argsort(order)]} for each in episodes]
+    check(read, held)
+
+
+@pytest.mark.parametrize("names", [None, ["a", "b", "c", "d", "e", "f"]])
+def test_another_number_of_actions_is_no_wanted_position(
+    names: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    episodes = [episode(k, joints=6) for k in range(3)]
+    held = [{**each, "action": each["action"][:, :3]} for each in episodes]
+    folder = dataset(tmp_path / "pick", "v3.0", names, held, actions=None)
+    assert "units={'position': 'deg'}" in refused(folder, partial(jid.load, joints="all"))
+    read = jid.load(folder, joints="all", units={"position": "deg"})
+    assert read.reference is None
+    says = "action is not read: it has 3 elements without the joints' names, and observation.state has 6"
+    assert read.metadata["of_no_joint"] == [says]
+    assert main(["info", str(folder), "--unit", "position=deg"]) == 0
+    assert f"read: {says}" in capsys.readouterr().out
+    first = jid.load(folder, joint=read.names[0], units=DEGREES, columns={"reference": "action_1"})
+    assert first.reference is not None
+    wanted = np.concatenate([each["action"][:, 1] for each in held]).astype(float)
+    assert np.allclose(np.degrees(first.reference), wanted, rtol=1e-12)
+
+
+def test_some_joints_have_actions(tmp_path: Path) -> None:
+    """Where the names of actions are some of the states', the others have no wanted position."""
+    episodes = [episode(k) for k in range(3)]
+    held = [{**each, "action": each["action"][:, :2]} for each in episodes]
+    folder = dataset(tmp_path / "pick", "v3.0", ["a", "b", "c"], held, actions=["b", "a"])
+    read = jid.load(folder, joints="all", units=DEGREES).select(["b", "a", "c"])
+    assert read.reference is not None
+    wanted = np.concatenate([each["action"] for each in held]).astype(float)
+    assert np.allclose(np.degrees(read.reference[:, :2]), wanted, rtol=1e-12)
+    assert np.isnan(read.reference[:, 2]).all()
 
 
 def test_the_unit_is_asked_and_what_is_printed_reads_the_file(

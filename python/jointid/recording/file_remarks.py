@@ -23,6 +23,7 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     others = metadata.get("joints_left_out")
     if isinstance(others, Mapping) and others:
         found.append(f"left out: {', '.join(f'{joint} ({why})' for joint, why in others.items())}")
+    found += map(str, metadata.get("of_no_joint", ()))
     if metadata.get("incomplete"):
         found.append(str(metadata["incomplete"]))
     if "topic" in metadata and metadata.get("stamps") == "log time":

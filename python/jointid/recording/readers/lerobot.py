@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
@@ -22,8 +23,9 @@ from jointid.recording.wide.finding_joints import joint_headers
 INFO = "meta/info.json"
 """What every dataset has, from its top folder."""
 
+_STATE = "observation.state"
 _SIGNALS = {
-    "observation.state": "position",
+    _STATE: "position",
     "observation.velocity": "velocity",
     "observation.effort": "torque",
     "action": "reference",
@@ -52,7 +54,7 @@ def with_episodes(table: Table, path: Path) -> Table:
         ``meta/info.json`` is there, and cannot be read.
     """
     headers = set(table.headers)
-    of_states = any(_is_element(each, "observation.state") for each in headers)
+    of_states = any(_is_element(each, _STATE) for each in headers)
     if not of_states or not {_EPISODE, _FRAME, _TIME} <= headers:
         return table
     return LeRobotTable(table, _info(path))
@@ -92,21 +94,34 @@ def joint_names(info: Mapping[str, Any], feature: str, count: int) -> list[str]:
     return found if list(joint_headers(headers)) == found else plain
 
 
-def _named(headers: Sequence[str], info: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the headers, with a joint's name where the table has an element of a list."""
+def _named(headers: Sequence[str], info: Mapping[str, Any]) -> tuple[list[str], list[str]]:
+    """Return the headers, with a joint's name where the table has an element of a list, and features of no joint."""
     elements = [re.fullmatch(_ELEMENT, header) for header in headers]
-    counts = {name: sum(e is not None and e[1] == name for e in elements) for name in _SIGNALS}
+    counts = Counter(each[1] for each in elements if each is not None)
     names = {name: joint_names(info, name, count) for name, count in counts.items()}
+    joints = names[_STATE]
+    of_none = []
+    for feature, own in names.items():
+        known = set(joints) & set(own) if joints[0] != "0" != own[0] else set()
+        if len(own) == len(joints) and not known:  # in the order of the states
+            names[feature] = joints
+        elif not known:
+            of_none.append(feature)
     found = []
-    for header, element in zip(headers, elements, strict=True):
+    for index, (header, element) in enumerate(zip(headers, elements, strict=True)):
         if element is None:
             found.append(f"{header} [s]" if header == _TIME else header)
-            continue
-        signal = _SIGNALS[element[1]]
-        joint = names[element[1]][int(element[2] or 0)]
-        unit = f" [{_UNIT}]" if signal in ("position", "velocity", "reference") else ""
-        found.append(f"{joint}.{signal}{unit}")
-    return tuple(found)
+        elif element[1] in of_none:
+            found.append(f"unassigned_{index}")
+        else:
+            signal = _SIGNALS[element[1]]
+            joint = names[element[1]][int(element[2] or 0)]
+            unit = f" [{_UNIT}]" if signal in ("position", "velocity", "reference") else ""
+            found.append(f"{joint}.{signal}{unit}")
+    return found, [
+        f"{each} is not read: it has {counts[each]} elements without the joints' names, and {_STATE} has {len(joints)}"
+        for each in of_none
+    ]
 
 
 class LeRobotTable(RenamedTable):
@@ -121,7 +136,9 @@ class LeRobotTable(RenamedTable):
 
     def __init__(self, table: Table, info: Mapping[str, Any]) -> None:
         own = {header: index for index, header in enumerate(table.headers)}
-        super().__init__(table, _named(table.headers, info), own)
+        headers, of_none = _named(table.headers, info)
+        super().__init__(table, headers, own)
+        self._own_notes = {"of_no_joint": of_none} if of_none else {}
         self._rate = info.get("fps")
         self._time = table.headers.index(_TIME)
 

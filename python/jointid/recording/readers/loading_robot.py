@@ -11,6 +11,7 @@ from jointid.base.errors import InputError
 from jointid.recording.contents import Contents, read_contents
 from jointid.recording.even_rows import as_stated
 from jointid.recording.extra import named_extra
+from jointid.recording.headers import understood
 from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.sides import JOINT, at_joint, stated_sides
@@ -116,7 +117,7 @@ def load_robot(
     wanted = named_extra(extra)
     tables = [JointTable(table, each, columns or {}, wanted) for each in names]
 
-    present = {signal for one in tables for signal, at in one.columns.items() if at is not None}
+    present = {signal for one in tables for signal in _signals(one)}
 
     def contents(one: JointTable) -> Contents:
         return read_contents(
@@ -242,8 +243,15 @@ def _of_present(
     """Units and factors without those of signals that only other joints have; what none has is refused later."""
     if not isinstance(values, Mapping):
         return values
-    absent = {signal for signal in present if one.columns.get(signal) is None}
+    absent = {*present} - _signals(one)
     return {signal: value for signal, value in values.items() if signal not in absent}
+
+
+def _signals(one: JointTable) -> set[str]:
+    """Signals of a joint that a column is chosen for or that a header names, in whatever unit."""
+    meanings = [understood(header).meaning for header in one.headers]
+    named = {each.signal for each in meanings if each is not None}
+    return {each for each in named | {*one.columns} if one.columns.get(each, ...) is not None}
 
 
 def _stacked(fields: Sequence[dict[str, Any]]) -> dict[str, FloatArray]:
