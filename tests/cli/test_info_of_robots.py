@@ -46,20 +46,51 @@ def test_the_torques_are_weighed(
         assert found[name]["rate [Hz]"] == 1000.0
 
 
+@pytest.mark.parametrize("facts", ["", "torque_constants = [7.0, 11.0]"])
 def test_an_ampere_is_weighed(
-    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    facts: str, arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without a torque constant the table says what it would be."""
+    """Of currents the torque constant by the links' weight is shown, whatever constants are stated."""
     torque = recording(arm).torque
     assert torque is not None
     current = torque / np.array([14.0, -11.0])
     path = log(arm, tmp_path / "a.csv", torque=None, current=current)
+    (tmp_path / "facts.toml").write_text(facts, encoding="utf-8")
+    words = [path, "--robot", arm, "--facts", tmp_path / "facts.toml"]
+    found = told(capsys, *words)["joints"]
+    assert main(["info", *map(str, words)]) == 0
+    _, head, _, *lines = capsys.readouterr().out.splitlines()
+    assert head.endswith("torque constant [N·m/A]")
+    assert "URDF's weight" not in head
+    for line, (name, constant) in zip(lines, (("shoulder", 14.0), ("elbow", -11.0)), strict=False):
+        assert line.split()[0] == name
+        assert float(line.split()[-1]) == pytest.approx(constant, rel=0.02)
+        assert found[name]["torque_constant [N·m/A]"] == float(line.split()[-1])
+        assert found[name]["scale against the URDF's weight"] is None
+
+
+@pytest.mark.parametrize("lacks", ["torque", "torque, with wanted positions", "the elbow's"])
+def test_a_log_that_cannot_be_weighed_is_shown(
+    lacks: str, arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = recording(arm)
+    assert run.torque is not None
+    changes: dict[str, Any] = {"torque": None}
+    if "wanted" in lacks:
+        changes["reference"] = run.position + 0.01
+    if "elbow" in lacks:
+        changes["torque"] = np.column_stack([run.torque[:, 0], np.full(run.samples, np.nan)])
+    path = log(arm, tmp_path / "a.csv", **changes)
+    why = "elbow has no torque" if "elbow" in lacks else "the recording has no torque"
+    (remark,) = told(capsys, path, "--robot", arm)["remarks"]
+    assert remark.startswith("not compared with the links' weight: ")
+    assert why in remark
     assert main(["info", str(path), "--robot", str(arm)]) == 0
     lines = capsys.readouterr().out.splitlines()
-    (shoulder,) = (each for each in lines if each.startswith("shoulder"))
-    (elbow,) = (each for each in lines if each.startswith("elbow"))
-    assert shoulder.endswith("14 N·m/A")
-    assert elbow.endswith("-11 N·m/A")
+    assert [each.split()[0] for each in lines[3:5]] == ["shoulder", "elbow"]
+    assert lines[5:] == [remark]
+    assert "weight" not in lines[1]
+    assert main(["info", str(path), "--robot", str(tmp_path / "none.urdf")]) == 2
 
 
 def test_what_each_joint_lacks(

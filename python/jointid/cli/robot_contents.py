@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from jointid.recording.wide.robot_recording import RobotRecording
 
 _NOTHING = "–"
+_SCALE, _CONSTANT = "scale against the URDF's weight", "torque_constant [N·m/A]"
+_HEADS = {_SCALE: "× URDF's weight", _CONSTANT: "torque constant [N·m/A]"}
 
 
 def several_of(arguments: argparse.Namespace) -> bool:
@@ -44,7 +46,8 @@ def show_robot(arguments: argparse.Namespace) -> None:
     """Print what the log holds, a line for each joint."""
     recordings = _recordings(arguments)
     whole = recordings[0]
-    scales = _scales(arguments, whole)
+    scales, not_weighed = _scales(arguments, whole)
+    remarks = [*_remarks(whole), *not_weighed]
     joints = {
         name: _of_joint(each, name, scales.get(name)) for each in recordings for name in each.names
     }
@@ -52,6 +55,7 @@ def show_robot(arguments: argparse.Namespace) -> None:
         import json
 
         document = {"name": whole.name, "kind": whole.kind, "side": whole.side, "joints": joints}
+        document["remarks"] = remarks
         print(json.dumps(document, indent=1, ensure_ascii=False))
         return
     print(
@@ -59,7 +63,7 @@ def show_robot(arguments: argparse.Namespace) -> None:
         f"{whole.duration:.6g} s{', of the motors' if whole.side == 'motor' else ''}"
     )
     print(*aligned(_table(joints, weighed=bool(scales))), sep="\n")
-    for line in _remarks(whole):
+    for line in remarks:
         print(line)
 
 
@@ -78,17 +82,24 @@ def _recordings(arguments: argparse.Namespace) -> list[RobotRecording]:
     return [whole, *(load_robot(arguments.recording, [name], **how) for name in others)]
 
 
-def _scales(arguments: argparse.Namespace, recording: RobotRecording) -> dict[str, Any]:
-    """How much each torque is of what the URDF's links weigh, by the log's names; nothing without a URDF."""
+def _scales(
+    arguments: argparse.Namespace, recording: RobotRecording
+) -> tuple[dict[str, float | None], list[str]]:
+    """How much each torque is of what the URDF's links weigh, by the log's names, or a remark why that is not known."""
     if arguments.robot is None:
-        return {}
+        return {}, []
+    from jointid.cli.wording import Wording
     from jointid.robot.links.robot import Robot
     from jointid.robot.weighing import weight_scales
 
     robot = Robot.from_urdf(arguments.robot, facts=arguments.facts)
-    found = weight_scales(recording, robot)
-    columns = robot.columns_of(recording)
-    return {recording.names[k]: found[name] for k, name in zip(columns, robot.names, strict=True)}
+    try:
+        found = weight_scales(recording, robot)
+        columns = robot.columns_of(recording)
+    except InputError as error:  # the table does not need it
+        return {}, [f"not compared with the links' weight: {Wording.of(arguments).of_error(error)}"]
+    names = [recording.names[k] for k in columns]
+    return {each: found[name] for each, name in zip(names, robot.names, strict=True)}, []
 
 
 def _of_joint(robot: RobotRecording, name: str, scale: float | None) -> dict[str, Any]:
@@ -113,7 +124,7 @@ def _of_joint(robot: RobotRecording, name: str, scale: float | None) -> dict[str
         },
         "torque": None if drive is None else drive,
         "signs": None if drive is None else _signs(one, drive),
-        "scale against the URDF's weight": None if scale is None else float(f"{scale:.3g}"),
+        **_weighed(scale, by_current=drive == "current"),
     }
 
 
@@ -130,14 +141,22 @@ def _signs(recording: Recording, drive: str) -> str:
     return "never positive" if is_one_sided(-highest, -lowest) else "both"
 
 
+def _weighed(scale: float | None, *, by_current: bool) -> dict[str, float | None]:
+    """A torque over what the links need; of a current how much torque an ampere makes by their weight."""
+    of_current = 1.0 / scale if scale and by_current else None
+    values = {_SCALE: None if by_current else scale, _CONSTANT: of_current}
+    return {key: None if each is None else float(f"{each:.3g}") for key, each in values.items()}
+
+
 def _table(joints: dict[str, dict[str, Any]], *, weighed: bool) -> list[list[str]]:
     head = ["joint", "position", "Hz", "gaps", "repeated", "torque", "signs", "other signals"]
-    rows = [[*head, "× URDF's weight"] if weighed else head]
+    by_current = {facts["torque"] == "current" for facts in joints.values()}
+    last = [key for key in _HEADS if weighed and (key == _CONSTANT) in by_current]
+    rows = [[*head, *(_HEADS[key] for key in last)]]
     for name, facts in joints.items():
         drive = facts["torque"]
         signals = facts["signals"]
         others = [each for each in signals if each not in ("position", drive)]
-        scale = facts["scale against the URDF's weight"]
         row = [
             name,
             _range(signals["position"]),
@@ -148,19 +167,12 @@ def _table(joints: dict[str, dict[str, Any]], *, weighed: bool) -> list[list[str
             facts["signs"] or _NOTHING,
             ", ".join(others) or _NOTHING,
         ]
-        if weighed:
-            row.append(_NOTHING if scale is None else _scale(scale, signals[drive]["unit"]))
-        rows.append(row)
+        rows.append(row + [_NOTHING if facts[key] is None else f"{facts[key]:g}" for key in last])
     return rows
 
 
 def _range(facts: dict[str, Any]) -> str:
     return f"{facts['min']:.4g} … {facts['max']:.4g} {facts['unit']}"
-
-
-def _scale(scale: float, unit: str) -> str:
-    """A torque's factor; of a current how much torque an ampere makes."""
-    return f"{1.0 / scale:.3g} N·m/A" if unit == "A" else f"{scale:.3g}"
 
 
 def _remarks(robot: RobotRecording) -> list[str]:

@@ -13,7 +13,7 @@ from jointid.robot.motion.plain_motion import plain_signals
 def weight_scales(recording: RobotRecording, robot: Robot) -> dict[str, float | None]:
     """Return each joint's torque over what the URDF's links need; None where links do not explain it.
 
-    Of a recording with currents only, and a robot without torque constants, it is in A per N·m.
+    Of a recording with currents only it is in A per N·m, whatever the robot's torque constants.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def weight_scales(recording: RobotRecording, robot: Robot) -> dict[str, float | 
         The recording lacks a joint of the robot, or torques and currents.
     """
     lacks = recording.torque is None and recording.motor_torque is None
-    if lacks and recording.current is not None and robot.torque_constants is None:
+    if lacks and recording.current is not None:
         robot = replace(robot, torque_constants=(1.0,) * robot.n)
     factors = weight_factors(plain_signals([recording], robot), robot)
     return {name: factors.get(joint) for joint, name in enumerate(robot.names)}
