@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from small_arm import recording, urdf
+from small_arm import URDF, recording, urdf
 
 import jointid as jid
 
@@ -244,3 +244,23 @@ def test_integers_that_numpy_has_not(number: int, reason: str, tmp_path: Path) -
     for wrong in ({"rotor_inertias": [10**400, 1]}, {"couplings": [[1, 10**400], [0, 1]]}):
         with pytest.raises(jid.InputError, match="expected"):
             jid.Robot.from_urdf(path, gear_ratios=[1, 1], **wrong)
+
+
+@pytest.mark.parametrize("headers", ["q1 q2", "q0 q1", "a.position b.position"])
+def test_joints_that_are_listed_are_in_the_listed_order(headers: str, tmp_path: Path) -> None:
+    text = URDF.replace("shoulder", "joint_1").replace("elbow", "joint_2")
+    robot = jid.Robot.from_urdf(urdf(tmp_path, text))
+    log = tmp_path / "log.csv"
+    rows = "\n".join(f"{0.01 * k},{k},{-k}" for k in range(20))
+    log.write_text(f"t,{headers.replace(' ', ',')}\n{rows}\n", encoding="utf-8")
+    names = jid.load(log, robot).names
+    assert robot.columns_of(jid.load(log, robot)) == [0, 1]
+    listed = jid.load(log, robot, joints=names[::-1])
+    assert robot.columns_of(listed) == [0, 1]
+    assert listed.names == names[::-1]
+    assert robot.columns_of(jid.load(log, robot).select(names[::-1])) == [0, 1]
+
+
+def test_listed_joints_with_the_robots_names_keep_them(path: Path) -> None:
+    run = recording(path, duration=2.0).select(["elbow", "shoulder"])
+    assert jid.Robot.from_urdf(path).columns_of(run) == [1, 0]

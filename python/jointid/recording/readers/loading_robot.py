@@ -25,7 +25,7 @@ from jointid.recording.wide.joint_table import (
 )
 from jointid.recording.wide.reading_back import saved_robot
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.robot_signals import ROBOT_SIGNALS, checked_ratios
+from jointid.recording.wide.robot_signals import LISTED, ROBOT_SIGNALS, checked_ratios
 
 _MOST_JOINTS = 256
 
@@ -57,7 +57,8 @@ def load_robot(
     path : path-like, or open file
         A file as `load` reads it, or one that `RobotRecording.save` wrote.
     joints : sequence of str or int, optional
-        Names or numbers of the joints, as the headers have them. Default, and "all": all that the headers name; of a
+        Names or numbers of the joints, as the headers have them. A robot that has as many joints, and none of these
+        names, takes them in this order. Default, and "all": all that the headers name; of a
         log with several clocks, as of an arm and its gripper, those on the clock of most torques, and
         ``metadata["joints_left_out"]`` names the others.
     columns : mapping of str to str, int or None, optional
@@ -174,14 +175,18 @@ def load_robot(
         kind=first["kind"],
         torque_hold=first.get("torque_hold"),
         name=file_name(file, first, name),
-        metadata=_metadata(first, left_out),
+        metadata=_metadata(first, left_out, listed=joints is not None and joints != "all"),
     )
 
 
-def _metadata(first: Mapping[str, Any], left_out: Mapping[str, str]) -> Mapping[str, Any] | None:
-    """Return how the file was read, and which joints were not."""
-    found: Mapping[str, Any] | None = first.get("metadata")
-    return {**(found or {}), "joints_left_out": dict(left_out)} if left_out else found
+def _metadata(
+    first: Mapping[str, Any], left_out: Mapping[str, str], *, listed: bool
+) -> Mapping[str, Any]:
+    """Return how the file was read, which joints were not, and whether the joints were listed."""
+    found = dict(first.get("metadata") or {})
+    if left_out:
+        found["joints_left_out"] = dict(left_out)
+    return {**found, LISTED: True} if listed else found
 
 
 def _once(

@@ -19,6 +19,7 @@ from jointid.recording.slicing import slice_between
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_samples import RobotSamples
 from jointid.recording.wide.robot_signals import (
+    LISTED,
     ROBOT_SIGNALS,
     checked_names,
     checked_ratios,
@@ -194,7 +195,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return tuple(self.joint(name) for name in self.names)
 
     def select(self, joints: Iterable[str | int]) -> Self:
-        """Return the recording of some of the joints, in the order given.
+        """Return the recording of some of the joints, in the order given: ``metadata["joints_listed"]`` says so.
 
         Raises
         ------
@@ -213,6 +214,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         }
         if self.gear_ratio is not None:
             fields["gear_ratio"] = [self.gear_ratio[column] for column in kept]
+        fields["metadata"] = {**self.metadata, LISTED: True}
         return type(self)(**{**fields, "names": names})
 
     def crop(self, start: float | None = None, stop: float | None = None) -> Self:

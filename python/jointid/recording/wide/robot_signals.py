@@ -16,6 +16,7 @@ ROBOT_SIGNALS = (
     *("position", "velocity", "torque", "motor_torque", "current"),
     *("sensor", "reference", "link_position", "temperature"),
 )
+LISTED = "joints_listed"  # in a recording's metadata: the user named the joints, one by one
 _MOST = 10_000  # joints: more are samples and joints exchanged
 _IN_HEADERS = r"[^,;\"'\[\](){}\t\r\n]+"
 

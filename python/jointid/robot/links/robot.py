@@ -17,7 +17,7 @@ from jointid.joint.model import Model
 from jointid.recording.sides import SIDES
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.robot_signals import value_of_each
+from jointid.recording.wide.robot_signals import LISTED, value_of_each
 from jointid.robot.links.facts import read_facts
 from jointid.robot.links.link_tree import LinkTree
 from jointid.robot.links.models import friction_models
@@ -240,8 +240,9 @@ class Robot:
     def columns_of(self, recording: RobotRecording) -> list[int]:
         """Return the recording's column of each joint.
 
-        Joints are found by name; else by number, where the recording numbers them; else in order, where there are as
-        many and none has a name of the robot's joints.
+        Joints are found by name. As many joints that were listed when they were loaded, none of them with a name of
+        the robot's, are in the listed order. Otherwise they are found by number, where the recording numbers them, or
+        in order, where there are as many and none has a name of the robot's joints.
 
         Raises
         ------
@@ -250,6 +251,10 @@ class Robot:
         """
         if all(name in recording.names for name in self.names):
             return [recording.names.index(name) for name in self.names]
+        known = [name for name in self.names if name in recording.names]
+        in_order = len(recording.names) == self.n and not known
+        if in_order and recording.metadata.get(LISTED):
+            return list(range(self.n))
         try:
             found = [
                 joint_named(_number(name), recording.names, recording.name) for name in self.names
@@ -258,8 +263,7 @@ class Robot:
                 return [recording.names.index(each) for each in found]
         except InputError:
             pass
-        known = [name for name in self.names if name in recording.names]
-        if len(recording.names) == self.n and not known:
+        if in_order:
             return list(range(self.n))
         if known and len(recording.names) == self.n:
             lacking = [name for name in self.names if name not in recording.names]
