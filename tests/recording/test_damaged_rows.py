@@ -88,3 +88,21 @@ def test_an_appended_file_is_no_damage(tmp_path: Path) -> None:
     assert f"head -n 61 {path}" in str(caught.value)
     assert f"tail -n +62 {path}" in str(caught.value)
     assert "load with" not in str(caught.value)
+
+
+@pytest.mark.parametrize("cell", ["nan", "", "overflow"])
+def test_a_row_that_is_damaged_in_one_joint_is_left_out_in_all(cell: str, tmp_path: Path) -> None:
+    path = tmp_path / "arm.csv"
+    rows = [[f"{0.002 * k:.3f}", *(f"{np.sin(0.1 * k + c)}" for c in range(4))] for k in range(90)]
+    rows[20][1] = rows[40][4] = rows[60][1] = rows[60][3] = cell
+    head = "time_s,position_1_rad,torque_1_Nm,position_2_rad,torque_2_Nm"
+    path.write_text("\n".join([head, *map(",".join, rows), ""]))
+    with pytest.raises(InputError, match=r"line 22.*load with drop_invalid=True"):
+        jid.load(path, joints="all")
+    loaded = jid.load(path, joints="all", drop_invalid=True)
+    assert loaded.position.shape == loaded.torque.shape == (87, 2)
+    assert not {0.04, 0.08, 0.12} & set(loaded.time)
+    assert loaded.metadata["dropped_rows"] == 3
+    np.testing.assert_allclose(loaded.torque[:, 1], np.sin(50.0 * loaded.time + 3.0))
+    some = jid.load(path, joints=[2], drop_invalid=True)
+    assert some.metadata["dropped_rows"] == 2

@@ -59,6 +59,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
             arguments.recordings[0],
             list(joints) or None,
             gear_ratio=numbers_of_joints(arguments, "gear_ratio"),
+            drop_invalid=arguments.drop_invalid,
             **how_to_read(arguments, [merged]),
         )
     except InputError as error:
@@ -132,9 +133,8 @@ def _check(arguments: argparse.Namespace) -> None:
                 "this is for one joint; name it with --joints",
                 argument="n" if name == "bootstrap" else name,
             )
-    for name in ("drop_copies", "drop_invalid"):
-        if getattr(arguments, name):
-            raise InputError("this is for one joint", argument=name, value=True)
+    if arguments.drop_copies:
+        raise InputError("this is for one joint", argument="drop_copies", value=True)
     save = arguments.save
     if save is not None and save.suffix != ".json":
         raise InputError(

@@ -137,6 +137,7 @@ def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, 
                 path,
                 joints_wanted(arguments) or None,
                 torque_hold=arguments.torque_hold,
+                drop_invalid=arguments.drop_invalid,
                 **how_to_read(arguments, models),
             )
             for path in arguments.recordings
@@ -179,10 +180,8 @@ def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
                 argument=f"ga.{name}" if name in ("population", "generations") else name,
             )
     of_one = [name for name in options if name not in (*own, *_READ)]
-    for name in (
-        *of_one,
-        *(n for n in ("drop_copies", "drop_invalid") if getattr(arguments, n, None)),
-    ):
+    copies = ["drop_copies"] * bool(getattr(arguments, "drop_copies", False))
+    for name in (*of_one, *copies):
         raise InputError("this is for one joint, not for a robot", argument=name)
     save = arguments.save
     if save is not None and save.suffix != ".json":

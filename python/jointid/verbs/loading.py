@@ -64,6 +64,7 @@ class RobotFileOptions(LoadOptions, total=False):
 
     gear_ratio: Sequence[float] | FloatArray | float | None
     where: Mapping[str, float | str] | None
+    drop_invalid: bool
 
 
 @overload
@@ -200,7 +201,7 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     drop_invalid : bool
         Whether rows are left out that have a value which is missing, no number, not finite or larger than any of a
         joint (1e15): single damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and
-        longer stretches become gaps. Default False.
+        longer stretches become gaps. Of several joints a row that is damaged in one is left out in all. Default False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
     topic : str, optional

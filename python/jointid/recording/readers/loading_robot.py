@@ -1,6 +1,8 @@
 """Loading all joints of a file."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -8,7 +10,8 @@ import numpy as np
 from jointid.base.argument_checks import require_path
 from jointid.base.error_text import joint_phrase
 from jointid.base.errors import InputError
-from jointid.recording.contents import Contents, read_contents
+from jointid.recording.contents import Contents, Rows, read_contents
+from jointid.recording.damaged_rows import NOTE
 from jointid.recording.even_rows import as_stated
 from jointid.recording.extra import named_extra
 from jointid.recording.headers import understood
@@ -16,6 +19,7 @@ from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.sides import JOINT, at_joint, stated_sides
 from jointid.recording.signals import FloatArray, Kind, TorqueHold
+from jointid.recording.unreadable import read_leniently
 from jointid.recording.wide.clocks import on_one_clock
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
@@ -45,6 +49,7 @@ def load_robot(
     kind: Kind | None = None,
     torque_hold: TorqueHold | None = None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
+    drop_invalid: bool = False,
     name: str | None = None,
     topic: str | None = None,
     group: str | None = None,
@@ -73,6 +78,8 @@ def load_robot(
     extra : collection of str, or mapping of str to str or int, optional
         Further columns, as in `load`; with ``{joint}`` in the header one of each joint:
         ``{"model_torque": "model_torque_{joint}_Nm"}``. Default: none.
+    drop_invalid : bool
+        As in `load`: a row that is damaged in one joint is left out in all. Default False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
     topic, group : str, optional
@@ -121,8 +128,8 @@ def load_robot(
     present = {signal for one in tables for signal in _signals(one)}
 
     def contents(one: JointTable) -> Contents:
-        return read_contents(
-            one,
+        read = partial(
+            read_contents,
             columns=one.columns,
             units=_of_present(units, one, present),
             scale=_of_present(scale, one, present),
@@ -130,16 +137,31 @@ def load_robot(
             kind=kind,
             torque_hold=torque_hold,
         )
+        return read_leniently(read, one, drop_invalid=drop_invalid)
 
-    fields = []
+    sound: dict[
+        int, Rows
+    ] = {}  # by the number of the log's rows, which other clocks have others of
+    if drop_invalid:
+        for each, one in zip(names, tables, strict=True):
+            with _of_joint(each):
+                held = contents(one)
+                undamaged, _ = held.sound_rows(_where(held, where))
+            samples = len(held.values["time"])
+            sound[samples] = np.intersect1d(sound.get(samples, undamaged), undamaged)
+
+    def rows(held: Contents) -> Rows | None:
+        return sound[len(held.values["time"])] if drop_invalid else _where(held, where)
+
+    fields, dropped = [], []
     for each, one in zip(names, tables, strict=True):
-        try:
+        with _of_joint(each):
             held = contents(one)
-            fields.append(held.fields(held.rows_where(where) if where else None))
-        except InputError as error:
-            raise error.at(joint_phrase(each)) from None
+            fields.append(held.fields(rows(held)))
+            dropped.append(_count(held, _where(held, where)) - _count(held, rows(held)))
     if any("repeated_rows" in each.get("metadata", {}) for each in fields):
-        fields = _once([contents(one) for one in tables], where)
+        every = [contents(one) for one in tables]
+        fields = _once(every, rows(every[0]))
     kept, left_out = on_one_clock(
         names, fields, table.source, named=joints is not None and joints != "all"
     )
@@ -175,25 +197,48 @@ def load_robot(
         kind=first["kind"],
         torque_hold=first.get("torque_hold"),
         name=file_name(file, first, name),
-        metadata=_metadata(first, left_out, listed=joints is not None and joints != "all"),
+        metadata=_metadata(
+            first,
+            left_out,
+            dropped=dropped[kept[0]],
+            listed=joints is not None and joints != "all",
+        ),
     )
 
 
 def _metadata(
-    first: Mapping[str, Any], left_out: Mapping[str, str], *, listed: bool
+    first: Mapping[str, Any], left_out: Mapping[str, str], *, dropped: int, listed: bool
 ) -> Mapping[str, Any]:
-    """Return how the file was read, which joints were not, and whether the joints were listed."""
+    """Return how the file was read, which joints and how many rows were not, and whether the joints were listed."""
     found = dict(first.get("metadata") or {})
     if left_out:
         found["joints_left_out"] = dict(left_out)
+    if dropped:
+        found[NOTE] = dropped
     return {**found, LISTED: True} if listed else found
 
 
-def _once(
-    contents: Sequence[Contents], where: Mapping[str, float | str] | None
-) -> list[dict[str, Any]]:
+@contextmanager
+def _of_joint(name: str) -> Iterator[None]:
+    """Say of which joint an error is."""
+    try:
+        yield
+    except InputError as error:
+        raise error.at(joint_phrase(name)) from None
+
+
+def _where(held: Contents, where: Mapping[str, float | str] | None) -> Rows | None:
+    return held.rows_where(where) if where else None
+
+
+def _count(held: Contents, rows: Rows | None) -> int:
+    return len(held.values["time"] if rows is None else rows)
+
+
+def _once(contents: Sequence[Contents], rows: Rows | None) -> list[dict[str, Any]]:
     """Return each joint's arguments, without the rows that are copies in all of them."""
-    rows = contents[0].rows_where(where) if where else np.arange(len(contents[0].values["time"]))
+    if rows is None:
+        rows = np.arange(len(contents[0].values["time"]))
     every = [each.once(rows) for each in contents]
     kept = np.unique(np.concatenate([rows if each is None else each for each in every]))
     fields = [each.fields(kept) for each in contents]
