@@ -129,8 +129,22 @@ def test_a_log_of_fewer_joints_says_which_it_has(path: Path) -> None:
     one = jid.RobotRecording(
         time=run.time, position=run.position[:, :1], torque=run.torque[:, :1], names=["shoulder"]
     )
-    with pytest.raises(jid.InputError, match=r"the robot has .*elbow, the recording shoulder"):
+    with pytest.raises(
+        jid.InputError, match=r"the robot has .*elbow, the recording shoulder"
+    ) as caught:
         jid.identify_robot(one, jid.Robot.from_urdf(path))
+    assert caught.value.argument == ""  # no option was typed
+    (advice,) = caught.value.remedy
+    assert isinstance(advice, jid.Action)
+    robot = jid.Robot.from_urdf(path, **advice.arguments)
+    assert robot.columns_of(one) == [0]
+
+
+def test_a_log_of_none_of_the_joints_says_so(path: Path) -> None:
+    run = recording(path, duration=2.0)
+    one = jid.RobotRecording(time=run.time, position=run.position[:, :1], names=["wrist"])
+    with pytest.raises(jid.InputError, match="no joint of the recording is one of the robot's"):
+        jid.Robot.from_urdf(path).columns_of(one)
 
 
 def renamed(run: jid.RobotRecording, names: list[str]) -> jid.RobotRecording:
@@ -139,7 +153,9 @@ def renamed(run: jid.RobotRecording, names: list[str]) -> jid.RobotRecording:
 
 def test_some_names_that_match_do_not_become_an_order(path: Path) -> None:
     run = renamed(recording(path, duration=2.0), ["elbow", "arm_2"])
-    with pytest.raises(jid.InputError, match=r"has elbow, but not shoulder; it also has arm_2"):
+    with pytest.raises(
+        jid.InputError, match=r"lacks shoulder: .* give the recording's joints the URDF's"
+    ):
         jid.identify_robot(run, jid.Robot.from_urdf(path))
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import NDArray
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import is_finite, require_path
 from jointid.base.errors import InputError
 from jointid.joint.model import Model
@@ -265,22 +266,40 @@ class Robot:
             pass
         if in_order:
             return list(range(self.n))
-        if known and len(recording.names) == self.n:
-            lacking = [name for name in self.names if name not in recording.names]
-            other = [name for name in recording.names if name not in self.names]
-            raise InputError(
-                f"the recording has {', '.join(known)}, but not {', '.join(lacking)}; it also has {', '.join(other)}",
-                argument="joints",
-                value=list(self.names),
+        raise self._without(recording)
+
+    def _without(self, recording: RobotRecording) -> InputError:
+        """The error for a recording that lacks joints of the robot, with the joints that it has."""
+        fits = [name for name in self.names if _fits(name, recording)]
+        renamed = "give the recording's joints the URDF's names"
+        both = f"the robot has the joints {', '.join(self.names)}, the recording {', '.join(recording.names)}"
+        if not fits:
+            return InputError(
+                f"no joint of the recording is one of the robot's: {both}",
                 place=recording.name,
-                remedy="give the recording's joints the URDF's names, or name the joints that were recorded",
+                remedy=renamed,
             )
-        raise InputError(
-            f"the robot has the joints {', '.join(self.names)}, the recording {', '.join(recording.names)}",
-            argument="joints",
-            value=list(self.names),
-            remedy="name the joints that were recorded",
+        lacking = [name for name in self.names if name not in fits]
+        others = len(recording.names) > len(fits)
+        stated = Action(
+            "call",
+            {"joints": fits},
+            text=f"if {' and '.join(lacking)} stood at 0",
+            function="Robot.from_urdf",
         )
+        return InputError(
+            f"the recording lacks {', '.join(lacking)}: {both}",
+            place=recording.name,
+            remedy=(renamed, stated) if others else stated,
+        )
+
+
+def _fits(name: str, recording: RobotRecording) -> bool:
+    """Whether a recording has a joint of the robot, by its name or number."""
+    try:
+        return name in recording.names or bool(joint_named(_number(name), recording.names, ""))
+    except InputError:
+        return False
 
 
 def _models(models: Mapping[str, Model | str], names: Sequence[str]) -> tuple[str, ...]:
