@@ -84,6 +84,19 @@ def test_a_urdf_on_which_pinocchio_ends_the_process(
             r"^facts\.toml: zero_offsets_deg\[0\]: the number is too large",
         ),
         ("[couplings]\nelbow = 3", r"^facts\.toml: couplings\.elbow is 3"),
+        (
+            "[couplings.wrist]\nelbow = 3",
+            r"couplings\.wrist: the robot has no such joint; it has sh",
+        ),
+        ("[couplings.elbow]\nwrist = 3", r"couplings\.elbow\.wrist: the robot has no such joint"),
+        (
+            "[couplings]\nelbow = {shoulder = 1}\nzero_offsets_deg = [0, 0]",
+            r"stands below \[couplings\] .*; write zero_offsets_deg above the first table",
+        ),
+        (
+            "[couplings.elbow]\nshoulder = 1\ngear_ratios = [2, 2]",
+            r"stands below \[couplings.elbow\] .*; write gear_ratios above the first table",
+        ),
         ('side = "link"', r"^facts\.toml: side is .link.: joint or motor"),
     ],
 )

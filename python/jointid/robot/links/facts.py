@@ -29,6 +29,7 @@ def read_facts(path: Path) -> dict[str, Any]:
             raise InputError(
                 f"there is no such key; {suggestion(key, KEYS)}", argument=key, place=path.name
             )
+    _check_tables(found, place=path.name)
     if isinstance(found.get("joints"), dict):
         found |= _of_joints(found.pop("joints"), path.name)
     if found.get("joints") == []:
@@ -55,6 +56,20 @@ def read_facts(path: Path) -> dict[str, Any]:
     if isinstance(rotors, list):
         found["rotor_inertias"] = [None if each == "free" else each for each in rotors]
     return found
+
+
+def _check_tables(table: dict[str, Any], place: str, header: str = "") -> None:
+    """Refuse a list or word of the robot that stands below a table's header, and so belongs to the table."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            _check_tables(value, place, f"{header}.{key}".lstrip("."))
+        elif header and key in KEYS and isinstance(value, list | str):
+            raise InputError(
+                f"this line stands below [{header}] and belongs to it",
+                argument=f"{header}.{key}",
+                place=place,
+                remedy=f"write {key} above the first table",
+            )
 
 
 def _of_joints(tables: dict[str, Any], place: str) -> dict[str, Any]:

@@ -384,6 +384,11 @@ def _named_couplings(couplings: Mapping[str, Mapping[str, float]], names: list[s
     """The matrix; what is not named is as without couplings."""
     matrix = np.eye(len(names))
     for motor, row in couplings.items():
+        if motor not in names:
+            raise InputError(
+                f"the robot has no such joint; it has {', '.join(names)}",
+                argument=f"couplings.{motor}",
+            )
         if not isinstance(row, Mapping):
             raise InputError(
                 "for each motor its joints and shares are expected",
@@ -391,13 +396,11 @@ def _named_couplings(couplings: Mapping[str, Mapping[str, float]], names: list[s
                 value=row,
             )
         for joint, share in row.items():
-            for name in (motor, joint):
-                if name not in names:
-                    raise InputError(
-                        f"the robot has the joints {', '.join(names)}",
-                        argument="couplings",
-                        value=name,
-                    )
+            if joint not in names:
+                raise InputError(
+                    f"the robot has no such joint; it has {', '.join(names)}",
+                    argument=f"couplings.{motor}.{joint}",
+                )
             if not is_finite(share):
                 raise InputError(
                     "a number is expected", argument=f"couplings.{motor}.{joint}", value=share
