@@ -293,3 +293,16 @@ def test_joints_that_are_listed_are_in_the_listed_order(headers: str, tmp_path: 
 def test_listed_joints_with_the_robots_names_keep_them(path: Path) -> None:
     run = recording(path, duration=2.0).select(["elbow", "shoulder"])
     assert jid.Robot.from_urdf(path).columns_of(run) == [1, 0]
+
+
+def test_a_drive_without_wanted_positions_names_the_joints_and_the_column(path: Path) -> None:
+    run = recording(path, duration=2.0)
+    robot = jid.Robot.from_urdf(path, drive={"kp": 20, "kd": 1})
+    wanted = run.position * np.array([1.0, np.nan])
+    for reference, lacking in ((None, "shoulder, elbow"), (wanted, "elbow")):
+        bare = jid.RobotRecording(
+            time=run.time, position=run.position, reference=reference, names=run.names, name="leg"
+        )
+        reason = f"^leg: the wanted positions of {lacking} are missing.*; load with columns="
+        with pytest.raises(jid.InputError, match=reason):
+            jid.identify(bare, robot)

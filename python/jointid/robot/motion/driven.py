@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.links.position_drive import PositionDrive
@@ -34,11 +35,20 @@ class Driven:
         """Return the parts of some columns of a recording."""
         wanted = recording.reference
         if wanted is None or not np.all(np.isfinite(wanted[:, columns])):
+            lacking = [
+                recording.names[column]
+                for column in columns
+                if wanted is None or not np.all(np.isfinite(wanted[:, column]))
+            ]
             raise InputError(
-                "the drive needs the wanted position of each joint",
-                argument="recordings",
-                value=recording.name,
-                remedy="name the columns of the wanted positions as the signal reference",
+                f"the wanted positions of {', '.join(lacking)} are missing, and the drive needs them",
+                place=recording.name,
+                remedy=Action(
+                    "call",
+                    {"columns": {"reference": ...}},
+                    "{joint} in the header stands for the joint",
+                    "load",
+                ),
             )
         position = recording.position[:, columns].T
         return cls(
