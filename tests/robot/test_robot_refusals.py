@@ -132,8 +132,12 @@ def test_the_joint_without_torque_is_named_whatever_turns_with_it(path: Path) ->
     whole = jid.RobotRecording(
         time=run.time, position=run.position, motor_torque=run.torque, names=run.names, side="motor"
     )
-    with pytest.raises(jid.InputError, match="gear_ratios"):
+    with pytest.raises(jid.InputError, match="each of shoulder, elbow is needed") as caught:
         jid.identify_robot(whole, bare)
+    assert caught.value.argument == "gear_ratios"
+    (advice,) = caught.value.remedy
+    assert isinstance(advice, jid.Action)
+    assert advice.arguments == {"gear_ratios": [..., ...]}
 
 
 def test_a_log_of_fewer_joints_says_which_it_has(path: Path) -> None:

@@ -265,10 +265,12 @@ def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Arra
         return np.array(robot.gear_ratios)
     if recording.gear_ratio is not None:
         return np.array([recording.gear_ratio[column] for column in columns])
+    names = ", ".join(robot.names)
     raise InputError(
-        "the recording is of the motors; only the gear ratios bring it to the joints",
+        f"the recording is of the motors; one gear ratio for each of {names} is needed, as motor's angle per angle of "
+        "the joint",
         argument="gear_ratios",
-        remedy=Action("call", {"gear_ratios": ...}, function="Robot.from_urdf"),
+        remedy=Action("call", {"gear_ratios": [...] * robot.n}, function="Robot.from_urdf"),
     )
 
 
