@@ -126,7 +126,8 @@ def test_one_joint_that_fails_does_not_lose_the_others() -> None:
         "identified",
     ]
     assert "joint 2" in str(found.results["2"].error)
-    assert "joint 2 failed: joint 2" in found.report()
+    assert "joint 2 failed: recording 0 (joint 2): the joint never" in found.report()
+    assert "no warnings" not in found.report()
     assert list(found) == ["1", "3"]
     with pytest.raises(KeyError, match="failed"):
         found["2"]
@@ -285,3 +286,14 @@ def test_kr300(shared_data: Path) -> None:
     found = jid.identify_joints(robot)
     assert found["1"].parameters["coulomb"].value == pytest.approx(388.0, rel=0.05)
     assert "explains" in "".join(found.sentences())
+
+
+def test_a_log_of_wanted_positions_names_the_way_by_the_whole_robot() -> None:
+    motion = sines(3, 2)
+    bare = jid.RobotRecording(time=motion.time, position=motion.position)
+    driven = jid.RobotRecording(
+        time=motion.time, position=motion.position, reference=motion.position
+    )
+    said = [jid.identify_joints(each).report() for each in (bare, driven)]
+    assert "joint 1 failed: torque: the recording has no signal torque; " in said[0]
+    assert ["a drive among its facts" in each for each in said] == [False, True]

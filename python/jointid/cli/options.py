@@ -206,6 +206,7 @@ PLACEHOLDERS: Mapping[str, str] = {
 FILES: Mapping[str, str] = {
     **dict.fromkeys(("--joint", "--believe", "--simulate"), "JOINT"),
     "--after": "ESTIMATE",
+    "--robot": "URDF",
     **dict.fromkeys(
         (
             *("--output", "--save", "--report", "--table", "--plot", "--checkpoint", "--resume"),

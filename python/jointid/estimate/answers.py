@@ -122,8 +122,9 @@ def findings(
     action: Callable[[Action], str] = str,
     most: int = _FINDINGS,
     saved: str = "",
+    clean: Sequence[str] = ("no warnings",),
 ) -> list[str]:
-    """Two lines for each of the first findings that matter, and the codes of the others."""
+    """Two lines for each of the first findings that matter, and the codes of the others; `clean` if none does."""
     serious = [each for each in found if each.severity != "info"]
     blocking = [each for each in serious if each.severity == "blocking"]
     shown = serious[:most]
@@ -133,7 +134,7 @@ def findings(
         follow = " may follow from it" if blocking else ""
         lines.append(cut(f"{len(rest)} more{follow}: {_listed(rest)}"))
     elif not serious:
-        lines.append("no warnings")
+        lines += clean
     notes = [each.code for each in found if each.severity == "info"]
     if notes:
         lines.append(cut(f"notes: {_listed(notes)}"))

@@ -42,10 +42,17 @@ def answer(
         joints.sort(key=lambda each: -_ORDER.index(_level(each)))
     lines = [headline(result)]
     lines += joint_lines([_row(each) for each in joints])
-    lines += _failures(result, error) or _coupled(result)
+    failures = _failures(result, error)
+    lines += failures or _coupled(result)
     found = ordered_findings(result)
     name, first = found[0] if found else ("", None)
-    told = findings([each for _, each in found], lambda each: action(each, name), _FINDINGS, saved)
+    told = findings(
+        [each for _, each in found],
+        lambda each: action(each, name),
+        _FINDINGS,
+        saved,
+        clean=[] if failures else ["no warnings"],
+    )
     if first is not None and first.severity != "info":  # its joint's line says how severe it is
         told[0] = cut(f"{joint_phrase(name)}: {first.title}")
     return printable("\n".join([*lines, *told]))

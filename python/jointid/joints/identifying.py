@@ -92,7 +92,7 @@ def identify_joints(
             described = _described(known[name], name, robot, recording)
             estimate = identify(recording, described, **options)
         except InputError as error:
-            failed = _of_each(error, len(names)).at(joint_phrase(name))
+            failed = _with_drive(_of_each(error, len(names)), recording)
             results[name] = JointResult(name=name, status=FAILED, error=failed, side=side)
             continue
         results[name] = JointResult(name=name, status=IDENTIFIED, estimate=estimate, side=side)
@@ -123,6 +123,25 @@ def _of_each(error: InputError, joints: int) -> InputError:
         value=error.value,
         place=error.place,
         remedy=remedies,
+    )
+
+
+def _with_drive(error: InputError, recording: Recording) -> InputError:
+    """Return an error about a torque that is missing with what wanted positions can do instead."""
+    if error.argument != "torque" or recording.reference is None:
+        return error
+    whole = Action(
+        "call",
+        {"robot": ...},
+        "and a drive among its facts, as the wanted positions are recorded",
+        "identify_robot",
+    )
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=(*error.remedy, whole),
     )
 
 
