@@ -160,8 +160,13 @@ def test_the_urdf_gets_damping_and_friction(
     np.testing.assert_allclose(model.damping, values(found, "viscous"), rtol=1e-12)
     np.testing.assert_allclose(model.friction, values(found, "coulomb"), rtol=1e-12)
     assert "identified with all joints" in target.read_text(encoding="utf-8")
-    with pytest.raises(jid.InputError, match="into"):
+    with pytest.raises(jid.InputError, match=r"^into: .*; export with into=\.\.\.$"):
         jid.export(found, tmp_path / "alone.urdf")
+    other = tmp_path / "out.xml"
+    for into in (None, path):  # the file to write is wrong, whatever is edited
+        with pytest.raises(jid.InputError, match=r"ends in \.urdf") as caught:
+            jid.export(found, other, into=into)
+        assert (caught.value.argument, caught.value.value) == ("path", str(other))
     rich = jid.identify_robot(recording(path, static=0.5), jid.Robot.from_urdf(path))
     with pytest.raises(jid.InputError, match="static friction"):
         jid.export(rich, tmp_path / "lost.urdf", into=path)

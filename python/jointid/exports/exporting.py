@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
@@ -146,12 +147,20 @@ def _export_robot(
 
     place = require_path("path", path)
     chosen = target_of(place, target)
-    if chosen.name != "urdf" or into is None:
+    if chosen.name != "urdf":
         raise InputError(
             "a whole robot is written into its URDF",
-            argument="into" if chosen.name == "urdf" else "path",
-            value=str(into or place.name),
-            remedy="name the URDF with into, and a path that ends in .urdf",
+            argument="path" if target is None else "target",
+            value=str(path) if target is None else target,
+            remedy="name a file to write that ends in .urdf"
+            if target is None
+            else "urdf is the target",
+        )
+    if into is None:
+        raise InputError(
+            "a whole robot is written into its URDF, which is to be named",
+            argument="into",
+            remedy=Action("call", {"into": ...}, function="export"),
         )
     if joint_name is not None:
         raise InputError(
