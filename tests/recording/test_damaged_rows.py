@@ -100,6 +100,7 @@ def test_a_row_that_is_damaged_in_one_joint_is_left_out_in_all(cell: str, tmp_pa
     with pytest.raises(InputError, match=r"line 22.*load with drop_invalid=True"):
         jid.load(path, joints="all")
     loaded = jid.load(path, joints="all", drop_invalid=True)
+    assert loaded.torque is not None
     assert loaded.position.shape == loaded.torque.shape == (87, 2)
     assert not {0.04, 0.08, 0.12} & set(loaded.time)
     assert loaded.metadata["dropped_rows"] == 3
