@@ -11,15 +11,14 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import NDArray
 
-from jointid.base.advice import Action
 from jointid.base.argument_checks import is_finite, require_path
 from jointid.base.errors import InputError
 from jointid.joint.model import Model
 from jointid.recording.sides import SIDES
-from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.robot_signals import LISTED, value_of_each
+from jointid.recording.wide.robot_signals import value_of_each
 from jointid.robot.links.facts import read_facts
+from jointid.robot.links.finding_columns import joint_columns
 from jointid.robot.links.link_tree import LinkTree
 from jointid.robot.links.models import friction_models
 from jointid.robot.links.position_drive import PositionDrive
@@ -250,56 +249,7 @@ class Robot:
         InputError
             The recording has no such joint.
         """
-        if all(name in recording.names for name in self.names):
-            return [recording.names.index(name) for name in self.names]
-        known = [name for name in self.names if name in recording.names]
-        in_order = len(recording.names) == self.n and not known
-        if in_order and recording.metadata.get(LISTED):
-            return list(range(self.n))
-        try:
-            found = [
-                joint_named(_number(name), recording.names, recording.name) for name in self.names
-            ]
-            if len(set(found)) == self.n:
-                return [recording.names.index(each) for each in found]
-        except InputError:
-            pass
-        if in_order:
-            return list(range(self.n))
-        raise self._without(recording)
-
-    def _without(self, recording: RobotRecording) -> InputError:
-        """The error for a recording that lacks joints of the robot, with the joints that it has."""
-        fits = [name for name in self.names if _fits(name, recording)]
-        renamed = "give the recording's joints the URDF's names"
-        both = f"the robot has the joints {', '.join(self.names)}, the recording {', '.join(recording.names)}"
-        if not fits:
-            return InputError(
-                f"no joint of the recording is one of the robot's: {both}",
-                place=recording.name,
-                remedy=renamed,
-            )
-        lacking = [name for name in self.names if name not in fits]
-        others = len(recording.names) > len(fits)
-        stated = Action(
-            "call",
-            {"joints": fits},
-            text=f"if {' and '.join(lacking)} stood at 0",
-            function="Robot.from_urdf",
-        )
-        return InputError(
-            f"the recording lacks {', '.join(lacking)}: {both}",
-            place=recording.name,
-            remedy=(renamed, stated) if others else stated,
-        )
-
-
-def _fits(name: str, recording: RobotRecording) -> bool:
-    """Whether a recording has a joint of the robot, by its name or number."""
-    try:
-        return name in recording.names or bool(joint_named(_number(name), recording.names, ""))
-    except InputError:
-        return False
+        return joint_columns(self.names, recording)
 
 
 def _models(models: Mapping[str, Model | str], names: Sequence[str]) -> tuple[str, ...]:
@@ -321,14 +271,6 @@ def _drive(drive: object, n: int, couplings: object) -> PositionDrive:
             remedy="record torques",
         )
     return PositionDrive.of(drive, n)
-
-
-def _number(name: str) -> int:
-    """The number at the end of a joint's name."""
-    digits = name[len(name.rstrip("0123456789")) :]
-    if not digits:
-        raise InputError("a number at the end of the name is expected", argument="joints")
-    return int(digits)
 
 
 def _numbers(argument: str, values: Sequence[float], count: int) -> list[float]:
