@@ -21,10 +21,14 @@ NAMES = tuple(f"joint_{number}" for number in range(1, JOINTS + 1))
 
 @pytest.fixture(name="run", scope="module")
 def _run() -> jid.RobotRecording:
+    return sines(12.0)
+
+
+def sines(duration: float) -> jid.RobotRecording:
     """Exact torques along sines, with friction, rotors and noise."""
     rng = np.random.default_rng(5)
     model = pinocchio.buildModelFromUrdf(str(URDF))
-    state, time = model.createData(), np.arange(0.0, 12.0, 4e-3)
+    state, time = model.createData(), np.arange(0.0, duration, 4e-3)
     rates = rng.uniform(0.6, 5.0, (JOINTS, 4))
     sizes = rng.uniform(0.3, 0.8, (JOINTS, 4)) / rates
     angle = rates[:, :, None] * time + rng.uniform(0.0, 6.0, (JOINTS, 4, 1))
@@ -100,6 +104,22 @@ def test_joints_in_another_order_are_named_with_the_call(
     (advice,) = said.advice
     assert advice.function == "load_robot"
     assert advice.arguments["joints"] == [f"axis {each}" for each in "abcdefg"]
+
+
+@pytest.mark.parametrize(
+    "signals", [("torque",), pytest.param(("position", "torque"), marks=pytest.mark.slow)]
+)
+def test_the_order_shows_in_a_long_log_that_stands_still_at_its_ends(
+    signals: tuple[str, ...],
+) -> None:
+    run, order = sines(60.0), [0, 3, 1, 2, 4, 5, 6]
+    whole = np.arange(run.samples)
+    shown = np.clip(whole, run.samples // 5, 4 * run.samples // 5)
+    still = {name: np.asarray(run.fields()[name])[shown] for name in ("position", "torque")}
+    wrong = in_order(changed(run, **still, extra={"row": 1.0 * whole}), order, *signals)
+    if "position" in signals:
+        wrong = changed(wrong, names=[*"abcdefg"])
+    only(jid.identify(wrong, jid.Robot.from_urdf(URDF)), "joint_order")
 
 
 @pytest.mark.parametrize("inertia", ["urdf", "free"])

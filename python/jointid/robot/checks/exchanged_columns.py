@@ -15,16 +15,15 @@ from jointid.estimate.wording import percent
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.checks.link_factors import LinkFactor, link_factor, link_rows
 from jointid.robot.links.robot import Robot
-from jointid.robot.motion.column_order import reordered, sampled
-from jointid.robot.motion.plain_motion import plain_signals
+from jointid.robot.motion.column_order import reordered
+from jointid.robot.motion.plain_motion import plain_signals, stretches
 from jointid.robot.result.finding_types import TYPES, listed, titled
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Order = tuple[int, ...]
 
-_SAMPLES = 1000  # of a recording, for each order that is tried
-_RECORDINGS = 2
+_STRETCHES = 2  # of the recordings, for each order that is tried
 _LEAST = 1e-4  # of a squared torque: less does not decide between orders
 _CLEARLY = (
     0.5  # of the logarithms of what is left, squared and summed: what an exchange has to gain
@@ -50,7 +49,7 @@ def joint_order(
     before = _left(given, robot.n)
     if robot.n < 2 or before < _WELL**2:
         return None
-    few = [sampled(run, _SAMPLES) for run in recordings[:_RECORDINGS]]
+    few = stretches(recordings, _STRETCHES)
     torques = _climbed(robot.n, _score_of_torques(few, robot))
     found = [("torques", torques)]
     if not _explains(torques, before):

@@ -29,13 +29,3 @@ def reordered(
             values[:, columns] = values[:, columns[each]]
             fields[signal] = values
     return RobotRecording(**fields)
-
-
-def sampled(recording: RobotRecording, count: int) -> RobotRecording:
-    """Return about so many of a recording's samples, evenly spread."""
-    every = max(1, recording.samples // count)
-    fields = recording.fields()
-    for signal, values in fields.items():
-        if isinstance(values, np.ndarray) and len(values) == recording.samples:
-            fields[signal] = values[::every]
-    return RobotRecording(**fields)

@@ -45,34 +45,35 @@ class PlainSignals:
 
 def plain_signals(recordings: Sequence[RobotRecording], robot: Robot) -> list[PlainSignals]:
     """Return recordings in stretches; of long ones some, evenly spread."""
+    return [_stretch(robot, run) for run in stretches(recordings, _PIECES)]
+
+
+def stretches(recordings: Sequence[RobotRecording], most: int) -> list[RobotRecording]:
+    """Return at most so many stretches of recordings, evenly spread."""
     pieces = [piece for run in recordings for piece in _pieces(run)]
-    count = min(len(pieces), _PIECES)
-    chosen = np.unique(np.linspace(0, len(pieces) - 1, count).round().astype(int)).tolist()
-    return [_stretch(robot, *pieces[number]) for number in chosen]
+    count = min(len(pieces), most)
+    middles = (np.arange(count) + 0.5) * len(pieces) / max(count, 1)  # many stand still at the ends
+    return [part_of(*pieces[int(middle)]) for middle in middles]
 
 
-def _pieces(run: RobotRecording) -> Iterator[tuple[RobotRecording, int, int, float, float, int]]:
-    """Samples of each stretch, with the usual step, the average's period, and how many samples are one."""
+def _rate(run: RobotRecording) -> tuple[float, float, int]:
+    """The usual step, the average's period, and how many samples are one."""
     step = float(np.median(np.diff(run.time)))
     period = max(PERIOD, _LEAST * step)
-    every = max(1, round(period / _EACH / step))
+    return step, period, max(1, round(period / _EACH / step))
+
+
+def _pieces(run: RobotRecording) -> Iterator[tuple[RobotRecording, int, int]]:
+    *_, every = _rate(run)
     count = max(1, round(run.samples / (_PIECE * every)))
     edges = np.linspace(0, run.samples, count + 1).round().astype(int).tolist()
     for first, end in itertools.pairwise(edges):
         if end - first >= _SHORTEST * every:
-            yield run, first, end, step, period, every
+            yield run, first, end
 
 
-def _stretch(
-    robot: Robot,
-    recording: RobotRecording,
-    first: int,
-    end: int,
-    step: float,
-    period: float,
-    every: int,
-) -> PlainSignals:
-    run = part_of(recording, first, end)
+def _stretch(robot: Robot, run: RobotRecording) -> PlainSignals:
+    step, period, every = _rate(run)
     position, torque, at_motor = signals_of(run, robot)
     given = velocity_of(run, robot, at_motor)
     if at_motor:
