@@ -18,6 +18,13 @@ pinocchio = pytest.importorskip("pinocchio")
 Array = NDArray[np.float64]
 NAMES = tuple(f"joint_{number}" for number in range(1, JOINTS + 1))
 
+DRIVE: dict[str, Any] = {
+    "kp": np.geomspace(300.0, 100.0, JOINTS),
+    "kd": np.geomspace(9.0, 3.0, JOINTS),
+    "hold": "linear",
+    "delay": 0.0,
+}
+
 
 @pytest.fixture(name="run", scope="module")
 def _run() -> jid.RobotRecording:
@@ -104,6 +111,47 @@ def test_joints_in_another_order_are_named_with_the_call(
     (advice,) = said.advice
     assert advice.function == "load_robot"
     assert advice.arguments["joints"] == [f"axis {each}" for each in "abcdefg"]
+
+
+def test_currents_in_another_order_are_named(run: jid.RobotRecording) -> None:
+    constants = np.geomspace(2.0, 0.5, JOINTS)
+    amperes = changed(run, torque=None, current=np.asarray(run.torque) / constants)
+    robot = jid.Robot.from_urdf(URDF, torque_constants=constants.tolist())
+    wrong = in_order(amperes, [0, 1, 3, 2, 4, 5, 6], "current")
+    assert (
+        f"{NAMES[3]} is in the torques of {NAMES[2]}"
+        in only(jid.identify(wrong, robot), "swapped_torques").details
+    )
+
+
+@pytest.mark.parametrize(
+    ("signals", "code", "what"),
+    [
+        (("reference",), "swapped_torques", "wanted positions"),
+        (("position", "reference"), "swapped_joints", "columns"),
+    ],
+)
+def test_columns_of_drives_in_another_order_are_named(
+    run: jid.RobotRecording, signals: tuple[str, ...], code: str, what: str
+) -> None:
+    wrong = in_order(driven(run), [0, 1, 3, 2, 4, 5, 6], *signals)
+    said = only(jid.identify(wrong, jid.Robot.from_urdf(URDF, drive=DRIVE)), code)
+    assert said.title.startswith(f"the {what} of {NAMES[2]} and {NAMES[3]} are exchanged")
+
+
+def test_an_order_of_positions_alone_is_not_taken_for_another(run: jid.RobotRecording) -> None:
+    """The torques that a drive makes of exchanged positions are no other joint's."""
+    wrong = in_order(driven(run), [1, 0, 2, 3, 4, 5, 6], "position")
+    found = jid.identify(wrong, jid.Robot.from_urdf(URDF, drive=DRIVE))
+    assert found.verdict.level == "not usable"
+    assert "swapped_joints" not in {each.code for each in found.findings}
+
+
+def driven(run: jid.RobotRecording) -> jid.RobotRecording:
+    """The wanted positions that make a drive push as much."""
+    speed = np.gradient(run.position, run.time, axis=0)
+    pushed = (run.torque + DRIVE["kd"] * speed) / DRIVE["kp"]
+    return changed(run, torque=None, reference=run.position + pushed)
 
 
 @pytest.mark.parametrize(

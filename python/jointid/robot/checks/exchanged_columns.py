@@ -29,6 +29,7 @@ _CLEARLY = (
     0.5  # of the logarithms of what is left, squared and summed: what an exchange has to gain
 )
 _WELL = 0.1  # of the torques, root mean square: what the right order may leave, and a wrong one does not
+_POOR = 0.05  # of the torques: less unexplained is not looked at
 _BETTER = 0.1  # of what the given order leaves, squared
 
 
@@ -47,7 +48,7 @@ def joint_order(
     `given` is what the joints' rows say as they are taken.
     """
     before = _left(given, robot.n)
-    if robot.n < 2 or before < _WELL**2:
+    if robot.n < 2 or before < _POOR**2:
         return None
     few = stretches(recordings, _STRETCHES)
     torques = _climbed(robot.n, _score_of_torques(few, robot))
@@ -149,7 +150,8 @@ def _finding(
     code = {"torques": "swapped_torques", "joints": "swapped_joints"}[kind]
     if len(moved) > 2:
         code = "joint_order"
-    what = "columns" if kind == "joints" else "torques"
+    torques = "torques" if robot.drive is None else "wanted positions"
+    what = "columns" if kind == "joints" else torques
     title = (
         f"the {what} of {listed(moved)} are exchanged"
         if len(moved) == 2

@@ -7,6 +7,7 @@ named, not used: the user knows.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -174,29 +175,30 @@ def _is_certain(given: _MotorFit, other: _MotorFit) -> bool:
 
 def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator[_Trial]:
     n = robot.n
-    for i in range(n):
-        for j in range(i + 1, n):
-            # What fits well is not exchanged.
-            if suspects >= {i, j} or (len(suspects) == 1 and suspects & {i, j}):
-                order = np.arange(n)
-                order[[i, j]] = j, i
-                both = [_remade(each, robot, order=order, torque=order) for each in motions]
-                yield _Trial(
-                    kind="swapped_joints",
-                    joints=(i, j),
-                    robot=robot,
-                    motions=both,
-                    order=order,
-                    torque_order=order,
-                )
-                torques = [_remade(each, robot, torque=order) for each in motions]
-                yield _Trial(
-                    kind="swapped_torques",
-                    joints=(i, j),
-                    robot=robot,
-                    motions=torques,
-                    torque_order=order,
-                )
+    # A drive makes other torques of exchanged columns.
+    pairs = itertools.combinations(range(n), 2) if robot.drive is None else ()
+    for i, j in pairs:
+        # What fits well is not exchanged.
+        if suspects >= {i, j} or (len(suspects) == 1 and suspects & {i, j}):
+            order = np.arange(n)
+            order[[i, j]] = j, i
+            both = [_remade(each, robot, order=order, torque=order) for each in motions]
+            yield _Trial(
+                kind="swapped_joints",
+                joints=(i, j),
+                robot=robot,
+                motions=both,
+                order=order,
+                torque_order=order,
+            )
+            torques = [_remade(each, robot, torque=order) for each in motions]
+            yield _Trial(
+                kind="swapped_torques",
+                joints=(i, j),
+                robot=robot,
+                motions=torques,
+                torque_order=order,
+            )
     for i in sorted(suspects):
         sign = np.ones(n)
         sign[i] = -1.0

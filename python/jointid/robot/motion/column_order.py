@@ -17,12 +17,12 @@ def reordered(
     """Return a recording in which each joint has the columns that `order` says; None leaves them."""
     columns = np.array(robot.columns_of(recording))
     fields = recording.fields()
-    orders = {
-        "position": order,
-        "velocity": order,
-        "torque": torque_order,
-        "motor_torque": torque_order,
-    }
+    moving, pushing = (
+        ["position", "velocity", "link_position"],
+        ["torque", "motor_torque", "current"],
+    )
+    (moving if robot.drive is None else pushing).append("reference")
+    orders = dict.fromkeys(moving, order) | dict.fromkeys(pushing, torque_order)
     for signal, each in orders.items():
         if each is not None and fields.get(signal) is not None:
             values = np.array(fields[signal])
