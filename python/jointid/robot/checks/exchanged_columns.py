@@ -47,7 +47,7 @@ def joint_order(
 
     `given` is what the joints' rows say as they are taken.
     """
-    before = _left(given, robot.n)
+    before = float(_left(given, robot.n).mean())
     if robot.n < 2 or before < _POOR**2:
         return None
     few = stretches(recordings, _STRETCHES)
@@ -66,21 +66,21 @@ def _explains(found: _Found, before: float) -> bool:
     return moved and found.left < _WELL**2 and found.left < _BETTER * before
 
 
-def _climbed(n: int, score: Callable[[Order], tuple[float, float]]) -> _Found:
+def _climbed(n: int, score: Callable[[Order], _Found]) -> _Found:
     """The order that no exchange of two joints betters; it has as few exchanges as that takes."""
-    best = _made(tuple(range(n)), score)
+    best = score(tuple(range(n)))
     while True:
         pairs = itertools.combinations(range(n), 2)
-        tried = [_made(_exchanged(best.order, *pair), score) for pair in pairs]
+        tried = [score(_exchanged(best.order, *pair)) for pair in pairs]
         other = min(tried, key=lambda each: each.score)
         if other.score > best.score - _CLEARLY:
             return best
         best = other
 
 
-def _made(order: Order, score: Callable[[Order], tuple[float, float]]) -> _Found:
-    value, left = score(order)
-    return _Found(order=order, score=value, left=left)
+def _found(order: Order, left: Array) -> _Found:
+    score = float(np.log(np.maximum(left, _LEAST)).sum())
+    return _Found(order=order, score=score, left=float(left.mean()))
 
 
 def _exchanged(order: Order, first: int, second: int) -> Order:
@@ -91,7 +91,7 @@ def _exchanged(order: Order, first: int, second: int) -> Order:
 
 def _score_of_torques(
     recordings: Sequence[RobotRecording], robot: Robot
-) -> Callable[[Order], tuple[float, float]]:
+) -> Callable[[Order], _Found]:
     """Of an order of the torques alone: each joint's rows with each torque are made once."""
     n = robot.n
     table = np.ones((n, n))  # joint and torque
@@ -100,25 +100,21 @@ def _score_of_torques(
         for joint, each in _factors(recordings, robot, None, order).items():
             table[joint, order[joint]] = each.given
 
-    def score(order: Order) -> tuple[float, float]:
-        left = table[np.arange(n), list(order)]
-        return float(np.log(np.maximum(left, _LEAST)).sum()), float(left.mean())
+    def score(order: Order) -> _Found:
+        return _found(order, table[np.arange(n), list(order)])
 
     return score
 
 
 def _score_of_joints(
     recordings: Sequence[RobotRecording], robot: Robot
-) -> Callable[[Order], tuple[float, float]]:
-    known: dict[Order, tuple[float, float]] = {}
+) -> Callable[[Order], _Found]:
+    known: dict[Order, _Found] = {}
 
-    def score(order: Order) -> tuple[float, float]:
+    def score(order: Order) -> _Found:
         if order not in known:
             each = np.array(order)
-            factors = _factors(recordings, robot, each, each)
-            left = [factors[joint].given if joint in factors else 1.0 for joint in range(robot.n)]
-            logs = float(np.log(np.maximum(left, _LEAST)).sum())
-            known[order] = logs, float(np.mean(left))
+            known[order] = _found(order, _left(_factors(recordings, robot, each, each), robot.n))
         return known[order]
 
     return score
@@ -132,8 +128,8 @@ def _factors(
     return {joint: link_factor(block) for joint, block in rows.items()}
 
 
-def _left(factors: Mapping[int, LinkFactor], n: int) -> float:
-    return float(np.mean([factors[joint].given if joint in factors else 1.0 for joint in range(n)]))
+def _left(factors: Mapping[int, LinkFactor], n: int) -> Array:
+    return np.array([factors[joint].given if joint in factors else 1.0 for joint in range(n)])
 
 
 def _finding(
