@@ -192,6 +192,13 @@ def test_one_gear_ratio_taken_for_all_is_named_with_the_factors(
     assert "different_factors" not in {each.code for each in cured.findings}
 
 
+@pytest.mark.parametrize("factor", [1.2, 1.4])
+def test_one_factor_of_all_is_no_factor_of_each(run: jid.RobotRecording, factor: float) -> None:
+    more = driven(changed(run, torque=factor * np.asarray(run.torque)))
+    found = jid.identify(more, jid.Robot.from_urdf(URDF, drive=DRIVE))
+    assert "different_factors" not in {each.code for each in found.findings}
+
+
 @pytest.mark.parametrize("link", [2, 5])
 def test_a_heavier_link_is_no_factor(run: jid.RobotRecording, link: int) -> None:
     """All joints below it carry it: their torques seem too large, each by a share of its own."""

@@ -19,6 +19,11 @@ pytest.importorskip("pinocchio")
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 FRICTION = small_arm.COULOMB, small_arm.VISCOUS
+DRIVE: dict[str, Any] = {
+    "kp": np.array([300.0, 150.0]),
+    "kd": np.array([9.0, 4.0]),
+    "hold": "linear",
+}
 # Neither axes nor weights are symmetric: no mirror image of this arm is the arm.
 SKEW = (
     small_arm.URDF.replace(
@@ -86,6 +91,53 @@ def test_one_factor_is_named_with_its_remedy(
     robot = jid.Robot.from_urdf(path)
     told = only(jid.identify_robot(wrong, robot, inertia=inertia), "scaled_torques")
     assert told["torque_scales"] == pytest.approx(scales, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("factors", "code"),
+    [((3.0, 3.0), "scaled_torques"), ((1.5, 0.7), "different_factors")],
+)
+def test_factors_of_a_drive_are_its_gains(
+    run: jid.RobotRecording, path: Path, factors: tuple[float, float], code: str
+) -> None:
+    robot = jid.Robot.from_urdf(path, drive=stiffer(factors))
+    found = jid.identify_robot(driven(run), robot)
+    told = only(found, code)
+    assert "gain" in found.findings[0].details
+    for key in ("kp", "kd"):
+        np.testing.assert_allclose(np.array(told["drive"][key]), DRIVE[key], rtol=0.02)
+    cured = jid.identify_robot(driven(run), jid.Robot.from_urdf(path, **told))
+    assert cured.verdict.level == "usable"
+
+
+def test_stated_scales_of_a_drive_are_part_of_its_gains(
+    run: jid.RobotRecording, path: Path
+) -> None:
+    robot = jid.Robot.from_urdf(path, drive=DRIVE, torque_scales=[4.0, 3.0])
+    told = only(jid.identify_robot(driven(run), robot), "scaled_torques")
+    assert told["torque_scales"] == [1.0, 1.0]
+    np.testing.assert_allclose(np.array(told["drive"]["kp"]), DRIVE["kp"], rtol=0.02)
+
+
+def test_one_gain_that_is_off_is_advised(run: jid.RobotRecording, path: Path) -> None:
+    robot = jid.Robot.from_urdf(path, drive=stiffer((1.0, 1.1)))
+    found = jid.identify_robot(driven(run), robot, inertia="urdf")
+    (said,) = [each for each in found.findings if each.code == "wrong_torque_scale"]
+    assert "gain" in said.details
+    told: Any = said.advice[0].arguments["drive"]
+    np.testing.assert_allclose(np.array(told["kp"]), DRIVE["kp"], rtol=0.02)
+
+
+def stiffer(factors: tuple[float, float]) -> dict[str, Any]:
+    return {**DRIVE, "kp": DRIVE["kp"] * factors, "kd": DRIVE["kd"] * factors}
+
+
+def driven(run: jid.RobotRecording) -> jid.RobotRecording:
+    """The wanted positions that make a drive push as much."""
+    speed = np.gradient(run.position, run.time, axis=0)
+    assert run.torque is not None
+    wanted = run.position + (run.torque + DRIVE["kd"] * speed) / DRIVE["kp"]
+    return jid.RobotRecording(**{**run.fields(), "torque": None, "reference": wanted})
 
 
 def test_the_remedy_cures(run: jid.RobotRecording, path: Path) -> None:

@@ -6,7 +6,7 @@ fault makes every later finding a consequence, so that it is the only one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +21,7 @@ from jointid.robot.checks.exchanged_columns import joint_order
 from jointid.robot.checks.link_factors import LinkFactor, link_factor, link_rows
 from jointid.robot.checks.plain_regression import Block
 from jointid.robot.links.parameters import CONSTANT
+from jointid.robot.links.position_drive import facts_of_scales
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import PlainSignals
 from jointid.robot.result.finding_types import TYPES, listed
@@ -85,27 +86,29 @@ def _several(
     off = [
         joint for joint, each in sure.items() if each.value < 0.0 or abs(np.log(each.value)) > _OFF
     ]
-    if len(off) < 2 or 2 * len(sure) < robot.n:
+    if len(off) < 2 or 2 * len(sure) < robot.n or _agree(sure.values()):
         return None
     left, before = (sum(getattr(e, name) for e in sure.values()) for name in ("left", "given"))
     if left > BETTER * before or left > _LINK * _otherwise(signals, robot):
         return None
-    factors = {joint: sure[joint].value if joint in off else 1.0 for joint in range(robot.n)}
+    factors = [sure[joint].value if joint in off else 1.0 for joint in range(robot.n)]
+    one = "gain" if robot.drive is not None else "gear ratio or torque constant"
     names = [robot.names[joint] for joint in off]
     shown = ", ".join(f"{robot.names[joint]} {sure[joint].value:.3g}" for joint in off)
     return TYPES["different_factors"].finding(
         f"the torques of {listed(names)} have factors of their own against the URDF",
-        Action(
-            "call",
-            {"torque_scales": _scales(robot, factors)},
-            text="so that they weigh what the URDF says, until the factors are known",
-            function="Robot.from_urdf",
-        ),
-        details=f"{shown}: one gear ratio or torque constant was probably taken for all joints; with these factors the "
+        _divided(robot, factors),
+        details=f"{shown}: one {one} was probably taken for all joints; with these factors the "
         f"URDF leaves {percent(float(np.sqrt(left / len(sure))))} of the torques, without "
         f"{percent(float(np.sqrt(before / len(sure))))}",
         evidence={robot.names[joint]: Measured(sure[joint].value) for joint in off},
     )
+
+
+def _agree(factors: Iterable[LinkFactor]) -> bool:
+    """Whether one factor on all torques says the same."""
+    values = np.array([each.value for each in factors])
+    return bool(np.all(values > 0.0) and np.ptp(np.log(values)) < _OFF)
 
 
 def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
@@ -223,9 +226,19 @@ def _folded(block: Block) -> bool:
     return is_magnitude(block.matrix, target, (block.matrix[:, -1] + 1e-12 * direction, direction))
 
 
-def _scales(robot: Robot, factors: Mapping[int, float]) -> list[float]:
+def _scales(robot: Robot, factors: Sequence[float]) -> list[float]:
     before = robot.torque_scales or (1.0,) * robot.n
-    return [float(f"{old / factors[joint]:.3g}") for joint, old in enumerate(before)]
+    return [float(f"{old / factor:.3g}") for old, factor in zip(before, factors, strict=True)]
+
+
+def _divided(robot: Robot, factors: Sequence[float]) -> Action:
+    """The call that takes factors out of the torques."""
+    return Action(
+        "call",
+        facts_of_scales(robot.drive, _scales(robot, factors), robot.torque_scales),
+        text="so that they weigh what the URDF says, until the factors are known",
+        function="Robot.from_urdf",
+    )
 
 
 def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Finding:
@@ -235,33 +248,30 @@ def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Fin
             "all torques have the opposite sign of what the URDF's links weigh",
             Action(
                 "call",
-                {"torque_scales": _scales(robot, dict.fromkeys(range(robot.n), -1.0))},
+                {"torque_scales": _scales(robot, [-1.0] * robot.n)},
                 function="Robot.from_urdf",
             ),
             evidence={"factor": Measured(common)},
         )
-    each = {j: given[j].value if j in given and given[j].sure else common for j in range(robot.n)}
+    sure = {joint: factor.value for joint, factor in given.items() if factor.sure}
     size = abs(common)
     times = f"{1.0 / size:.2g} times smaller" if size < 1.0 else f"{size:.2g} times larger"
     sign = ", and reversed" if common < 0.0 else ""
     left = percent(float(np.sqrt(np.median([e.left for e in given.values()]))))
     what = (
-        "they are probably currents, or of the motor's side of a gear"
+        "the gains are probably not the robot's, or the masses of the URDF are not"
+        if robot.drive is not None
+        else "they are probably currents, or of the motor's side of a gear"
         if size < 1.0
         else "they are probably in another unit, or the masses of the URDF are not the robot's"
     )
     return TYPES["scaled_torques"].finding(
         f"all torques are about {times} than the URDF's links weigh{sign}",
-        Action(
-            "call",
-            {"torque_scales": _scales(robot, each)},
-            text="so that they weigh what the URDF says, until the factors are known",
-            function="Robot.from_urdf",
-        ),
+        _divided(robot, [sure.get(joint, common) for joint in range(robot.n)]),
         details=f"{what}; with one factor for each joint the URDF explains all but {left} of them",
         evidence={
             "factor": Measured(common),
-            **{robot.names[j]: Measured(each[j]) for j in given if given[j].sure},
+            **{robot.names[joint]: Measured(value) for joint, value in sure.items()},
         },
     )
 

@@ -22,6 +22,7 @@ from jointid.robot.facts.error_candidates import (
 from jointid.robot.facts.wrong_facts import WrongFact
 from jointid.robot.fit.zeros import Zeros
 from jointid.robot.links.inertia_modes import FREE, SCALED
+from jointid.robot.links.position_drive import facts_of_scales
 from jointid.robot.links.robot import Robot
 from jointid.robot.result.finding_types import TYPES, listed, titled
 
@@ -168,11 +169,14 @@ def _moved(error: SmallError, name: str) -> _Worded:
 
 def _torque(error: SmallError, name: str) -> _Worded:
     value, spread = float(error.values[0]), float(error.errors[0])
+    drive = error.robot.drive
+    scales = facts_of_scales(drive, _plain(error.robot.torque_scales), error.given.torque_scales)
+    what = "its torque constant or gear ratio is" if drive is None else "its gains are"
     return (
         f"the torque of {name} is {_with_error(100.0 * abs(value), 100.0 * spread)} % too {_side(value)}",
-        "the links' weight and the other joints show it; its torque constant or gear ratio is probably wrong",
+        f"the links' weight and the other joints show it; {what} probably wrong",
         {"scale": Measured(1.0 + value), "scale_error": Measured(spread)},
-        (_call({"torque_scales": _plain(error.robot.torque_scales)}),),
+        (_call(scales),),
     )
 
 

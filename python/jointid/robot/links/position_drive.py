@@ -198,3 +198,19 @@ def facts_of_drive(names: Sequence[str]) -> str:
         f"drive = {{kp = {[20.0] * len(names)}, kd = {[1.0] * len(names)}}}, with the robot's own numbers for {order} "
         '[N·m/rad, N·m·s/rad], or one for all; where they are not known: drive = {kp = "free", kd = "free"}'
     )
+
+
+def facts_of_scales(
+    drive: PositionDrive | None, scales: Sequence[float], before: Sequence[float] | None
+) -> dict[str, object]:
+    """Return the facts that multiply the joints' torques in all: the gains of a drive, unless a sign changes.
+
+    `before` are the scales that were stated.
+    """
+    if drive is None or min(scales) < 0.0:
+        return {"torque_scales": [*scales]}
+    found = drive.document()
+    for key in KEYS[:2]:
+        pairs = zip(found[key], scales, strict=True)
+        found[key] = [each if each == FREE else float(f"{each * s:.4g}") for each, s in pairs]
+    return {"drive": found} | ({} if before is None else {"torque_scales": [1.0] * len(scales)})
