@@ -175,6 +175,7 @@ def test_a_magnitude_is_named(
     wrong = changed(run, lambda torque: np.round(np.abs(factor * torque) / grid) * grid)
     found = jid.identify_robot(wrong, jid.Robot.from_urdf(path))
     only(found, "unsigned_torque")
+    assert found.findings[0].title.startswith("the torques of shoulder and elbow are never")
     assert "shoulder, elbow" in found.findings[0].cause
 
 

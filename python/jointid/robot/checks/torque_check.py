@@ -201,7 +201,9 @@ def _unsigned(
         return None
     names = [robot.names[joint] for joint in folded]
     return TYPES["unsigned_torque"].finding(
-        f"the torque of {listed(names)} is never negative: it has lost its sign",
+        f"the torque of {names[0]} is never negative: it has lost its sign"
+        if len(names) == 1
+        else f"the torques of {listed(names)} are never negative: they have lost their sign",
         Action(
             "inspect",
             text="the driver's signed value (of a servo that has none, the sign of its position error)",
