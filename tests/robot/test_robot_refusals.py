@@ -233,6 +233,12 @@ def test_velocity_and_position_of_different_units_are_noticed(path: Path, factor
     assert told[0].startswith("the velocity of") == (factor > 1.0)
 
 
+def test_a_joint_that_leaves_its_range_is_in_no_other_unit(path: Path, tmp_path: Path) -> None:
+    text = URDF.replace('lower="-3" upper="3"', 'lower="-0.1" upper="0.1"')
+    robot = jid.Robot.from_urdf(urdf(tmp_path, text))
+    assert jid.identify_robot(recording(path, duration=4.0), robot).warnings == ()
+
+
 @pytest.mark.parametrize(
     ("options", "reason"),
     [

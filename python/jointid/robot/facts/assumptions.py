@@ -13,7 +13,6 @@ from jointid.robot.fit.attempt import Attempt
 from jointid.robot.links.robot import Robot
 from jointid.robot.result.finding_types import TYPES, listed
 
-_FAR = 2.0  # times the URDF's range: no joint moves so far
 _MOVES = 0.01  # [rad or m]
 _DEGREES = 180.0 / np.pi
 _NEAR = 0.1  # of a logarithm: so near to degrees, a ratio is that of degrees
@@ -22,7 +21,7 @@ _NEAR = 0.1  # of a logarithm: so near to degrees, a ratio is that of degrees
 def assumption_findings(
     recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
 ) -> Iterator[Finding]:
-    """Findings of what was assumed: joints in order, joints that stand, no gravity, and the positions' unit.
+    """Findings of what was assumed: joints in order, joints that stand, no gravity, and signals in degrees.
 
     The robot is as given.
     """
@@ -78,30 +77,17 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
 def _units(
     recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
 ) -> Iterator[Finding]:
-    excerpts = list(attempt.excerpts.values())
-    spans = robot.tree.spans or (np.inf,) * robot.n
+    """Joints with velocities in another unit than their positions."""
     for joint, name in enumerate(robot.names):
-        if robot.tree.prismatic[joint]:
+        ratio = None if robot.tree.prismatic[joint] else _of_velocity(recordings, robot, joint)
+        if ratio is None or abs(abs(np.log(ratio)) - np.log(_DEGREES)) >= _NEAR:
             continue
-        moved = max(float(np.ptp(each.position[joint])) for each in excerpts)
-        ratio = _of_velocity(recordings, robot, joint)
-        far = moved > _FAR * spans[joint]
-        apart = ratio is not None and abs(abs(np.log(ratio)) - np.log(_DEGREES)) < _NEAR
-        if not far and not apart:
-            continue
-        signal = "velocity" if apart and ratio is not None and ratio > 1.0 else "position"
-        reasons = []
-        if far:
-            reasons.append(
-                f"{name} moves by {moved:.3g} rad, and by the URDF at most by {spans[joint]:.3g}"
-            )
-        if apart:
-            assert ratio is not None
-            reasons.append(f"its recorded velocity is {ratio:.3g} times that of its position")
+        signal = "velocity" if ratio > 1.0 else "position"
+        moved = max(float(np.ptp(each.position[joint])) for each in attempt.excerpts.values())
         yield TYPES["implausible_unit"].finding(
             f"the {signal} of {name} is probably in degrees, not radians",
             Action("inspect", text=f"the unit of the {signal} of {name}"),
-            details="; ".join(reasons),
+            details=f"its recorded velocity is {ratio:.3g} times that of its position",
             evidence={"range": Measured(moved, "rad")},
         )
 
