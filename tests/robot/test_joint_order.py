@@ -88,10 +88,12 @@ def test_torques_in_another_order_are_named(
     for name in ("with_better_velocities", "diagnosed"):
         monkeypatch.setattr(examining, name, tried)
     found = jid.identify(in_order(run, order, "torque"), jid.Robot.from_urdf(URDF), inertia=inertia)
-    details = only(found, code).details
+    said = only(found, code)
+    right = ", ".join(NAMES[place] for place in np.argsort(order))
+    assert said.advice[0].text.endswith(f"the right order of the torques is {right}")
     for place, column in enumerate(order):
-        said = f"{NAMES[column]} is in the torques of {NAMES[place]}"
-        assert (said in details) == (place != column)
+        moved = f"{NAMES[column]} is in the torques of {NAMES[place]}"
+        assert (moved in said.details) == (place != column)
 
 
 @pytest.mark.parametrize(

@@ -140,14 +140,15 @@ def _finding(
     right = [own[place] for place in found.order]
     moved = [robot.names[j] for j in range(robot.n) if found.order[j] != j]
     is_named = set(own) & set(robot.names)
-    advice = Action("inspect", text="the order and names of the columns")
-    if kind == "joints" and not is_named:
-        advice = Action("call", {"joints": right}, function="load_robot")
     code = {"torques": "swapped_torques", "joints": "swapped_joints"}[kind]
     if len(moved) > 2:
         code = "joint_order"
     torques = "torques" if robot.drive is None else "wanted positions"
     what = "columns" if kind == "joints" else torques
+    order = f"the right order of the {what} is {', '.join(right)}"
+    advice = Action("inspect", text=f"the order and names of the columns; {order}")
+    if kind == "joints" and not is_named:
+        advice = Action("call", {"joints": right}, function="load_robot")
     title = (
         f"the {what} of {listed(moved)} are exchanged"
         if len(moved) == 2
