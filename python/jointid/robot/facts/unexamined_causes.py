@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from jointid.identification.causes.suspicion import slow_misfit
 from jointid.robot.facts.named_causes import UNEXAMINED, cause_finding, causes_of_joint
 from jointid.robot.facts.one_call import with_one_call
 from jointid.robot.fit.attempt import Attempt
-from jointid.robot.result.finding_types import TYPES, listed
+from jointid.robot.result.finding_types import TYPES
 from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 
 Array = NDArray[np.float64]
@@ -48,30 +49,34 @@ def misfit_findings(
     joints = corrected.estimate.joints.items()
     loud = [name for name, joint in joints if not shares[name] and _loud_at_low_speed(joint)]
     explained = max(left.values()) < _EXPLAINED * max(shares.values())
-    notes, told = [], []
+    told: list[Finding] = []
+    harmless: list[Finding] = []
     for name in [*concerned, *loud] if named and not explained else []:
         tried = left[name] or name in loud
         causes = causes_of_joint(corrected, name) if tried else Causes(found=())
-        told += [cause_finding(cause, name, _all_of(estimate, name)) for cause in causes.found]
+        of_joint = _all_of(estimate, name)
+        told += [cause_finding(cause, name, of_joint) for cause in causes.found]
         if name not in concerned:
             continue
+        harmless += [
+            replace(cause_finding(cause, name, of_joint), severity="info")
+            for cause in causes.harmless
+        ]
         known = (*causes.found, *causes.harmless)
         if math.prod(1.0 - cause.share for cause in known) < _MOST_LEFT:
             concerned.remove(name)
-        notes += [f"{name}: {cause}" for cause in causes.harmless]
     yield from with_one_call(told, estimate.robot.names, models)
+    yield from harmless
     if concerned:
         left_over = {name: shares[name] for name in concerned}
-        yield _unexamined(
-            estimate, left_over, "the named facts explain it" if explained else "", notes
-        )
+        yield _unexamined(estimate, left_over, "the named facts explain it" if explained else "")
 
 
 def _unexamined(
-    estimate: RobotEstimateRecord, shares: Mapping[str, float], explained: str, notes: Sequence[str]
+    estimate: RobotEstimateRecord, shares: Mapping[str, float], explained: str
 ) -> Finding:
     worst, *others = shares
-    more = f", nor a part of that of {listed(others)}" if others else ""
+    more = f"; {len(others)} more joint{'s' * (len(others) > 1)}" if others else ""
     every = ", ".join(f"{name} {percent(share)}" for name, share in shares.items())
     return TYPES["unexamined_causes"].finding(
         f"{percent(shares[worst])} of the torque of {worst} is neither explained nor noise{more}",
@@ -82,7 +87,6 @@ def _unexamined(
                 (
                     f"shares of the torque: {every}" if others else "",
                     explained,
-                    *notes,
                     UNEXAMINED,
                 ),
             )

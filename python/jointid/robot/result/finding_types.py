@@ -17,22 +17,23 @@ TYPES = {
             code="scaled_torques",
             severity="blocking",
             meaning="all torques differ from the weight of the URDF's links by nearly the same factor, above 1.6: "
-            "they are currents, or of the motor's side of a gear. Below a factor of 2.5, one link with "
-            "another weight must not explain it half as well",
-            advice="state the unit, the gear ratios or `torque_scales`",
+            "they are currents, or of the motor's side of a gear. Below a factor of 2.5, named only if no "
+            "change of a single link explains it nearly as well",
+            advice="state the unit, the gear ratios, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="different_factors",
             severity="blocking",
-            meaning="the torques of several joints, not of all alike, differ from the weight of the URDF's links, each "
-            "by a factor of its own: one gear ratio or torque constant was taken for all joints. No link with another "
-            "weight must explain it half as well",
-            advice="state `gear_ratios`, or `torque_scales`",
+            meaning="the torques of several joints differ from the weight of the URDF's links, each by another factor: "
+            "one gear ratio, torque constant or gain was taken for all joints. Named only if no change of a single "
+            "link explains it nearly as well",
+            advice="state `gear_ratios`, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="joint_order",
             severity="blocking",
-            meaning="the columns of three or more joints, or of their torques, are in another order than the robot's",
+            meaning="the columns of three or more joints, of their torques, or of a drive's wanted positions, are in "
+            "another order than the robot's",
             advice=_COLUMNS,
         ),
         FindingType(
@@ -57,9 +58,8 @@ TYPES = {
         ),
         FindingType(
             code="implausible_unit",
-            meaning="a position or velocity is probably in degrees: a joint moves over twice the URDF's range, or the "
-            "two differ by 57 times; blocking where most joints move so far, or where the links weigh what was "
-            "measured in degrees only",
+            meaning="a position or velocity is probably in degrees: the two differ by 57 times; blocking where most "
+            "joints move over twice the URDF's range, or where the links weigh what was measured in degrees only",
             advice="state the unit of the signal",
         ),
         FindingType(
