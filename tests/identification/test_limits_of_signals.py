@@ -83,3 +83,16 @@ def test_several_runs_rest_on_one_limit_and_one_that_goes_beyond_shows_that_it_i
     gentler = recorded(name="gentle", amplitude=0.2)
     assert saturated([cut(RUNS[0], 5.0), gentler]) == ["run_0"]
     assert saturated([cut(RUNS[0], 5.0), RUNS[1]]) == []
+
+
+@pytest.mark.parametrize(("low", "high"), [(-2.0, np.inf), (-np.inf, 3.0)])
+def test_the_limit_is_the_one_that_is_rested_on(low: float, high: float) -> None:
+    run = with_torque(RUNS[0], np.clip(np.array(RUNS[0].torque), low, high))
+    check = registry.CHECKS[registry.FILES.index("clipped")]
+    (found,) = check.findings(evidence(recordings=(run,), inspections=(inspect(run),)))
+    assert found.evidence["limit"].value == pytest.approx(low if np.isfinite(low) else high)
+
+
+def test_a_magnitude_does_not_rest_on_zero() -> None:
+    less = np.maximum(np.abs(np.array(RUNS[0].torque)) - 2.0, 0.0)
+    assert saturated([with_torque(RUNS[0], less)]) == []

@@ -54,7 +54,8 @@ def _on_a_limit(evidence: Evidence, inspected: Inspected, name: str) -> float:
             if counts.fine
             else limit.moving > 3 * (limit.near - limit.there)
         )
-        if rests and limit.moving >= _FEWEST:
+        # The magnitude of a torque that has lost its sign rests on 0 where it changes.
+        if rests and value and limit.moving >= _FEWEST:
             share += limit.moving / samples if _is_reached_again(evidence, name, value) else 0.0
     # A signal of few levels (a square wave) rests on its limits by nature, as a step does.
     changing = counts.changes > 0.3 * (1.0 - share) * (samples - 1)
@@ -111,7 +112,8 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
                 parameters=evidence.sensor_parameters,
             )
         else:
-            limit = max(abs(signal.lowest), abs(signal.highest))
+            both = ((signal.upper.moving, signal.highest), (signal.lower.moving, signal.lowest))
+            limit = max(both)[1]
             unit = recording.unit(name)
             missed = evidence.residuals.relative
             clipped = share > _MUCH and missed > _MISSED
