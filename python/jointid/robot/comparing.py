@@ -189,7 +189,7 @@ def _row(attempt: Attempt, mode: Inertia, model: str, blocks: Whole) -> Compared
     return ComparedRobotModel(
         inertia=mode,
         model=model,
-        parameters=int(np.sum(~whole.at_bound)),
+        parameters=whole.at_bound.size,
         score=float(means.mean()),
         stderr=float(means.std(ddof=1) / np.sqrt(means.size)),
         fold_scores=tuple(means.tolist()),

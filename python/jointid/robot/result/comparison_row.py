@@ -19,7 +19,7 @@ class ComparedRobotModel:
     model : str
         Of all joints.
     parameters : int
-        Free parameters of the fit to all recordings.
+        Of the fit to all recordings, also those that end at a bound: the model has them.
     score : float
         Relative residual of held-out torque: mean over joints and blocks.
     stderr : float
