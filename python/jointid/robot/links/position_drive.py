@@ -212,5 +212,5 @@ def facts_of_scales(
     found = drive.document()
     for key in KEYS[:2]:
         pairs = zip(found[key], scales, strict=True)
-        found[key] = [each if each == FREE else float(f"{each * s:.4g}") for each, s in pairs]
+        found[key] = [FREE if each is None else float(f"{each * s:.4g}") for each, s in pairs]
     return {"drive": found} | ({} if before is None else {"torque_scales": [1.0] * len(scales)})
