@@ -135,10 +135,6 @@ _UNLIKE: Mapping[str, _Unlike] = {
     "slow_motion": _Unlike(
         joint=lambda: jid.thesis_joint().replace(model=jid.Model("coulomb_viscous"))
     ),
-    "smooth_friction": _Unlike(
-        plant={"static": -20.0, "stribeck": 20.0},
-        joint=lambda: jid.thesis_joint().replace(model=jid.Model("coulomb_viscous")),
-    ),
     "presliding": _Unlike(degrees=20.0, plant={"bristle_stiffness": 2e4, "bristle_damping": 200.0}),
     "stribeck_exponent": _Unlike(plant={"exponent": 1.0}),
     "drift": _Unlike(plant={"viscous_drift": -0.3}),
@@ -166,6 +162,10 @@ _UNLIKE: Mapping[str, _Unlike] = {
         sensor=False,
         plant={"constant": 4.0, "gravity": 0.0},
         joint=partial(_plain, "stribeck", torque_offset=False),
+    ),
+    "smooth_friction": _Unlike(
+        plant={"static": -20.0, "stribeck": 20.0},
+        joint=lambda: jid.thesis_joint().replace(model=jid.Model("coulomb_viscous")),
     ),
 }
 
