@@ -32,15 +32,15 @@ class InputError(ValueError):
     Parameters
     ----------
     reason : str
-        Why it cannot be used, or what is expected, in a phrase without the syntax of any face.
+        Why it cannot be used, or what is expected; a phrase that fits a function call and a command line.
     argument : str
-        Name of the argument, field, key or column concerned. Default: none can be named.
+        Name of the argument, field, key or column. Default: no name.
     value : object
-        What it was. Default: nothing to show.
+        The value that cannot be used. Default: not shown.
     place : str
-        Where it stands: file, row, table. Default: in the call.
+        File, row or table of the value. Default: in the call.
     remedy : str, Action or tuple of these
-        What to do, if the reason does not say it. Default: nothing.
+        What to do, if the reason does not say it. Default: none.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class InputError(ValueError):
         Parameters
         ----------
         place : str
-            A file, a row, a table; joined to what stands inside it by a colon.
+            A file, a row or a table; a colon separates it from the present place.
         """
         inner = f": {self.place}" if self.place else ""
         return type(self)(

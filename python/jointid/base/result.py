@@ -44,7 +44,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Overview:
-    """What a page needs to know of any result.
+    """Summary of any result for a report page.
 
     Attributes
     ----------
@@ -86,14 +86,14 @@ class Overview:
 
 
 class Result:
-    """What any verb of jointid returns: it can be read, shown in a notebook, and turned into data."""
+    """Base of all results: text report, notebook display, JSON and data frame."""
 
     __slots__ = ()
     _KIND: ClassVar[str] = ""
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of this result."""
+        """Return the summary that a report page shows."""
         raise NotImplementedError
 
     def report(self, *, verbose: bool = False) -> str:
@@ -102,7 +102,7 @@ class Result:
         Parameters
         ----------
         verbose : bool
-            Whether to return everything. Default False: the answer.
+            Whether to return the complete report. Default False: only the answer.
         """
         raise NotImplementedError
 

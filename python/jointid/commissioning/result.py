@@ -25,9 +25,9 @@ class BenchRun:
         "initial", "cycle 1", …, "true parameters".
     recording : Recording
     controller : AdaptiveRobust, CompensatedPid or LugreObserver
-        With the parameters that it assumed.
+        The controller with the parameters that it assumed.
     tracking_error, peak_error : float
-        Root mean square and largest magnitude of position less reference, without the first sixth
+        Root mean square and largest magnitude of position minus reference, without the first sixth of the run
         [rad].
     """
 
@@ -45,15 +45,15 @@ class Commissioning(Result):
     Attributes
     ----------
     runs : tuple of BenchRun
-        The initial one, then one for each cycle that `agree` allowed, and whose estimate has no blocking finding.
+        The initial run, then one for each cycle that `agree` allowed and that has no blocking finding.
     estimates : tuple of Estimate
-        One for each cycle, each of all that was recorded until then; none when the joint was only recorded.
+        One for each cycle, from all recordings until then; empty when the joint was only recorded.
     truth : mapping of str to float
-        Of an emulated joint; empty otherwise.
+        True parameters of an emulated joint; empty otherwise.
     true_run : BenchRun or None
-        Of an emulated joint: with the true parameters.
+        Run of an emulated joint with the true parameters.
     without_ripple : Estimate or None
-        When the joint's model has ripple: the last estimate, had it none.
+        The last estimate without the model's ripple; None if the model has none.
     """
 
     runs: tuple[BenchRun, ...]
@@ -66,7 +66,7 @@ class Commissioning(Result):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the commissioning."""
+        """Return the summary that a report page shows."""
         from jointid.estimate.overview import made_by, quantity_of
 
         estimate = self.estimates[-1] if self.estimates else None
@@ -89,17 +89,17 @@ class Commissioning(Result):
 
     @property
     def blocked(self) -> Finding | None:
-        """The blocking finding of the last estimate, with which the joint was not moved; None without one."""
+        """The blocking finding that kept the joint from moving with the last estimate; None without one."""
         return None if not self.estimates else blocking(self.estimates[-1])
 
     @property
     def motion_warning(self) -> str:
-        """In what the bench differs from the one its motion was designed for; empty where it does not."""
+        """How the bench differs from the bench of the designed motion; empty if it does not."""
         return str(self.runs[0].recording.metadata.get("motion_warning", ""))
 
     @property
     def improvement(self) -> float:
-        """How many times smaller the tracking error of the last run is than that of the first."""
+        """Tracking error of the first run over that of the last run."""
         return self.runs[0].tracking_error / self.runs[-1].tracking_error
 
     def recordings(self) -> dict[str, Recording]:
@@ -135,9 +135,9 @@ class Commissioning(Result):
         Parameters
         ----------
         action : callable
-            Words the advice of a finding. Default: as at a Python prompt.
+            Returns the text of a finding's advice. Default: as at a Python prompt.
         verbose : bool
-            Changes nothing: the answer is everything.
+            Has no effect: this report is always complete.
         """
         del verbose
         return text_report(self, action)

@@ -41,44 +41,44 @@ def commission(
     callback: Callable[[str], object] | None = None,
     agree: Callable[[Estimate], bool] | None = None,
 ) -> Commissioning:
-    """Move the joint, identify it from that, and move it again with the estimate.
+    """Move the joint, identify it from the recording, and move it again with the estimate.
 
-    An estimate with a finding of severity "blocking" cannot be used: the joint is not moved with it, and the
-    commissioning ends there, see `Commissioning.blocked`.
+    If an estimate has a blocking finding, the joint does not move with it, and the commissioning ends; see
+    `Commissioning.blocked`.
 
     Parameters
     ----------
     bench : Bench
         Its joint holds the parameters assumed at first.
     cycles : int
-        Number of cycles: identify and run again. Default 2. 0: the joint is moved once and recorded, by any
-        controller.
+        Number of cycles of identification and motion. Default 2. With 0, the joint moves once and is recorded;
+        any controller may be used.
     emulate : bool
-        Move an emulated joint on a bus with virtual time; at the end once with the true parameters.
-        Default False: the real one.
+        Whether to move an emulated joint in virtual time, with a last run that uses the true parameters.
+        Default False: the real joint.
     seed : int
-        Of the emulated sensor's noise and of the search. Default 0.
+        Seed of the emulated sensor's noise and of the search. Default 0.
     threads : int
-        Of the search; 0 (default): all.
+        Threads of the search; 0 (default): all.
     output : path, optional
-        A folder, made if need be: recordings, frame logs and estimates go there.
+        Folder of recordings, frame logs and estimates; it is made if needed.
     observer : callable, optional
         As in `Session`.
     callback : callable, optional
         Called with a text before each step.
     agree : callable, optional
-        Asked before the joint moves with an estimate; False: it does not, and the commissioning ends there.
+        Called before the joint moves with an estimate; if it returns False, the commissioning ends.
 
     Raises
     ------
     InputError
         The controller uses no estimates, `cycles` is negative, or the bench cannot be emulated.
     SessionRefusedError, SessionStoppedError
-        As in `Session.run`; what was recorded until then is in the folder.
+        As in `Session.run`; the folder has all recordings until then.
     Exception
-        Whatever a session or a callable raises: with an attribute `recordings`, a dict of what was recorded
-        until then by the name of the run, e.g. "initial"; the last one may be incomplete; and an attribute `outcome`,
-        the `Commissioning` until then, for its report; None if nothing was recorded.
+        Any error of a session or a callable. Its attribute `recordings` maps each run's name, e.g. "initial", to
+        its recording; the last one may be incomplete. Its attribute `outcome` is the `Commissioning` until then, or
+        None if nothing was recorded.
     """
     if cycles < 0:
         raise InputError("at least 0 is expected", argument="cycles", value=cycles)

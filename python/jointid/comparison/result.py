@@ -64,7 +64,7 @@ class Comparison(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the comparison."""
+        """Return the summary that a report page shows."""
         from jointid.estimate.overview import made_by, settings_of
 
         left_out = self.settings["left_out"].items()

@@ -87,7 +87,7 @@ class Bootstrap(Result):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the bootstrap."""
+        """Return the summary that a report page shows."""
         return Overview(
             title="block bootstrap: errors of the values",
             answer=(self._drawn,),

@@ -205,7 +205,7 @@ class Causes(Result):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the causes."""
+        """Return the summary that a report page shows."""
         tried = self.excluded
         return Overview(
             title="causes of the misfit",

@@ -36,20 +36,20 @@ class Estimate(Questions, KeptResult):
     message : str
         How the search ended.
     penalty : float
-        Sum of squared window residuals, by the direct sum; with the gain by instruments of the torque's, the
-        reading replaced by the part that the motion explains.
+        Sum of squared window residuals. With ``gain="instruments"`` the residuals are those of the torque, and the
+        part that the motion explains replaces the sensor's reading.
     correlation : ndarray, shape (p, p)
-        Of the free parameters, in the order of `free`; offsets centred at the mean reading.
+        Correlation of the free parameters, in the order of `free`; offsets are centered at the mean reading.
     condition : float
         Condition number of the scaled regressor.
     weakest : tuple of str
         Parameters with a large share in the least determined direction.
     covariance : ndarray, shape (p, p)
-        Of the free parameters. Where nothing divides an offset from the difference of two directions' Coulomb
-        friction, the offset has an infinite variance and the others have theirs at a given offset.
+        Covariance of the free parameters. If the data cannot separate an offset from direction-dependent Coulomb
+        friction, the offset's variance is infinite, and the other variances hold for a fixed offset.
     information : ndarray, shape (p, p), or None
-        Inverse of the covariance, of chance alone; zero along a direction that the recordings do not determine.
-        None in an estimate that was saved before there was one.
+        Inverse of the covariance of random errors; zero along a direction that the recordings do not determine.
+        None in an estimate saved by an older version.
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
@@ -58,8 +58,8 @@ class Estimate(Questions, KeptResult):
         What the data and the fit show, the most severe first; `docs/findings.md` lists the codes.
     derived : mapping of str to DerivedValue
         Quantities that follow from the parameters, with standard errors: "breakaway" (coulomb + static),
-        "stribeck_velocity" (1/√stribeck); of asymmetric friction "coulomb_sum" and, with an offset,
-        "constant_positive" and "constant_negative", which are known even where the offset is not.
+        "stribeck_velocity" (1/√stribeck). Asymmetric friction adds "coulomb_sum" and, with an offset,
+        "constant_positive" and "constant_negative", which the data determine even if the offset is undetermined.
     warnings : tuple of Finding
         The findings of severity "warning" or "blocking".
     joint : Joint
@@ -69,19 +69,19 @@ class Estimate(Questions, KeptResult):
     seconds : float
         Wall time.
     delays : mapping of str to Delay
-        The constant delay of each signal against the position, as far as the data show it; a certain one
-        is taken away before the identification.
+        Constant delay of each signal against the position, if the data show one. A certain delay is removed
+        before the identification.
     within : mapping of str to float
-        By purpose of the verdict, how far off what it needs may be at most (95 %), as a share of it: "compensation",
-        friction in the recorded motion (or a fifth of the torque, where friction is less); "simulation", the torque;
-        "monitoring", by chance, the parameter that is known worst. What nothing is known of is missing.
+        Largest relative error (95 %) for each purpose of the verdict. "compensation": friction in the recorded motion,
+        or a fifth of the torque if friction is smaller. "simulation": the torque. "monitoring": the parameter with
+        the largest random error. A purpose without a known error is missing.
     slow_motion : SlowMotion or None
-        How the slowest windows disagree with the faster ones; None where that was not asked.
+        How the slowest windows disagree with the faster ones; None if this was not examined.
     selection : Selection or None
         How the model was chosen; None if it was named.
     cross_check : CrossCheck or None
-        The second look: the values of an independent plain least squares on the signals as recorded, and whether they
-        agree. None in an estimate of an older version.
+        Values of an independent least squares on the recorded signals, and whether they agree. None in an estimate
+        saved by an older version.
     follow_up : FollowUp or None
         Answers questions that need the recordings; None in an estimate that was read from a file.
 
@@ -146,7 +146,7 @@ class Estimate(Questions, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the estimate."""
+        """Return the summary that a report page shows."""
         from jointid.estimate.overview import overview_of
 
         return overview_of(self)
@@ -159,8 +159,8 @@ class Estimate(Questions, KeptResult):
         velocity : array_like, shape (n,)
             [rad/s or m/s]
         load : float
-            Torque that the drive transmits [N·m or N], for friction that depends on the load; its sign does not
-            matter. Default 0: friction without load, which is also what `windows.friction` shows.
+            Torque that the drive transmits [N·m or N], for load-dependent friction; its sign does not matter.
+            Default 0: friction without load, as in `windows.friction`.
 
         Returns
         -------
@@ -191,7 +191,7 @@ class Estimate(Questions, KeptResult):
         Parameters
         ----------
         recording : Recording
-            Of the same joint; it need not be one that the estimate was made from.
+            A recording of the same joint; it may be a new one.
 
         Returns
         -------
@@ -212,7 +212,7 @@ class Estimate(Questions, KeptResult):
         Parameters
         ----------
         verbose : bool
-            Everything: systematic errors, intervals, quality of the fit, each finding whole. Default False.
+            Whether to add systematic errors, intervals, the quality of the fit and complete findings. Default False.
         """
         if verbose:
             from jointid.estimate.tables import text_report
@@ -229,8 +229,8 @@ class Estimate(Questions, KeptResult):
         -------
         DataFrame
             Indexed by name, with the attributes of `ParameterEstimate`: value, stderr, systematic, the ends of
-            the interval (low, high), bounds (min, max), vary, at_bound, unit, meaning. What a derived quantity
-            does not have is missing.
+            the interval (low, high), bounds (min, max), vary, at_bound, unit, meaning. A derived
+            quantity lacks some of them.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What a page needs to know of an estimate: its values, how they were found, and with which settings."""
+"""Return the summary that a report page shows."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jointid.estimate.verdict import judged
 
 
 def overview_of(estimate: EstimateRecord) -> Overview:
-    """Return what a page needs to know of an estimate."""
+    """Return the report page's summary of an estimate."""
     return Overview(
         title=f"{subject(estimate)}: friction",
         footer=made_by(estimate.settings),

@@ -108,7 +108,7 @@ class Rollout(Result):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the rollout."""
+        """Return the summary that a report page shows."""
         runs = len(self.runs)
         return Overview(
             title=f"rollout of {runs} run{'s' * (runs != 1)}",

@@ -94,7 +94,7 @@ class SelfTest(Result):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the self-test."""
+        """Return the summary that a report page shows."""
         return Overview(
             title=f"self-test: {self.trials} trials",
             answer=(self.verdict,),

@@ -74,7 +74,7 @@ class Design(DesignFields, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the design."""
+        """Return the summary that a report page shows."""
         from jointid.excitation.overview import overview_of
 
         return overview_of(self)

@@ -1,4 +1,4 @@
-"""What a page needs to know of a design."""
+"""Summary of a design for a report page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SETTINGS = ("criterion", "joints", "evaluations", "seed", "control_period")
 
 
 def overview_of(design: DesignFields) -> Overview:
-    """Return what a page needs to know of a design."""
+    """Return the report page's summary of a design."""
     level, *said = _answer(design)
     return Overview(
         title=f"{design.joint.name or 'joint'}: motion of {design.duration:g} s",

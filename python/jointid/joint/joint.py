@@ -50,7 +50,7 @@ class Joint(JointFields):
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     inertia : float, optional
-        Of the drive alone, at the output [kg·m²]. Default: from `rotor_inertia`; without it, identified.
+        Inertia of the drive alone, at the output [kg·m²]. Default: from `rotor_inertia`; without it, identified.
         Without a torque sensor the identified inertia contains the link's.
     rotor_inertia : float, optional
         Motor side [kg·m²].
@@ -59,11 +59,11 @@ class Joint(JointFields):
     torque_constant : float, optional
         Motor side [N·m/A].
     torque_hold : {"zoh", "linear"}, optional
-        Torque between samples: held, or linearly interpolated. Default: not known.
+        Torque between samples: held ("zoh") or linearly interpolated ("linear"). Default: not known.
     sensor : bool
         Whether the joint has a torque sensor. Default False.
     model : Model, str or mapping
-        Known terms of the torque balance; as text, e.g. ``"stribeck:ripple=2"``. Default: no field stated.
+        Known terms of the torque balance; as text, e.g. ``"stribeck:ripple=2"``. Default: none.
     torque_offset : bool, optional
         Whether the torque has a constant offset. Default: only without a sensor.
     link : Link, optional
@@ -73,11 +73,11 @@ class Joint(JointFields):
     limits : Limits
         Default: none known.
     tolerances : Tolerances or mapping
-        How well the given facts are known, e.g. ``{"torque_constant": "5 %"}``; `identify` shows what they
-        mean for each parameter. Default: none stated.
+        Tolerances of the facts above, e.g. ``{"torque_constant": "5 %"}``; `identify` shows their effect on each
+        parameter. Default: none.
     voltage : VoltageDrive, optional
-        A servo without a torque signal: its motor is on a voltage that a duty divides. Default: the drive's input
-        is a torque.
+        For a servo without a torque signal: the motor's voltage is duty times supply. Default: the drive's input is
+        a torque.
 
     Raises
     ------

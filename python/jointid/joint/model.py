@@ -35,44 +35,44 @@ _LISTS = ("ripple", "harmonics", "per_recording")
 class Model:
     """The terms of a joint's torque balance; a field that is None is not stated.
 
-    A field that a call's model does not state is taken from the joint's model, and else has its default.
-    As text, a model is its name and then its options, each after a colon:
+    If a call's model leaves a field at None, the joint's model gives it; if that leaves it at None too, the default
+    applies. As text, a model is its name, then its options, each after a colon:
     ``"stribeck:asymmetric:ripple=2,4"``, ``":gravity=free"``.
 
     Parameters
     ----------
     name : str, optional
-        Of the friction model: "coulomb_viscous", "stribeck", "stribeck_general" (with a free exponent),
-        "smooth_coulomb_viscous" (Coulomb friction rises with the speed, as a hyperbolic tangent), or
-        "auto" (default): `identify` chooses between the first two by the torque that they predict. What
-        needs a model before there are recordings, as a simulation, takes "coulomb_viscous" by default.
+        Friction model: "coulomb_viscous", "stribeck", "stribeck_general" (with a free exponent),
+        "smooth_coulomb_viscous" (Coulomb friction as a hyperbolic tangent of the velocity), or "auto" (default).
+        With "auto", `identify` chooses between the first two by the torque that they predict. A simulation has no
+        recording to choose by and takes "coulomb_viscous".
     gravity : {"none", "known", "free"}, optional
-        Torque of gravity that loads the drive and not the sensor: none, computed from the joint's link, or
-        identified. Default: none; where `identify` chooses the name, it also chooses between none and
-        free, if the joint is revolute and has neither sensor nor link, harmonics of order 1 or own terms that
-        are torques.
+        Gravity torque that loads the drive and not the sensor: none, computed from the joint's link ("known"), or
+        identified ("free"). Default: none. If `identify` chooses the friction model, it also chooses between none
+        and free for a revolute joint that has no sensor, link, harmonic of order 1 or own torque term.
     asymmetric : bool, optional
         Whether friction differs between the two directions. Default False.
     ripple : collection of float, optional
-        Orders of a torque that is periodic in the motor's angle, e.g. (2,) for a strain-wave gear; each
-        has a sine and a cosine coefficient [N·m]; a single order may be a number. Default none.
+        Orders of a torque that is periodic in the motor's angle, e.g. (2,) for a strain-wave gear. Each order has
+        a sine and a cosine coefficient [N·m]. A single order may be a number. Default none.
     harmonics : collection of float, optional
         Orders of a torque that is periodic in the joint's angle. Default none.
     load_friction : bool or {"drive", "link"}, optional
-        Whether friction grows in proportion to a load: to the magnitude of the drive's torque ("drive"), or
-        of the torque behind the gear ("link"), which a sensor or gravity gives. True: whichever of the two fits
-        better. Default False.
+        Whether friction grows with the load: with the magnitude of the drive's torque ("drive") or of the torque
+        behind the gear ("link"), known from a sensor or from gravity. True: the one that fits better.
+        Default False.
     per_recording : collection of str, optional
         Coefficients with a separate value for each of several recordings, e.g. ("torque_offset",).
         Default none.
     terms : mapping of str to str, optional
-        Own terms: name of an extra signal s → how it enters, several ways joined by ``+``. "viscous": a
-        coefficient times s. "coulomb": times the sign of s. "coupling": times the rate of s. "known": s is a
-        torque. "scaled": the same with a free gain. "inertia": s is an inertia J with the torque J a;
-        "inertia_own": J a + J' v²/2, for J over the joint's own position; "inertia_others": J a + (dJ/dt) v,
-        for J over other joints'; "scaled_inertia": J a with a free gain. "inertia_over" and "torque_over":
-        identified functions of the angle s, or of ``position``, centred in its range. ``@rate`` behind a
-        kind: its rate instead of s. Default none. See docs/own_terms.md.
+        Own terms: name of an extra signal s → kind of term; ``+`` joins several kinds.
+        "viscous", "coulomb", "coupling": a coefficient times s, the sign of s, or the rate of s.
+        "known": s is a torque. "scaled": s is a torque with a free gain.
+        "inertia": s is an inertia J with the torque J a. "scaled_inertia": J a with a free gain.
+        "inertia_own": J a + J' v²/2, if J depends on the joint's own position.
+        "inertia_others": J a + (dJ/dt) v, if J depends on other joints' positions.
+        "inertia_over", "torque_over": identified functions of the angle s, or of ``position``, centered in its range.
+        ``@rate`` after a kind uses the rate of s instead of s. Default none. See docs/own_terms.md.
 
     Raises
     ------
@@ -157,7 +157,7 @@ class Model:
         Raises
         ------
         InputError
-            No text, an unknown option, or an option that is given twice.
+            Not text, an unknown option, or a repeated option.
         """
         if not isinstance(text, str):
             raise InputError(
@@ -218,7 +218,7 @@ class Model:
 
     @property
     def resolved(self) -> ResolvedModel:
-        """All fields, those that are not stated with their defaults; "auto" has the default name."""
+        """Return all fields; unset fields have their defaults, and "auto" has the default name."""
         return _resolved(self)
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -63,21 +63,21 @@ class PositionLoop:
 class VoltageDrive:
     """A motor on a voltage: torque = (k_t / R) · duty · supply - (k_t² / R) · velocity, at the output.
 
-    k_t is the joint's `torque_constant` times its gear ratio. What is not given is identified.
+    k_t is the joint's `torque_constant` times its gear ratio. Unknown constants are identified.
 
     Parameters
     ----------
     resistance : float, optional
-        Of the winding [Ω]. Default: identified, if a recording has stretches without drive.
+        Resistance of the winding [Ω]. Default: identified, if a recording has stretches without drive.
     supply : float, optional
-        [V]. Default: the recording's signal "supply".
+        Supply voltage [V]. Default: the recording's signal "supply".
     duty_scale : float
         Duty per unit of the logged signal "duty", e.g. 1/885. Default 1.
     position_loop : PositionLoop or mapping, optional
-        It gives the duty where none is logged, and closes the loop in a rollout. Default: not known.
+        Computes the duty if none is logged, and closes the loop in a rollout. Default: not known.
     signals : mapping of str to str
         Which columns hold the extra signals "duty", "supply", "driven" (0 where the motor turns freely) and "gain".
-        Default: none; the command line then takes columns of these names, as far as there are any.
+        Default: none; the command line then uses columns with these names.
 
     Raises
     ------

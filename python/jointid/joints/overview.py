@@ -1,4 +1,4 @@
-"""What a page needs to know of several joints: each joint's values, and each joint's estimate inside."""
+"""Return the summary that a report page shows."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jointid.joints.tables import model_of, notes, shown_parameters
 
 
 def overview_of(result: JointEstimatesRecord) -> Overview:
-    """Return what a page needs to know of several joints."""
+    """Return the report page's summary of several joints."""
     shown = shown_parameters(result)
     joints = result.results
     return Overview(

@@ -38,7 +38,7 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the joints."""
+        """Return the summary that a report page shows."""
         from jointid.joints.overview import overview_of
 
         return overview_of(self)

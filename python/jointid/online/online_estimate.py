@@ -75,7 +75,7 @@ class OnlineEstimate(Result):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the estimate."""
+        """Return the summary that a report page shows."""
         from jointid.estimate.overview import quantity_of
 
         unknown = ", ".join(self.undetermined)

@@ -37,11 +37,10 @@ class Recording(Parts):
     position : array_like, shape (n,)
         Joint angle [rad] or travel [m].
     velocity : array_like, shape (n,), optional
-        [rad/s] or [m/s]. Default: derived from position (`velocity_derived` is then True), never
-        across a gap: by second-order differences on the true time stamps, or, where these are too
-        noisy, by cubics over 5 to 101 samples, as many at each sample as the noise asks for and
-        the motion allows. A single sample between two gaps has no difference to take and gets 0;
-        no window includes it.
+        [rad/s] or [m/s]. Default: derived from the position, never across a gap (`velocity_derived` is then
+        True). The derivative is a second-order difference on the true time stamps. If the noise is too large for
+        it, local cubics over 5 to 101 samples replace it; noise and motion set their length at each sample.
+        A single sample between two gaps gets 0; no window includes it.
     torque : array_like, shape (n,), optional
         Torque of the actuator at the output, commanded or from the motor [N·m], or force [N].
     sensor : array_like, shape (n,), optional
@@ -57,17 +56,17 @@ class Recording(Parts):
     current : array_like, shape (n,), optional
         Motor current [A].
     late : array_like, shape (n,), optional
-        Cycles of a session that have no sample between the row before and this one, and half a cycle for a
-        command that was not confirmed; identification leaves such intervals out. Default: 0 throughout.
+        Session cycles without a sample between the row before and this row; 0.5 for a command that was not
+        confirmed. Identification leaves these intervals out. Default: 0 throughout.
     extra : mapping of str to array_like, each of shape (n,), optional
-        Further signals by names of your own, e.g. another joint's rate or the torque of a model;
-        ``Model.terms`` says how they enter. Linear between samples. Default: none.
+        More signals under your own names, e.g. another joint's velocity or the torque of a model.
+        ``Model.terms`` says how they enter. They are linear between samples. Default: none.
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
-        How the torque varies between samples: held ("zoh"), or linearly. Default: not known.
+        Torque between samples: held ("zoh") or linear ("linear"). Default: not known.
     velocity_derived : bool
-        Whether the given velocity was derived from position. Default False.
+        Whether `velocity` was derived from the position. Default False.
     name : str
         Default ``""``.
     metadata : mapping of str to JSON value, optional
@@ -78,8 +77,8 @@ class Recording(Parts):
     Raises
     ------
     InputError
-        A signal is not one-dimensional, not finite, of another length or too short; time does not
-        strictly increase; an option has no such value.
+        A signal is not one-dimensional, not finite, too short or of another length; time does not
+        strictly increase; or an option has an unknown value.
 
     Examples
     --------
@@ -158,8 +157,8 @@ class Recording(Parts):
         Parameters
         ----------
         df : DataFrame
-            Anything with `columns` and `df[column]`; headers are read as `load` reads a file's. Its index is a column,
-            too, if it has a name ("time_s"), or holds dates or durations.
+            Anything with `columns` and `df[column]`. Headers have the same meaning as in a file. The index counts as
+            a column if it has a name ("time_s"), or holds dates or durations.
         columns, units, scale, extra, gear_ratio, side, sample_period, kind, torque_hold
             As in `load`.
 
@@ -197,12 +196,12 @@ class Recording(Parts):
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
         """Return the recording on a uniform clock.
 
-        `identify` does not need this: it uses the time stamps as they are, and interpolation
-        correlates the noise. It is for methods that need equal steps: spectra, filters, other tools.
+        `identify` does not need this: it uses the recorded time stamps, and interpolation correlates the noise.
+        Use it for methods that need equal steps, such as spectra and filters.
 
-        Each gap-free stretch begins at its own first sample and is interpolated linearly, a held
-        torque (``torque_hold="zoh"``: torque, motor_torque and current) by its last value; gaps
-        stay gaps. Nothing is filtered: below the rate of the recording, noise folds back.
+        Each gap-free stretch begins at its own first sample. Signals are interpolated linearly; a held torque
+        (``torque_hold="zoh"``: torque, motor_torque and current) keeps its last value. Gaps stay gaps.
+        Nothing is filtered: at a lower rate, noise aliases.
 
         Parameters
         ----------
@@ -214,14 +213,14 @@ class Recording(Parts):
         Returns
         -------
         Recording
-            Derived velocities are interpolated like given ones and stay marked as derived;
+            Derived velocities are interpolated like recorded ones and stay marked as derived.
             ``metadata["resampled_from"]`` is the former median period [s].
 
         Raises
         ------
         InputError
-            Neither or both are given, one is not positive, too few or too many samples would
-            result, or a gap would no longer be recognised.
+            Not exactly one of `period` and `rate`, a value that is not positive, too few or too many samples
+            in the result, or a gap that would no longer be recognised.
         """
         from jointid.recording.resampling import resampled
 
@@ -237,8 +236,8 @@ class Recording(Parts):
         Returns
         -------
         DataFrame
-            The signals by name, the extra ones by ``"extra_NAME"``; indexed by time [s]. Its `attrs` hold what
-            is no column: the joint's kind, how torque is held, metadata.
+            The signals by name, the extra ones by ``"extra_NAME"``; indexed by time [s]. Its `attrs` hold
+            the joint's kind, `torque_hold` and the metadata.
 
         Raises
         ------

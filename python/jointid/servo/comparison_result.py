@@ -60,7 +60,7 @@ class ServoComparison(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the comparison."""
+        """Return the summary that a report page shows."""
         return Overview(
             title=f"{self.estimate.joint.name or 'servo'}: {len(self.models)} models compared",
             answer=(

@@ -68,7 +68,7 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the servo."""
+        """Return the summary that a report page shows."""
         from jointid.servo.overview import overview_of
 
         return overview_of(self)

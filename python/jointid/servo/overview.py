@@ -1,4 +1,4 @@
-"""What a page needs to know of a servo's estimate."""
+"""Summary of a servo's estimate for a report page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _OF_RUNS = ("runs", "moving", "windows")
 
 
 def overview_of(estimate: ServoEstimateRecord) -> Overview:
-    """Return what a page needs to know of a servo's estimate."""
+    """Return the report page's summary of a servo's estimate."""
     named = (*SETTINGS.optional, *SETTINGS.fields)
     return Overview(
         title=f"{estimate.joint.name or 'servo'}: motor and friction",

@@ -1,4 +1,4 @@
-"""What a page needs to know of a study: how often the truth was found, or what moves most."""
+"""Return the summary that a report page shows."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _DEFAULTS = ("None", "False", "Model", "")
 def overview_of(
     title: str, summary: Summary, settings: Mapping[str, Any], seeds: range, missing: int
 ) -> Overview:
-    """Return what a page needs to know of a study with this title, summary and so many missing trials."""
+    """Return the report page's summary of a study with this title, summary and so many missing trials."""
     shown = summary.best(SHOWN).cells
     names = varying(shown)
     unfinished = f"The study is not finished: {_trials(missing)} missing."

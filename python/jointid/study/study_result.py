@@ -147,7 +147,7 @@ class Study(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the study."""
+        """Return the summary that a report page shows."""
         from jointid.study.overview import overview_of
 
         seeds = range(self.seed, self.seed + max(self.trials, 1))

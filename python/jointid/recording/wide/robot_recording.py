@@ -32,7 +32,7 @@ from jointid.recording.wide.robot_signals import (
 class RobotRecording(RobotSamples, Mapping[str, Recording]):
     """The signals of several joints on one clock, read-only; a mapping from a joint's name to its recording.
 
-    Arrays have one row a sample and one column a joint. A column of NaN says that this joint has no such signal.
+    Arrays have one row per sample and one column per joint. If a joint lacks a signal, its column is NaN.
 
     Parameters
     ----------
@@ -41,26 +41,26 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
     position : array_like, shape (n, joints)
         [rad], or [m] with ``kind="prismatic"``.
     velocity : array_like, shape (n, joints), optional
-        [rad/s] or [m/s]. Default: of each joint derived from its position, as by `Recording`.
+        [rad/s] or [m/s]. Default: derived from the positions, as by `Recording`.
     torque : array_like, shape (n, joints), optional
-        Torque of the actuators [N·m], on the side that `side` says.
+        Torque of the actuators [N·m], on the side of the gear that `side` names.
     motor_torque, current, sensor, reference, link_position, temperature : array_like, shape (n, joints), optional
-        As in `Recording`; the reference is on the side that `side` says.
+        As in `Recording`; the reference is on the side of the gear that `side` names.
     side : {"joint", "motor"}
-        Side of the gear on which position, velocity and torque are. Default ``"joint"``.
+        Side of the gear of position, velocity and torque. Default ``"joint"``.
     gear_ratio : sequence of float, optional
-        Motor's angle per angle of the joint, one a joint, negative if they turn in opposite directions. With it
-        each joint's recording is at the joint. Default: not known.
+        Motor angle per joint angle, one value per joint, negative if they turn in opposite directions. With it,
+        each joint's recording is on the joint side. Default: not known.
     names : sequence of str, optional
         Names of the joints. Default: "1", "2", ...
     extra : mapping of str to array_like, shape (n,) or (n, joints), optional
         Other signals by name. Default: none.
     kind : {"revolute", "prismatic"}
-        Of all joints. Default ``"revolute"``.
+        Kind of all joints. Default ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
         As in `Recording`. Default: not known.
     velocity_derived : bool
-        Whether the given velocity was derived from the position. Default False.
+        Whether `velocity` was derived from the position. Default False.
     name : str
         Default ``""``.
     metadata : mapping of str to JSON value, optional
@@ -69,8 +69,8 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
     Raises
     ------
     InputError
-        A signal has another shape, is not finite, or time does not strictly increase; two joints have one name;
-        an option has no such value.
+        A signal has another shape or is not finite; time does not strictly increase; two joints have the same name;
+        or an option has an unknown value.
 
     Examples
     --------
@@ -150,7 +150,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         Returns
         -------
         Recording
-            Values of a motor without a known gear ratio stay what they are; ``metadata["side"]`` is then "motor".
+            Without a known gear ratio, motor-side values stay on the motor side; ``metadata["side"]`` is "motor".
 
         Raises
         ------
@@ -195,7 +195,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return tuple(self.joint(name) for name in self.names)
 
     def select(self, joints: Iterable[str | int]) -> Self:
-        """Return the recording of some of the joints, in the order given: ``metadata["joints_listed"]`` says so.
+        """Return the recording of these joints, in this order; sets ``metadata["joints_listed"]``.
 
         Raises
         ------
@@ -236,8 +236,9 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         Parameters
         ----------
         torque_constants : sequence of float
-            Of the motors [N·m/A], one a joint, negative where a positive current turns the joint back. At the joint
-            they are multiplied by the gear ratios; without gear ratios they are the joints'.
+            Torque constants of the motors [N·m/A], one value per joint, negative if a positive current turns the
+            joint backward. Gear ratios multiply them on the joint side; without gear ratios they are joint-side
+            constants.
 
         Raises
         ------
@@ -256,7 +257,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the recording to a file (.npz, .csv, .csv.gz), whole or not at all.
 
-        ``load(path, joints="all")`` returns an equal recording, bit for bit; ``load(path, joint=...)`` one joint of it.
+        ``load(path, joints="all")`` returns an equal recording, bit for bit; ``load(path, joint=...)`` one joint.
 
         Raises
         ------

@@ -53,7 +53,7 @@ class RobotComparison(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the comparison."""
+        """Return the summary that a report page shows."""
         from jointid.robot.result.overview import made_by
 
         left_out = self._left_out.items()

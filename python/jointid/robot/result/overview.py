@@ -1,4 +1,4 @@
-"""What a page needs to know of a robot's estimate."""
+"""Summary of a robot's estimate for a report page."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jointid.robot.result.verdict import judged_robot
 
 
 def overview_of(estimate: RobotEstimateRecord) -> Overview:
-    """Return what a page needs to know of a robot's estimate."""
+    """Return the report page's summary of a robot's estimate."""
     runs = recordings_of(estimate)
     return Overview(
         title=f"{estimate.robot.name or 'robot'}: friction of {len(estimate.joints)} joints",

@@ -69,7 +69,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """What a page needs to know of the robot."""
+        """Return the summary that a report page shows."""
         from jointid.robot.result.overview import overview_of
 
         return overview_of(self)
