@@ -28,28 +28,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bench:
-    """All that a session needs but the bus itself.
+    """Everything that a session needs, except the open bus.
 
     Attributes
     ----------
     joint : Joint
-        Its parameters' values are those that the controller assumes at first.
+        Its parameter values are the controller's initial assumptions.
     controller : AdaptiveRobust, CompensatedPid, LugreObserver, …
-        With the joint's values, where it uses estimates.
+        Controller of the session; it has the joint's values if it uses estimates.
     trajectory : Trajectory
     drive : object
-        Options of the drive, of its type's own kind.
+        Options of the drive, as its drive type defines them.
     limits : SessionLimits
     options : SessionOptions
     bus : BusOptions
     real_time : RealTimeOptions
     emulation : Emulation or None
-        What an emulated drive moves.
+        The joint that an emulated drive moves.
     drive_type : str
-        Name of the drive's type, see `DriveType`. Default: that of a joint file that names none.
+        Name of the drive's type, see `DriveType`. Default: the type of a joint file without a name.
     first_motion : FirstMotionOptions
     designed_for : DesignedFor or None
-        What the trajectory was designed for, where a file says it. Default None.
+        Joint of the designed trajectory, if its file names one. Default None.
     """
 
     joint: Joint
@@ -67,7 +67,7 @@ class Bench:
 
     @property
     def motion_warning(self) -> str:
-        """In what this bench differs from the one its motion was designed for; empty where it does not."""
+        """How this bench differs from the bench of its designed motion; empty if it does not."""
         if self.designed_for is None:
             return ""
         return self.designed_for.warning(
@@ -76,7 +76,7 @@ class Bench:
 
     @property
     def address(self) -> str:
-        """Where the real drive is, e.g. "socketcan can0, node 127"."""
+        """Address of the real drive, e.g. "socketcan can0, node 127"."""
         return drive_type(self.drive_type).address(self)
 
     @classmethod
@@ -86,7 +86,7 @@ class Bench:
         Raises
         ------
         InputError
-            Names file, table and key.
+            A value that cannot be used; the error names file, table and key.
 
         Examples
         --------
@@ -100,14 +100,14 @@ class Bench:
 
 
 class DriveType(DriveFormat):
-    """The adapter of a make of drive; a subclass, registered by an entry point, is all that a drive needs.
+    """Adapter of a make of drive. A new drive needs a subclass and an entry point.
 
-    Only `options`, `open` and `emulate` must be written; `tests/third_party_drive` is an example.
+    A subclass must define `options`, `open` and `emulate`; `tests/third_party_drive` is an example.
 
     Attributes
     ----------
     tables : tuple of str
-        Tables under `[session]` that `options` reads besides `[session.drive]`. Default: none.
+        More tables under `[session]` that `options` reads, in addition to `[session.drive]`. Default: none.
 
     Examples
     --------
@@ -128,17 +128,17 @@ class DriveType(DriveFormat):
         raise NotImplementedError
 
     def address(self, bench: Bench) -> str:
-        """Return where the real drive is, shown before a joint moves. Default: its options."""
+        """Return the address of the real drive, shown before a joint moves. Default: its options."""
         return str(bench.drive)
 
     def emulate(self, bench: Bench, seed: int) -> AbstractContextManager[Drive]:
-        """Return a context manager that yields an emulated drive on virtual time.
+        """Return a context manager that yields an emulated drive in virtual time.
 
         Parameters
         ----------
         bench : Bench
         seed : int
-            Of the emulated noise.
+            Seed of the emulated noise.
 
         Raises
         ------
@@ -164,7 +164,7 @@ def drive_type(name: str) -> DriveType:
     Raises
     ------
     InputError
-        No text, no such type, several packages that register it, one that registers a built-in name, or an
-        entry point that cannot be used: `__cause__` is what its package raised.
+        Not text, an unknown type, a type of several packages, a package that registers a built-in name, or an entry
+        point that cannot be used; `__cause__` is the package's error.
     """
     return adapter_of(name, DriveType)

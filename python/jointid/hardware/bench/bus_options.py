@@ -18,11 +18,11 @@ class BusOptions:
     channel : str
         Default "can0".
     bitrate : int
-        [bit/s]; with socketcan it is set with the interface, not here. Default 500 000.
+        Bit rate [bit/s]; for socketcan, set it with the interface. Default 500 000.
     fd : bool
-        Frames of CAN FD may be sent and received. Default False.
+        Whether to allow CAN FD frames. Default False.
     data_bitrate : int, optional
-        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
+        Bit rate of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
     """
 
     interface: str = "socketcan"

@@ -22,7 +22,7 @@ _BUILT_IN = {"elmo": "jointid.hardware.elmo.drive_type:ElmoType"}
 
 
 def drive_type_names() -> tuple[str, ...]:
-    """Return the names of all drive types that are built in or installed."""
+    """Return the names of all built-in and installed drive types."""
     return tuple(sorted({*_BUILT_IN, *entry_points(group=ENTRY_POINTS).names}))
 
 

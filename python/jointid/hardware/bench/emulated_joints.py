@@ -19,7 +19,7 @@ def true_joint(bench: Bench, *, gear_ratio: float | None = None) -> Joint:
     ----------
     bench : Bench
     gear_ratio : float, optional
-        The true one, where the joint file's is wrong. Default: the joint file's.
+        True gear ratio, if the joint file's is wrong. Default: the joint file's.
 
     Raises
     ------
@@ -38,20 +38,20 @@ def emulated_joint(
     sensor_sign: float = 1.0,
     unlimited: bool = False,
 ) -> _core.SteppedJoint:
-    """Return the simulated joint that an emulated drive of this bench moves, at its first position.
+    """Return the simulated joint of this bench's emulated drive, at its initial position.
 
     Parameters
     ----------
     bench : Bench
     seed : int
-        Of the torque sensor's noise. Default 0.
+        Seed of the torque sensor's noise. Default 0.
     gear_ratio : float, optional
-        The true one, where the joint file's is wrong. Default: the joint file's.
+        True gear ratio, if the joint file's is wrong. Default: the joint file's.
     sensor_sign : float
-        -1: the torque sensor is connected the wrong way round. Default 1.
+        -1 for a torque sensor with inverted wiring. Default 1.
     unlimited : bool
-        The joint file's torque limit does not hold for the true torque: the drive limits its current, and what
-        torque this gives the joint file does not know. Default False.
+        Whether the true torque may exceed the joint file's torque limit, as with a drive that limits only its current.
+        Default False.
 
     Raises
     ------

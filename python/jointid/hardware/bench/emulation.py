@@ -14,21 +14,21 @@ from jointid.joint.joint import Joint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Emulation:
-    """The true values of an emulated bench; a session does not know them.
+    """True values of an emulated bench; the session does not use them.
 
     Attributes
     ----------
     truth : mapping of str to float
-        Values of the joint's parameters, by name [SI]. With "ripple_sin_2" and "ripple_cos_2" the gear
-        itself ripples, if the joint's model has this order; without, it does not.
+        True parameter values by name, in SI units. The gear has torque ripple only with entries such as
+        "ripple_sin_2" and "ripple_cos_2", and only in orders of the joint's model.
     sensors : Sensors
-        Noise, ripple and the rest of the torque sensor. Encoder and converter are the drive's.
+        Noise, ripple and other errors of the torque sensor. Encoder and converter belong to the drive.
     integration_step : float
-        Of the joint, at most [s].
+        Largest integration step of the joint [s].
     position : float
-        Angle of the joint at first [rad].
+        Initial angle of the joint [rad].
     drive : object, optional
-        Options of the emulated drive, of its type's own kind. Default: the type's default.
+        Options of the emulated drive, as its drive type defines them. Default: the type's default.
     """
 
     truth: Mapping[str, float]

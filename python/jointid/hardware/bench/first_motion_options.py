@@ -18,44 +18,44 @@ class FirstMotionOptions:
     Attributes
     ----------
     largest_torque : float, optional
-        The cap, by the joint file's constants [N·m]: without motion, the torque ends there. Default: five
-        times the breakaway that the joint file states, twice where there is no torque sensor to watch, and never more
-        than the session's torque limit. Required where there is neither a stated breakaway nor a sensor to watch.
+        Largest torque [N·m], by the joint file's constants. Default: five times the breakaway torque of the joint file,
+        or twice without a torque sensor to watch, but at most the session's torque limit. Required if the joint file
+        has no breakaway torque and no sensor is watched.
     compare_friction : bool
-        The joint file states the joint's friction within a factor of 1.5, and the measured breakaway is held
-        against it. False where its values are only guesses. Default True.
+        Whether to compare the measured breakaway torque with the joint file's friction, within a factor of 1.5.
+        Use False if the file's values are guesses. Default True.
     watch_sensor : bool
-        A torque sensor that leaves its reading at rest while the encoder stands ends the search for motion.
+        Whether a change of the torque sensor's reading ends the search for motion while the encoder stands still.
         Default True.
     hand_turn : float, optional
-        Time to wait, motor off, until somebody has turned the joint by hand and the encoder has counted [s]. Default:
-        nobody is awaited; without a sensor to watch, an encoder that hangs then shows only at the cap.
+        Longest wait, motor off, until the joint is turned by hand and the encoder counts [s]. Default: no wait; without
+        a sensor to watch, a stuck encoder then shows only at the largest torque.
     counts : int, optional
-        Encoder counts that are a motion, beside `more_counts`. Default: 5; fewer where both together would be
-        more than 0.1°, but 2 at least.
+        Encoder counts that show a motion, together with `more_counts`. Default: 5, or fewer if both together exceed
+        0.1°, but at least 2.
     more_counts : int, optional
-        Counts that must follow while the torque is held; without them it was the gear winding up. Default: 10; fewer
-        as of `counts`.
+        Counts that must follow while the torque is constant; without them the gear only winds up. Default: 10, or
+        fewer as for `counts`.
     growth_time : float
-        In which the torque grows by a factor of e [s]: a constant share of the torque in each cycle, so that a
-        weak joint is approached as carefully as a strong one. Default 2.
+        Time in which the torque grows by a factor of e [s], so that the search is equally careful on weak and strong
+        joints. Default 2.
     travel : float, optional
-        Farthest from the start, by the joint file's gear ratio [rad]; beyond, the motor goes off. Default: 0.4°, or 40
-        encoder counts where that is more.
+        Largest distance from the start, by the joint file's gear ratio [rad]; beyond it the motor goes off. Default:
+        0.4° or 40 encoder counts, whichever is larger.
     velocity : float
-        Highest speed [rad/s]; beyond, the motor goes off. Default 0.5.
+        Highest speed [rad/s]; beyond it the motor goes off. Default 0.5.
     still_time : float
-        That the joint must stand before it is moved, motor off and on [s]. Default 0.5.
+        Time at rest before a motion, with the motor off and on [s]. Default 0.5.
     moves : tuple of float, optional
-        Amplitudes of the small motions under control, each after the one before has succeeded [rad].
-        Default: 0.1°, 0.2° and 0.3°, or a third, two thirds and all of 20 encoder counts where that is more.
+        Amplitudes of the small controlled motions, in order [rad]. Default: 0.1°, 0.2° and 0.3°, or 1/3, 2/3 and all
+        of 20 encoder counts if that is more.
     longest : float
-        Time that the motor may be on [s]. Default 55.
+        Longest time with the motor on [s]. Default 55.
 
     Raises
     ------
     InputError
-        A value is of a wrong kind, or not within its range.
+        A value of the wrong kind or outside its range.
     """
 
     largest_torque: float | None = None

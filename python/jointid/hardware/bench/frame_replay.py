@@ -39,47 +39,45 @@ def replay(
     stamped: bool | None = None,
     trajectory: Trajectory | None = None,
 ) -> Recording:
-    """Return what the frames of a session hold, by the same decoder that the session used.
+    """Decode the frames of a session into a recording.
 
-    With the session's own options it is the session's recording to within the log's rounding (1 ns).
-    Other options may be tried: the scaling of a sensor, or a position offset that was wrong.
+    The decoder is that of the session: with the session's options, the result equals the session's recording to
+    within the log's rounding (1 ns). Use other options to correct a sensor's scale or a position offset.
 
     Parameters
     ----------
     log : path-like
-        The session's ``.log``, or one of another program's: candump's, ``.asc`` or ``.blf``; from
-        before the first motion until the end.
+        The session's ``.log``, or a log of candump, ``.asc`` or ``.blf``; from before the first motion until the end.
     joint : Joint
-        With torque constant, if the drive is commanded by current.
+        Its torque constant is needed if the commands are currents.
     options : object, optional
-        Options of the drive, of its type's own kind. Default: those that the recording names.
+        Options of the drive, as its drive type defines them. Default: those in the recording.
     drive : str, optional
-        Name of the drive's type. Default: the one that the recording names; if it names none, the
-        type of joint files that name none.
+        Name of the drive's type. Default: the recording's; without one, the default type of a joint file.
     recording : path-like or Recording, optional
-        The session's, complete or truncated: it holds period, reference, which cycles are the run, and
-        how samples are stamped. Default: the ``.csv`` beside the log; none if there is none.
+        The session's recording, complete or truncated: it has the period, the reference, the cycles of the run, and
+        the kind of time stamps. Default: the ``.csv`` with the log's name, if it exists.
     period : float, optional
-        Of the session [s]. Default: the recording's.
+        Period of the session [s]. Default: the recording's.
     cycles_before : int, optional
-        Cycles that were commanded before the run. Default: those behind which the frames have the positions of
-        the recording; without one 0, and the way to the start is in what is returned.
+        Control cycles before the run. Default: found by comparison with the recording's positions; without a
+        recording 0, and the result includes the motion to the start.
     stamped : bool, optional
-        Frames bear the time of their arrival to the microsecond, as SocketCAN's do. Default: the
-        recording's; without one True.
+        Whether frames have arrival times in microseconds, as with SocketCAN. Default: as in the recording; without
+        one True.
     trajectory : Trajectory, optional
-        Gives the reference. Default: the recording's reference, and no more samples than it has.
+        Trajectory of the reference. Default: the recording's reference, which also limits the number of samples.
 
     Returns
     -------
     Recording
-        time, position, torque; sensor, reference and current where they are known.
+        time, position and torque; sensor, reference and current if known.
 
     Raises
     ------
     InputError
-        The log cannot be read; frames are missing; they have other positions than the recording; the period is
-        not known; the drive's type is not installed.
+        The log cannot be read; frames are missing or differ from the recording's positions; the period is not known;
+        or the drive's type is not installed.
 
     Examples
     --------

@@ -22,9 +22,9 @@ def open_drive(
     ----------
     bench : Bench
     emulate : bool
-        An emulated drive that moves a simulated joint, on virtual time. Default False: the real drive.
+        Whether to use an emulated drive and a simulated joint, in virtual time. Default False: the real drive.
     seed : int
-        Of the emulated noise. Default 0.
+        Seed of the emulated noise. Default 0.
 
     Returns
     -------
@@ -34,7 +34,7 @@ def open_drive(
     Raises
     ------
     InputError
-        This is not a Bench, the bus cannot be opened, or the bench does not describe an emulated joint.
+        Not a Bench; the bus cannot be opened, or the bench does not describe an emulated joint.
 
     Examples
     --------
@@ -50,18 +50,18 @@ def open_drive(
 
 
 def emulated_devices(bench: Bench, seed: int = 0) -> tuple[Device, ...]:
-    """Return the emulated devices of a bench, to be put on an `EmulatedBus` or in an `EmulatorThread`.
+    """Return the emulated devices of a bench, for an `EmulatedBus` or an `EmulatorThread`.
 
     Parameters
     ----------
     bench : Bench
     seed : int
-        Of the emulated noise. Default 0.
+        Seed of the emulated noise. Default 0.
 
     Raises
     ------
     InputError
-        This is not a Bench, it does not describe an emulated joint, or its drive type has no emulation on a CAN bus.
+        Not a Bench; the bench does not describe an emulated joint, or its drive type has no emulation on a CAN bus.
     """
     require_kind("bench", bench, Bench)
     return drive_type(bench.drive_type).devices(bench, seed)

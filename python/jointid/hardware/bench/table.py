@@ -24,14 +24,14 @@ Made = TypeVar("Made")
 
 
 class Table:
-    """A table with its place.
+    """A table of a joint file, with its place for error messages.
 
     Parameters
     ----------
     entries : mapping
         Keys and values; a text such as "60deg" becomes an angle [rad].
     name : str
-        As in the file, e.g. "session.drive".
+        Name in the file, e.g. "session.drive".
     source : str
         The file.
 
@@ -43,7 +43,7 @@ class Table:
     Raises
     ------
     InputError
-        `entries` is no table.
+        `entries` is not a table.
     """
 
     def __init__(self, entries: object, name: str, source: str) -> None:
@@ -60,7 +60,7 @@ class Table:
         return f"{self.source}: [{self.name}]"
 
     def table(self, name: str) -> Table:
-        """Return an inner table; an empty one when there is none."""
+        """Return an inner table; an empty one if there is none."""
         return Table(self.entries.get(name, {}), f"{self.name}.{name}", self.source)
 
     def without(self, *names: str) -> Table:
@@ -89,7 +89,7 @@ class Table:
         Raises
         ------
         InputError
-            An unknown key, a value of a wrong type, or one that the dataclass refuses.
+            An unknown key, a value of the wrong type, or a value that the dataclass refuses.
         """
         known = {name: type_ for name, type_ in types_of(kind).items() if name not in fixed}
         for item in fields(kind):  # type: ignore[arg-type]
@@ -99,21 +99,21 @@ class Table:
         return self.call(kind, known, **fixed)
 
     def make_core(self, kind: Callable[..., Made], unknown: Collection[str] = ()) -> Made:
-        """Return one of the core's values, e.g. a controller, from keys that are its attributes.
+        """Return an object of the core, e.g. a controller, from keys that are its attributes.
 
         Parameters
         ----------
         kind : callable
             Has a default for each attribute, and a method `asdict`.
         unknown : collection of str
-            Attributes that are no keys of this table.
+            Attributes that are not keys of this table.
         """
         defaults: Mapping[str, object] = kind().asdict()  # type: ignore[attr-defined]
         known = {n: type(v).__name__ for n, v in defaults.items() if n not in unknown}
         return self.call(kind, known)
 
     def call(self, kind: Callable[..., Made], known: Mapping[str, str], **fixed: Any) -> Made:
-        """Return what `kind` makes of the entries.
+        """Return `kind` called with the entries.
 
         Parameters
         ----------

@@ -32,26 +32,26 @@ def open_bus(
     fd: bool = False,
     data_bitrate: int | None = None,
 ) -> Iterator[can.BusABC]:
-    """Open a CAN bus; it is shut down at the end.
+    """Open a CAN bus, and shut it down at the end.
 
-    With SocketCAN the kernel passes on only the frames with the identifiers that are asked for: its queue
-    holds some 280 frames, and drops the rest without an error. On other interfaces python-can would
-    filter in Python and drop error frames too, so there the drive does the sorting.
+    With SocketCAN the kernel filters by `identifiers`, because its queue holds about 280 frames and drops the rest
+    without an error. On other interfaces python-can would filter in Python and also drop error frames, so the drive
+    filters there.
 
     Parameters
     ----------
     interface, channel : str
-        As python-can names them: "socketcan" and "can0", "pcan" and "PCAN_USBBUS1", "virtual", …
+        Names in python-can: "socketcan" and "can0", "pcan" and "PCAN_USBBUS1", "virtual", …
     bitrate : int
-        [bit/s]. SocketCAN's is set with the interface (`ip link`). Default 500 000.
+        Bit rate [bit/s]; for SocketCAN, set it with the interface (`ip link`). Default 500 000.
     identifiers : iterable of int, optional
-        Of the frames to receive. Default: all frames.
+        Identifiers of the frames to receive. Default: all frames.
     extended : bool
-        All of these identifiers have 29 bits. Default False: those up to 7FFh have 11.
+        Whether all of these identifiers have 29 bits. Default False: those up to 7FFh have 11.
     fd : bool
-        Frames of CAN FD may be sent and received. Default False.
+        Whether to allow CAN FD frames. Default False.
     data_bitrate : int, optional
-        Of the data of CAN FD frames [bit/s]; SocketCAN's is set with the interface. Default: the same as `bitrate`.
+        Bit rate of the data of CAN FD frames [bit/s]; for SocketCAN see `bitrate`. Default: `bitrate`.
 
     Yields
     ------
@@ -60,7 +60,7 @@ def open_bus(
     Raises
     ------
     InputError
-        The interface is not known or not installed, the channel does not exist, the network is down.
+        The interface is unknown or not installed, the channel does not exist, or the network is down.
 
     Examples
     --------

@@ -26,15 +26,15 @@ class LoggedFrame(NamedTuple):
     Attributes
     ----------
     time : float
-        [s], on the clock of the log.
+        Time on the log's clock [s].
     identifier : int
     payload : bytes
     extended : bool
-        The identifier has 29 bits. Default False: 11 bits.
+        Whether the identifier has 29 bits. Default False: 11 bits.
     fd : bool
-        A frame of CAN FD. Default False.
+        Whether this is a CAN FD frame. Default False.
     sent : bool
-        By the host, as far as the log says so. Default False.
+        Whether the host sent it, if the log says so. Default False.
     """
 
     time: float

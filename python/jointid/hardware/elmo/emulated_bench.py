@@ -118,7 +118,7 @@ def elmo_devices(
     ----------
     bench : Bench
     seed : int
-        Of the torque sensor's noise. Default 0.
+        Seed of the torque sensor's noise. Default 0.
 
     Raises
     ------

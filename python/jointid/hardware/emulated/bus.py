@@ -15,28 +15,27 @@ from jointid.hardware.emulated.wire import Wire
 
 
 class EmulatedBus(can.BusABC):
-    """A bus for python-can's users, behind which devices are emulated on virtual time.
+    """A python-can bus with emulated devices in virtual time.
 
-    `recv` and `sleep_until` run what is due and move the clock; nothing runs by itself, so the same
-    calls give bit-identical frames and times.
+    `recv` and `sleep_until` run due events and advance the clock. Nothing else runs, so the same calls give
+    bit-identical frames and times.
 
     Parameters
     ----------
     devices : Device
     bitrate : float
-        [bit/s]; None: frames take no time. Default 500 000.
+        Bit rate [bit/s]; with None, frames take no time. Default 500 000.
     faults : sequence of BusFault
-        What goes wrong on the wire, and when.
+        Faults on the wire.
     clock_drift : float
-        By what share the host's clock is faster than the devices' and the joint's: 1e-4 are 100 ppm.
-        Default 0. All times of this class are the host's.
+        Relative speed error of the host's clock against devices and joint: 1e-4 is 100 ppm, host fast.
+        Default 0. All times of this class are host times.
     jitter : float
-        So much later the host goes on, at most, whenever it has waited: for a time or a frame [s].
-        Default 0.
+        Largest random delay of the host after each wait for a time or a frame [s]. Default 0.
     seed : int
-        Of the jitter. Default 0.
+        Seed of the jitter. Default 0.
     data_bitrate : float, optional
-        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
+        Bit rate of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
 
     Raises
     ------
@@ -81,16 +80,16 @@ class EmulatedBus(can.BusABC):
         return self._time * self._rate
 
     def at(self, when: float, event: Event) -> None:
-        """Run something when the clock gets there."""
+        """Run a callable at a time."""
         self._at(when / self._rate, event)
 
     def sleep_until(self, deadline: float) -> None:
-        """Run what is due until the deadline, and be there."""
+        """Run due events and advance the clock to the deadline."""
         end = deadline / self._rate
         self._run_until(end + self._lateness() if end > self._time else end)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """Put a frame of the host's on the wire.
+        """Send a frame of the host.
 
         Raises
         ------
@@ -105,11 +104,11 @@ class EmulatedBus(can.BusABC):
         self._wire.put(msg, self, self._to_devices, from_host=True)
 
     def transmit(self, message: can.Message) -> None:
-        """Put the frame of another node on the wire: the host and all devices receive it."""
+        """Send a frame of another node; the host and all devices receive it."""
         self._transmit(message, None)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
-        """The next frame for the host, waiting on virtual time.
+        """Return the next frame for the host, waiting in virtual time.
 
         Raises
         ------
@@ -135,7 +134,7 @@ class EmulatedBus(can.BusABC):
         return self.recv(timeout), True
 
     def shutdown(self) -> None:
-        """Nothing to give back."""
+        """Do nothing: there are no resources to release."""
         super().shutdown()
 
     def _true_time(self) -> float:

@@ -27,23 +27,23 @@ BUS_FAULTS = ("drop", "delay", "duplicate", "corrupt", "down", "bus_off")
 
 @dataclass(slots=True, kw_only=True)
 class BusFault:
-    """One kind of trouble in a stretch of time.
+    """One kind of bus fault in a time interval.
 
     Attributes
     ----------
     kind : str
-        "drop", "delay", "duplicate" or "corrupt" frames; "down": the interface is; "bus_off": the
-        controller has left the bus, its frames vanish.
+        "drop", "delay", "duplicate" or "corrupt" frames; "down": the interface is down; "bus_off": the
+        controller has left the bus, and its frames are lost.
     start, stop : float
-        [s] on the bus's clock.
+        Begin and end on the bus's clock [s].
     identifier : int, optional
         Only frames with this identifier. Default: all.
     delay : float
-        [s], of "delay"; the wire is free meanwhile.
+        Delay of a "delay" fault [s]; other frames may pass meanwhile.
     probability : float
-        Share of these frames that it hits. Default 1.
+        Probability that it affects a frame. Default 1.
     seed : int
-        Of the choice of these frames. Default 0.
+        Seed of the random choice. Default 0.
     """
 
     kind: str
@@ -64,11 +64,11 @@ class BusFault:
         self._random = Random(self.seed)
 
     def acts(self, now: float) -> bool:
-        """Whether it is on."""
+        """Whether the fault is active now."""
         return self.start <= now < self.stop
 
     def hits(self, identifier: int, now: float) -> bool:
-        """Whether it hits a frame that is sent now."""
+        """Whether it affects a frame sent now."""
         if not self.acts(now) or self.identifier not in (None, identifier):
             return False
         return self.probability >= 1.0 or self._random.random() < self.probability

@@ -24,37 +24,35 @@ _SENDING = 0.01  # [s] that a full queue may take: the devices' own guards wait 
 class EmulatorThread:
     """Runs devices on a bus until it is closed; a context manager.
 
-    The devices get the services of an `EmulatedBus`, on the machine's clock: `now`, `at`, `transmit`.
-    All of their code runs in this one thread. Another bus on the same channel is the host's. What is due
-    runs at its own time on the devices' clock, and frames arrive at the time of their stamps, so a
-    machine that stands still for a moment changes neither joint nor watchdog. A bus that is down is no
-    end: frames are lost, and the devices go on by themselves.
+    The devices get the services of an `EmulatedBus`, `now`, `at` and `transmit`, on the machine's clock. Their code
+    runs only in this thread. The host uses another bus on the same channel. Events run at their due time on the
+    devices' clock, and frames arrive at the time of their stamps, so a short pause of the machine changes neither
+    the joint nor the watchdog. While the bus is down, frames are lost and the devices continue.
 
     Parameters
     ----------
     bus : can.BusABC
-        Any interface, e.g. "virtual" in one process or "udp_multicast" between two; left open.
+        Any interface, e.g. "virtual" in one process or "udp_multicast" between two; it stays open.
     devices : Device
     bitrate : float, optional
-        [bit/s] of the wire whose times the frames are given in addition to what the bus takes. None: a
-        bus of its own that takes its time. Default 500 000.
+        Bit rate of the emulated wire [bit/s], which delays frames in addition to the bus. Use None if the bus
+        itself has this delay. Default 500 000.
     faults : sequence of BusFault
-        What goes wrong on the wire, and when since the start. "down" and "bus_off" lose all frames.
+        Faults on the wire, with times since the start. "down" and "bus_off" lose all frames.
     watch : callable, optional
-        Called with the time [s] after each event and frame, for what wants to see the devices change.
+        Called with the time [s] after each event and frame, to observe the devices.
     rest : float
-        Shortest time between two looks at what is due [s], unless a frame comes. It is done at its time by the
-        devices' clock all the same: a machine that wakes slowly has less to do, and frames are so much
-        later. Default 0.
+        Shortest time between two checks for due events [s], unless a frame arrives. Events keep their due time on
+        the devices' clock; a larger value saves processor time and delays frames. Default 0.
     data_bitrate : float, optional
-        Of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
+        Bit rate of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
 
     Attributes
     ----------
     lost : int
-        Frames that the bus did not take.
+        Frames that the bus did not accept.
     trouble : Exception or None
-        What the bus said last about it.
+        The bus's last error.
 
     Examples
     --------
@@ -90,17 +88,17 @@ class EmulatorThread:
         self._thread = threading.Thread(target=self._run, name="emulator", daemon=True)
 
     def start(self) -> None:
-        """Power the devices up."""
+        """Power up the devices."""
         self._began = time.perf_counter()
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread; it has ended when this returns.
+        """Stop the thread, and wait until it has ended.
 
         Raises
         ------
         Exception
-            Whatever a device raised; the thread ended then and there.
+            An error of a device; it ended the thread.
         """
         self._ending.set()
         if self._thread.is_alive():
@@ -129,7 +127,7 @@ class EmulatorThread:
 
     @property
     def failure(self) -> BaseException | None:
-        """What ended the thread early."""
+        """Error that ended the thread; None without one."""
         return self._failure
 
     @property
@@ -140,11 +138,11 @@ class EmulatorThread:
     # For the devices.
 
     def now(self) -> float:
-        """Time since the start [s]; while something runs that was due, the time at which it was."""
+        """Time since the start [s]; during an event, its due time."""
         return self._moment if self._moment is not None else self._clock()
 
     def at(self, when: float, event: Event) -> None:
-        """Run something when the clock gets there, or as soon as possible."""
+        """Run a callable at a time, or as soon as possible after it."""
         self._agenda.add(when, event)
 
     # The thread.

@@ -42,7 +42,7 @@ class Wire:
     faults : sequence of BusFault
         What goes wrong, and when.
     data_bitrate : float, optional
-        Of the data of CAN FD frames [bit/s]. Default: the same.
+        Bit rate of the data of CAN FD frames [bit/s]. Default: the same.
     """
 
     def __init__(

@@ -16,18 +16,18 @@ _SHORTEST = 0.1  # [s] between two lines
 
 
 class ConsoleLine:
-    """A line of what a session does, redrawn ten times a second at most; a `Session`'s observer.
+    """Status line of a session, updated at most ten times per second; an observer of a `Session`.
 
-    On a terminal the line is drawn over; elsewhere, e.g. into a file, a line is written at the begin of each
-    phase and then once a second. A thread does the writing: a terminal that stands still does not hold the
-    motor's loop. Close it, or use it as a context manager, so that the last line is there.
+    On a terminal the line is overwritten. In a file, a line is written at the start of each phase and then once per
+    second. A thread writes, so a blocked terminal does not delay the motor's loop. Close it, or use it as a context
+    manager, so that the last line is written.
 
     Parameters
     ----------
     stream : text stream
         E.g. `sys.stderr`.
     now : callable
-        Where time comes from [s]; for tests. Default `time.monotonic`.
+        Returns the time [s]; for tests. Default `time.monotonic`.
     """
 
     def __init__(self, stream: TextIO, *, now: Callable[[], float] = time.monotonic) -> None:
@@ -53,7 +53,7 @@ class ConsoleLine:
             self._lines.put(console_line(phase, when, sample, reference, torque))
 
     def close(self) -> None:
-        """Write the last line, if it has not been."""
+        """Write the last line, unless it is written already."""
         if not self._thread.is_alive():
             return
         if self._last is not None:

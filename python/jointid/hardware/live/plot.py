@@ -22,28 +22,27 @@ _INTERVAL = 0.1  # [s] between two writes to the window
 
 
 class LivePlot:
-    """Position and reference, error, torque and sensor in a window; a `Session`'s observer.
+    """Window with position, reference, error, torque and sensor; an observer of a `Session`.
 
-    Drawing takes matplotlib tens of milliseconds, in which a thread of this interpreter would hold up the
-    motor's loop. So another interpreter draws, and the loop hands 50 points a second at most to a pipe, ten
-    times a second, without ever waiting: points that a slow window has no room for are left out of the
-    picture (and counted in `dropped`). What is left is that the window's process wants a processor, too.
+    Matplotlib needs tens of milliseconds to draw, which would delay the motor's loop. Therefore another process
+    draws. The loop writes at most 50 points per second to a pipe, ten times per second, and never waits; points that
+    the pipe has no room for are dropped and counted in `dropped`. The window's process still needs processor time.
 
     Parameters
     ----------
     span : float
-        Of time in the window [s]. Default 10.
+        Time span of the window [s]. Default 10.
     picture : path, optional
-        Where the last picture goes, on closing.
+        File of the last picture, written on closing.
     window : bool
-        False: no window, only the picture. Default True.
+        Whether to show a window. Default True; False writes only the picture.
     now : callable
-        Where time comes from [s]; for tests. Default `time.monotonic`.
+        Returns the time [s]; for tests. Default `time.monotonic`.
 
     Raises
     ------
     InputError
-        The span is not more than 0, or there is neither window nor picture.
+        The span is not above 0, or both window and picture are switched off.
     """
 
     def __init__(
@@ -93,7 +92,7 @@ class LivePlot:
             self._write()
 
     def close(self) -> None:
-        """End the window; its picture is on disk when this returns."""
+        """Close the window, after writing its picture to disk."""
         if self._window.stdin is None or self._window.stdin.closed:
             return
         os.set_blocking(self._pipe, True)

@@ -48,27 +48,27 @@ _SCHEMA = Record(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Certificate:
-    """A first motion that was passed, and the bench that passed it.
+    """Record of a passed first motion and of its bench.
 
     Attributes
     ----------
     date : datetime
-        With its zone.
+        Date with time zone.
     joint : mapping
-        What the joint file stated: gear ratio, torque constant, rotor inertia, sign of the sensor's gain.
+        Facts of the joint file: gear ratio, torque constant, rotor inertia, sign of the sensor's gain.
     wiring : mapping
-        Options of the drive that decide about signs and scales, see `DriveType.wiring`.
+        Options of the drive that set signs and scales, see `DriveType.wiring`.
     drive : mapping
-        Identity of the drive, its serial number with it.
+        Identity of the drive, including its serial number.
     found : mapping
-        Signs, breakaway in both directions, travel, largest torque, inertia, and what was not checked; after how
-        long the drive's watchdog stopped the motor [s], if that was tried.
+        Signs, breakaway in both directions, travel, largest torque, inertia and unchecked items; the time until
+        the drive's watchdog stopped the motor [s], if that was tested.
     limits : mapping
-        Of the session, then, with the joint's largest current and the encoder's offset.
+        Limits of the session at that time, the joint's largest current and the encoder's offset.
     watchdog : mapping
-        What the drive declared of its watchdog: "time" [s], "fed_by", "then", "read_back".
+        Watchdog that the drive declared: "time" [s], "fed_by", "then", "read_back".
     versions : mapping
-        Of jointid and Python.
+        Versions of jointid and Python.
     """
 
     date: datetime
@@ -82,7 +82,7 @@ class Certificate:
 
     @classmethod
     def of(cls, bench: Bench, result: FirstMotion, date: datetime | None = None) -> Certificate:
-        """Return the certificate of a first motion that was passed.
+        """Return the certificate of a passed first motion.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class Certificate:
         Raises
         ------
         InputError
-            It was not passed, or the drive's watchdog is not known.
+            The first motion was not passed, or the drive's watchdog is not known.
         """
         if not result.passed:
             raise InputError(
@@ -136,12 +136,12 @@ class Certificate:
 
     @classmethod
     def load(cls, path: str | Path) -> Certificate:
-        """Read one.
+        """Read a certificate.
 
         Raises
         ------
         InputError
-            It cannot be read, or is no certificate; names the file.
+            The file cannot be read or is not a certificate; the error names the file.
         """
         source = Path(path)
         try:
@@ -166,7 +166,7 @@ class Certificate:
         *,
         watchdog: Watchdog | None = None,
     ) -> list[str]:
-        """Return why it does not hold for a bench; empty when it does.
+        """Return why the certificate is not valid for a bench; empty if it is valid.
 
         Parameters
         ----------
@@ -176,7 +176,7 @@ class Certificate:
         now : datetime, optional
             Default: now.
         watchdog : Watchdog, optional
-            What the drive that is connected declares. Default: not looked at.
+            Watchdog that the connected drive declares. Default: not compared.
         """
         age = (now or datetime.now(UTC)) - self.date
         found = []
@@ -196,7 +196,7 @@ class Certificate:
         return found
 
     def notes(self, bench: Bench, identity: Mapping[str, Any] | None = None) -> list[str]:
-        """Return what it cannot tell of a bench, although it holds: a changed offset, a drive without serial number.
+        """Return what a valid certificate does not cover, e.g. a changed offset or a drive without serial number.
 
         Parameters
         ----------
@@ -208,7 +208,7 @@ class Certificate:
 
 
 def certificate_path(joint_file: str | Path) -> Path:
-    """Return where the certificate of a joint file is: `joint.toml` has `joint.certificate.toml`."""
+    """Return the path of a joint file's certificate: `joint.certificate.toml` for `joint.toml`."""
     return Path(joint_file).with_suffix(".certificate.toml")
 
 

@@ -30,30 +30,30 @@ _LITTLE_ABOVE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BenchCheck:
-    """What is connected.
+    """Result of a check of the connected bench.
 
     Attributes
     ----------
     address : str
         Where the drive is.
     identity : mapping
-        What it reported about itself.
+        Identity that the drive reported.
     report : DriveReport or None
-        How it is set; None where this drive gives none.
+        Settings of the drive; None if it reports none.
     position, velocity : float
-        Output angle [rad] and mean speed [rad/s] while it was watched.
+        Output angle [rad] and mean speed [rad/s] during the check.
     reading, noise : float
-        Mean and standard deviation of the torque sensor's raw readings; not a number without a sensor.
+        Mean and standard deviation of the torque sensor's raw readings; NaN without a sensor.
     differences : tuple of str
         Between the drive's settings and what the joint file needs.
     problems : tuple of str
         Reasons not to move the joint.
     watchdog : WatchdogTravel or None
-        How far the joint goes in its motion when the host dies; None: the drive declares no watchdog.
+        Travel of the joint after the host fails; None if the drive declares no watchdog.
     remarks : tuple of str
-        Worth a change, but no reason not to move the joint.
+        Recommended changes that do not prevent a motion.
     first_motion : str
-        How far it will go with this encoder.
+        Travel of the first motion with this encoder.
     """
 
     address: str
@@ -71,16 +71,16 @@ class BenchCheck:
 
     @property
     def passed(self) -> bool:
-        """Whether nothing was found against moving the joint."""
+        """Whether the check found no reason against a motion."""
         return not (self.differences or self.problems)
 
     @property
     def declared(self) -> Watchdog | None:
-        """What the drive declares of its watchdog."""
+        """Watchdog that the drive declares."""
         return None if self.watchdog is None else self.watchdog.watchdog
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields, of JSON's types: a number that is not known is None."""
+        """Return the fields as JSON types; an unknown number is None."""
         numbers = {
             name: value if math.isfinite(value) else None
             for name in ("position", "velocity", "reading", "noise")
@@ -100,7 +100,7 @@ class BenchCheck:
         }
 
     def text(self) -> str:
-        """Return all of it, in lines."""
+        """Return the complete check as text."""
         lines = [f"drive: {self.address}"]
         if self.report is None:
             lines += [f"  {name}: {value}" for name, value in self.identity.items()]
@@ -137,17 +137,17 @@ class BenchCheck:
 def check_bench(
     bench: Bench, *, emulate: bool = False, seed: int = 0, drive: Drive | None = None
 ) -> BenchCheck:
-    """Read what is connected, and hold it against the joint file; the motor stays off.
+    """Read the connected drive and compare it with the joint file; the motor stays off.
 
     Parameters
     ----------
     bench : Bench
     emulate : bool
-        An emulated drive on virtual time. Default False: the real one.
+        Whether to use an emulated drive in virtual time. Default False: the real drive.
     seed : int
-        Of the emulated noise. Default 0.
+        Seed of the emulated noise. Default 0.
     drive : Drive, optional
-        One that is open already; it is left closed. Default: the bench's.
+        An open drive; it is closed at the end. Default: the bench's drive.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def check_bench(
     Raises
     ------
     InputError
-        This is no Bench, or its drive cannot be opened.
+        Not a Bench, or its drive cannot be opened.
 
     Examples
     --------

@@ -30,36 +30,36 @@ def first_motion(
     callback: Callable[[str], object] | None = None,
     watchdog: bool = False,
 ) -> FirstMotion:
-    """Move a joint for the first time: signs, breakaway and scales, before anything can go far.
+    """Move a joint for the first time, and find signs, breakaway and scales in small motions.
 
-    Still, motor off; still, motor on at no torque; the torque up from zero until the first counts, in both
-    directions; short pushes just above breakaway; small slow motions under control. Every step has its own
-    stop, and the first thing that is wrong ends it with the motor off.
+    Steps: rest with the motor off; rest with the motor on at zero torque; torque from zero up to the first encoder
+    counts, in both directions; short pushes just above breakaway; small slow controlled motions. Each step has its own
+    stop. The first error ends the procedure with the motor off.
 
     Parameters
     ----------
     bench : Bench
     emulate : bool
-        An emulated drive and joint on virtual time. Default False: the real ones.
+        Whether to use an emulated drive and joint in virtual time. Default False: the real ones.
     seed : int
-        Of the emulated noise. Default 0.
+        Seed of the emulated noise. Default 0.
     drive : Drive, optional
-        One that is open already; it is left closed. Default: the bench's.
+        An open drive; it is closed at the end. Default: the bench's drive.
     callback : callable, optional
-        Called with each line as it is known.
+        Called with each line of the report.
     watchdog : bool
-        When all else is right, fall silent with the motor on at no torque, and see that the drive stops the motor by
-        itself, as it declares. Default False.
+        Whether to test the watchdog after all other steps: the host stops sending with the motor on at zero torque, and
+        the drive must stop the motor as it declares. Default False.
 
     Returns
     -------
     FirstMotion
-        A bench that is refused is a result, not an exception.
+        A refused bench is a result, not an exception.
 
     Raises
     ------
     InputError
-        This is no Bench, or its drive cannot be opened, or its watchdog cannot be tried.
+        Not a Bench, or its drive cannot be opened, or its watchdog cannot be tested.
     Exception
         A bug in the drive; the motor is switched off first.
 

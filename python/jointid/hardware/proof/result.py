@@ -35,36 +35,36 @@ class FirstMotion:
     ----------
     passed : bool
     reason : str or None
-        Code of the refusal, one of `refusal.REASONS` or the kind of a drive's fault; None when passed.
+        Code of the refusal, one of `refusal.REASONS` or the kind of a drive fault; None if passed.
     message : str
-        One sentence about the refusal, with numbers; empty when passed.
+        One sentence about the refusal, with numbers; empty if passed.
     travel : float
-        Farthest from the start, by the joint file's gear ratio [rad].
+        Largest distance from the start, by the joint file's gear ratio [rad].
     largest_torque : float
         Largest commanded magnitude, by the joint file's constants [N·m].
     breakaway : tuple of float or None
-        In the positive and in the negative direction [N·m]; None: not found.
+        Breakaway torque in the positive and the negative direction [N·m]; None: not found.
     signs : mapping
-        "torque_and_encoder" and "sensor": 1 as the joint file says, -1 inverted, None not known.
+        "torque_and_encoder" and "sensor": 1 as in the joint file, -1 inverted, None not known.
     unchecked : tuple of str
-        Codes of `UNCHECKED`.
+        Codes of unchecked items, from `UNCHECKED`.
     inertia, stated_breakaway, stated_inertia : float or None
-        Measured; by the joint file [kg·m²], [N·m].
+        Measured inertia [kg·m²]; breakaway torque [N·m] and inertia [kg·m²] of the joint file.
     watchdog : float or None
-        From our last sign of life until the drive had stopped its motor by itself [s]; None: not tried, or it
-        did not.
+        Time from the host's last sign of life until the drive stopped its motor [s]; None if not tested, or if it
+        did not stop.
     drive_watchdog : Watchdog or None
-        What the drive declares of its watchdog; None: nothing, and there is no certificate.
+        Watchdog that the drive declares; None: no watchdog, and no certificate.
     sensor_zero : float or None
         Mean reading of the torque sensor at rest.
     duration : float
-        Bench time [s].
+        Time on the bench [s].
     motor_off : bool or None
         Whether the drive confirmed that its motor is off.
     identity : mapping
         What the drive reported about itself.
     steps : tuple of str
-        What was tried and measured, in order.
+        Tests and measurements, in order.
     """
 
     passed: bool
@@ -90,7 +90,7 @@ class FirstMotion:
 
     @property
     def uncertified(self) -> str:
-        """Why there is no certificate although it is passed; empty when there is one."""
+        """Why a passed first motion has no certificate; empty if it has one."""
         if self.drive_watchdog is None:
             return "the drive declares no watchdog"
         if not self.drive_watchdog.read_back and self.watchdog is None:
@@ -98,7 +98,7 @@ class FirstMotion:
         return ""
 
     def to_dict(self) -> dict[str, Any]:
-        """What `jointid first-motion --json` prints, of JSON's types."""
+        """Return the output of `jointid first-motion --json` in JSON types."""
         return {
             "passed": self.passed,
             "reason": self.reason,
@@ -110,11 +110,11 @@ class FirstMotion:
         }
 
     def report(self) -> str:
-        """Return the steps, the verdict, and what is left to check, in lines."""
+        """Return steps, verdict and remaining checks as text."""
         return "\n".join((*self.steps, self.verdict()))
 
     def verdict(self) -> str:
-        """Return whether it is passed, why not, and what is left to check, in lines."""
+        """Return the verdict, its reason and remaining checks as text."""
         if self.passed:
             lines = [f"passed, in {self.duration:.1f} s of bench time"]
         else:

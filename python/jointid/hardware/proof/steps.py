@@ -59,7 +59,7 @@ class Steps:
     bench : Bench
     drive : Drive
     callback : callable, optional
-        Called with each line as it is known.
+        Called with each line of the report.
 
     Attributes
     ----------

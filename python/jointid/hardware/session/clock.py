@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 
 
 class Clock(Protocol):
-    """What a session needs of a clock."""
+    """Clock of a session."""
 
     def now(self) -> float:
         """Time [s] from an arbitrary start; never goes back."""
@@ -21,18 +21,18 @@ class Clock(Protocol):
 
 
 class MonotonicClock:
-    """The machine's monotonic clock, waited for by absolute deadlines.
+    """The machine's monotonic clock, with absolute deadlines.
 
-    A sleep ends late, by 50 µs to some milliseconds without a real-time priority. With deadlines that are
-    absolute the delays do not add up; to meet them closer, sleep up to `spin` before and wait busily for
-    the rest, at the price of a core and, in one process with an emulator, of its turns.
+    Without a real-time priority, a sleep ends 50 µs to some milliseconds late. Absolute deadlines keep these delays
+    from adding up. For closer deadlines, `spin` replaces the end of each sleep by a busy wait, which occupies a core
+    and delays an emulator in the same process.
 
     Parameters
     ----------
     spin : float
-        The end of each wait that is not slept [s]. Default 0.
+        Duration of the busy wait at the end of each sleep [s]. Default 0.
     now, sleep : callable
-        Where time comes from and how it is passed; for tests. Default `time.perf_counter`, `time.sleep`.
+        Functions that return the time and that sleep; for tests. Default `time.perf_counter`, `time.sleep`.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class MonotonicClock:
         return self._now()
 
     def sleep_until(self, deadline: float) -> None:
-        """Sleep; what is left after one sleep is slept again, the last bit is waited busily."""
+        """Sleep until shortly before the deadline, then wait busily."""
         now, spin = self._now, self._spin
         while (left := deadline - now()) > spin:
             self._sleep(left - spin)

@@ -13,22 +13,22 @@ Value = TypeVar("Value", float, npt.NDArray[np.float64])
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoggedCycle:
-    """One control cycle out of a frame log: a sample, then a command.
+    """One control cycle of a frame log: a sample, then a command.
 
     Attributes
     ----------
     taken, acted : float
-        When the sample was taken, and when the command was sent [s], by the log's stamps.
+        Times of the sample and of the command [s], by the log's stamps.
     position : float
-        At the output [rad].
+        Position at the output [rad].
     torque : float
-        Accepted by the drive, at the output [N·m].
+        Torque that the drive accepted, at the output [N·m].
     reading : float
-        Of the torque sensor; 0: there is none.
+        Reading of the torque sensor; 0 without a sensor.
     current : float
-        Active, in the motor [A]; not a number: not known.
+        Active motor current [A]; NaN if not known.
     lost : str
-        Why the cycle has no sample, in a sentence; the torque was commanded all the same. Default: it has one.
+        Why the cycle has a command but no sample, as a sentence. Default: empty, it has a sample.
     """
 
     taken: float

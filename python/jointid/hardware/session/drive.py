@@ -25,25 +25,25 @@ FAULT_KINDS = (
 
 
 class DriveFaultError(RuntimeError):
-    """The drive, or the way to it, has failed; the session stops.
+    """The drive or the connection to it has failed; the session stops.
 
-    The only exception that a drive should raise: its kind becomes the name of the stop. An OSError or
-    InputError stops the session as "error" (before the motor is on, an OSError refuses it as this one
-    does); any other is a bug, and is raised again after the session.
+    A drive should raise no other exception: the kind becomes the name of the stop. An OSError or InputError stops
+    the session as "error"; before the motor is on, an OSError refuses the session, like this error. Any other
+    exception is a bug, and is raised again after the session.
 
     Parameters
     ----------
     kind : str
-        "stale_position": no new state within the time allowed, which a session stands for a few cycles while
-        the motor moves (`SessionLimits.late_samples`); "drive_fault": the drive has shut down or
-        refuses a command; "heartbeat_lost": it does not answer any more; "host_heartbeat_lost": it reports that
-        the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite;
-        "foreign_master": somebody else commands the drive, or feeds its watchdog; "command_echo": the drive
-        acknowledges another torque than was commanded, or none.
+        "stale_position": no new state in time; while the motor moves, a session tolerates this for a few cycles
+        (`SessionLimits.late_samples`). "drive_fault": the drive has shut down or refuses a command.
+        "heartbeat_lost": the drive does not answer. "host_heartbeat_lost": the drive reports that the host does
+        not answer. "bus": the bus has failed. "sensor": a reading is missing or not finite. "foreign_master":
+        another master commands the drive or feeds its watchdog. "command_echo": the drive acknowledges no torque
+        or another torque.
     message : str
         One sentence: what happened, with the numbers.
     measured, allowed : float, optional
-        The number that was beyond a limit, and the limit.
+        The value beyond a limit, and the limit.
     """
 
     def __init__(
@@ -67,27 +67,27 @@ class DriveSample:
     Attributes
     ----------
     time : float
-        When the position was taken [s], on the drive's `clock`; later than in the cycle before, else the
-        session stops by "stale_position".
+        Time of the position [s] on the drive's `clock`. If it is not later than in the cycle before, the session
+        stops with "stale_position".
     position : float
-        At the output [rad]. A value that is not finite stops the session.
+        Position at the output [rad]. A value that is not finite stops the session.
     reading : float
-        Raw, of the torque sensor, in the unit that the joint's `sensor_gain` refers to; the last one when
-        `fresh` is False. Default 0: there is no sensor.
+        Raw reading of the torque sensor, in the unit that the joint's `sensor_gain` refers to; the last one if
+        `fresh` is False. Default 0: no sensor.
     fresh : bool
-        The reading is of this cycle. Default True.
+        Whether the reading is of this cycle. Default True.
     clipped : bool
-        The sensor's converter is at the end of its range. Default False.
+        Whether the sensor's converter is at the end of its range. Default False.
     current : float
-        Active, in the motor [A]. Default: not a number, not known.
+        Active motor current [A]. Default: NaN, not known.
     torque : float
-        Of that current, at the output [N·m]. Default: not a number.
+        Torque of that current at the output [N·m]. Default: NaN.
     confirmed : bool
-        The drive has confirmed the last command. When it has not, the recording marks the cycle: its torque
-        is in doubt. Default True.
+        Whether the drive has confirmed the last command. If not, the recording marks the cycle, because its
+        torque is uncertain. Default True.
     velocity : float
-        Measured by the drive, at the output [rad/s], for the controller. Default: not a number; the
-        controller then gets the estimate from times and positions. The velocity limit holds for both.
+        Velocity at the output that the drive measured [rad/s]. Default: NaN; the controller then gets an estimate
+        from times and positions. The velocity limit holds for both.
     """
 
     time: float
@@ -108,11 +108,11 @@ class DriveEnd:
     Attributes
     ----------
     state : {"off", "damped", "held", "braked", "on"} or None
-        What it said of its motor when asked; None: it cannot be asked.
+        State of the motor that the drive reported; None if it cannot be asked.
     failure : str
-        Why it had shut the motor down by itself; empty when it had not.
+        Why the drive had shut the motor down by itself; empty if it had not.
     motor_off : bool or None
-        Whether `state` is "off"; as an argument the older name of it, True for "off" and False for "on".
+        Whether `state` is "off". As an argument, the former name of `state`: True is "off", False is "on".
     """
 
     state: MotorState | None
@@ -130,7 +130,7 @@ class DriveEnd:
 
     @property
     def motor_off(self) -> bool | None:
-        """Whether it confirmed that its motor is off; None: it cannot be asked."""
+        """Whether the drive confirmed that its motor is off; None if it cannot be asked."""
         return is_off(self.state)
 
 
@@ -139,118 +139,119 @@ class Drive(Protocol):
 
     A session calls, from one thread:
 
-    1. `bus_load`, `connect`, `problems`, `read`: the check. A reason, or an error, and the motor is never on.
+    1. `bus_load`, `connect`, `problems`, `read`: the check. After a problem or an error the motor stays off.
     2. `enable`, then `read`.
-    3. in each cycle of `period`, first on the way to the start of the trajectory, then along it: `read`,
-       then `command`, waiting for the next cycle with `clock.sleep_until`.
-    4. always, also when the check failed: `disable`, possibly several times, then `close`.
+    3. in each cycle of `period`: `read`, then `command`, then `clock.sleep_until` until the next cycle. The joint
+       first moves to the start of the trajectory, then along it.
+    4. always, also after a failed check: `disable`, possibly several times, then `close`.
 
     All of them may raise DriveFaultError. Torque and position are positive in the same direction.
-    A drive may have an attribute `tap`, None at first: if so, the session sets it to a callable
-    (time [s], identifier, payload, whether sent) for the time of the run, to be called with each frame,
-    for the frame log; with fd=True for a frame of CAN FD, extended=True for an identifier of 29 bits. It may
-    have an attribute `resolution`, the output angle of an encoder count [rad],
-    which `SessionOptions` must give otherwise; an attribute `joint`, a `Joint`; and a method `metadata`,
-    which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
-    recording, so that a replay of the frame log finds them. It may have a method `report`, which returns a
-    `DriveReport` once it is connected, its motor off; and a method `fall_silent`, which returns a
-    `DriveSilence`, for `first_motion(watchdog=True)`. It should have an attribute `watchdog`, a `Watchdog`:
-    without it a bench gets no certificate.
+    Optional attributes and methods:
+
+    - `tap`, None at first: during a run the session sets it to a callable for the frame log. The drive calls it
+      with (time [s], identifier, payload, whether sent) for each frame, with fd=True for a CAN FD frame and
+      extended=True for an identifier of 29 bits.
+    - `resolution`: output angle of an encoder count [rad]. Without it, `SessionOptions` must give it.
+    - `joint`: a `Joint`. `metadata`: a method that returns ``{"drive_type": name, "drive_options": …}`` in JSON types.
+      The recording keeps both for a replay of the frame log.
+    - `report`: a method that returns a `DriveReport` when the drive is connected and its motor is off.
+    - `fall_silent`: a method that returns a `DriveSilence`, for `first_motion(watchdog=True)`.
+    - `watchdog`: a `Watchdog`. A bench without it gets no certificate.
     """
 
     @property
     def clock(self) -> Clock:
-        """The clock that the samples are stamped by and the session is paced by.
+        """Clock of the time stamps and of the session's cycles.
 
-        `MonotonicClock()` for a drive that exists, a clock of its own for one on virtual time. It must be
-        the same object, or at least the same time, throughout.
+        Use `MonotonicClock()` for a real drive, and a virtual clock for an emulated one. It must show the same time
+        throughout the session.
         """
 
     def connect(self, period: float) -> None:
         """Bring the drive up, motor off, in torque control.
 
-        Called once, before all but `bus_load`. May take seconds.
+        Called once, before every other call except `bus_load`. May take seconds.
 
         Parameters
         ----------
         period : float
-            Of the cycles to come [s]; a watchdog in the drive must not trip within a few of them.
+            Period of the control cycles [s]; the drive's watchdog must not trip within a few periods.
         """
 
     def problems(self, torque_limit: float) -> list[str]:
-        """Return reasons not to enable the motor, in sentences; an empty list when there are none.
+        """Return the reasons not to enable the motor, as sentences; an empty list if there are none.
 
         Parameters
         ----------
         torque_limit : float
-            The session's, at the output [N·m]; infinite when there is none. A drive whose own limit is
-            higher should report it here.
+            Torque limit of the session at the output [N·m]; infinite without a limit. If the drive's own limit is
+            higher, it should report that here.
         """
 
     def enable(self) -> None:
-        """Motor on, at zero torque; it is on when this returns. May take seconds."""
+        """Switch the motor on at zero torque; it is on when this returns. May take seconds."""
 
     def read(self, timeout: float) -> DriveSample:
-        """Ask for the state and wait for it.
+        """Request the state and wait for it.
 
-        The state must be of now: an answer to an earlier question is never one to this.
+        The state must be current: an answer to an earlier request does not count.
 
         Parameters
         ----------
         timeout : float
-            [s]; three quarters of a period while the motor moves.
+            Longest wait [s]; three quarters of a period while the motor moves.
 
         Raises
         ------
         DriveFaultError
-            "stale_position": nothing came in time. While the motor moves, the session then sends the last
-            torque again and asks anew in the next cycle, a few times.
+            "stale_position": no answer in time. While the motor moves, the session then repeats the last torque
+            and requests the state again in the next cycle, a few times.
         """
 
     def command(self, torque: float) -> float:
-        """Send a torque, which holds until the next one, without waiting.
+        """Send a torque without waiting; it holds until the next one.
 
-        This also shows the drive that the host is alive: without it for some periods the drive should
-        stop by itself, as nothing else stops a motor whose host hangs.
+        The command is also a sign of life. After some periods without it the drive should stop the motor, because
+        nothing else stops a motor if the host hangs.
 
         Parameters
         ----------
         torque : float
-            At the output [N·m], finite and within the session's limit.
+            Torque at the output [N·m], finite and within the session's limit.
 
         Returns
         -------
         float
-            Torque accepted by the drive [N·m], after its own limit and rounding; the recording holds this.
+            Torque that the drive accepted [N·m], after its own limit and rounding; the recording keeps this value.
         """
 
     def disable(self) -> DriveEnd | None:
-        """Zero torque, then motor off, at once and even if a step fails; then check that it is off.
+        """Command zero torque, then switch the motor off, even if a step fails; then check that it is off.
 
-        Must do no harm to a motor that is off, or to a drive that was never connected. Called again when
-        the motor was not seen off. Returns in bounded time, and raises nothing for a bus that fails.
+        It must be harmless if the motor is off or the drive was never connected. The session calls it again if the
+        motor is not confirmed off. It returns in bounded time, and does not raise if the bus fails.
 
         Returns
         -------
         DriveEnd or None
-            Whether the motor was seen off; None: the drive cannot be asked.
+            Whether the motor is confirmed off; None if the drive cannot be asked.
         """
 
     def close(self) -> None:
-        """Leave the drive and the bus as they were found. What was opened outside stays open."""
+        """Restore the drive and the bus to their initial state. Leave open what the caller opened."""
 
     @property
     def command_latency(self) -> float:
-        """From sending a command until the drive acts on it [s]; 0 when it is not known.
+        """Delay from sending a command until the drive acts on it [s]; 0 if not known.
 
-        The recording's torque is the mean over a cycle; this says when in it the command changed.
+        The recording's torque is the mean over a cycle; this delay says when the command changed in the cycle.
         """
 
     def bus_load(self, period: float) -> float:
-        """Share of the bus that a cycle of `period` [s] takes, 0 to 1; 0 where there is no bus."""
+        """Bus load, 0 to 1, with cycles of `period` [s]; 0 without a bus."""
 
     def identity(self) -> dict[str, Any]:
-        """What the drive is, for the recording: names and values of JSON's types."""
+        """Identity of the drive for the recording: names and values in JSON types."""
 
 
 _METHODS = (

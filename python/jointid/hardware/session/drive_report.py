@@ -11,23 +11,23 @@ Value = float | int | str
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reported:
-    """One thing that a drive was asked for.
+    """One value that a drive reported.
 
     Attributes
     ----------
     name : str
-        As the drive's manual has it, e.g. "PL[1]" or "1016h:1".
+        Name in the drive's manual, e.g. "PL[1]" or "1016h:1".
     meaning : str
     value : float, int, str or None
-        None: the drive did not answer, or does not have it.
+        None if the drive did not answer or does not have it.
     unit : str
-        Empty for a bare number or a text.
+        Unit; empty for a plain number or a text.
     expected : float, int, str or None
-        What a session needs; None: any value will do.
+        Value that a session needs; None if any value is allowed.
     kind : str
-        "speed_limit": the drive's own. Default: nothing that a session looks at.
+        "speed_limit" for the drive's own limit. Default: empty, not used by a session.
     output : float or None
-        Of a number with a kind: what it is at the joint's output [rad/s]. Default: not known.
+        The speed limit at the joint's output [rad/s]. Default: not known.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Reported:
 
     @property
     def differs(self) -> bool:
-        """Whether it is not what a session needs."""
+        """Whether the value differs from what a session needs."""
         if self.expected is None:
             return False
         if isinstance(self.expected, float) and isinstance(self.value, int | float):
@@ -49,7 +49,7 @@ class Reported:
 
     @property
     def text(self) -> str:
-        """The value with its unit."""
+        """Value with its unit."""
         return _text(self.value, self.unit)
 
     def __str__(self) -> str:
@@ -60,31 +60,31 @@ class Reported:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveReport:
-    """A drive as it was found, its motor off.
+    """State and settings of a drive with its motor off.
 
     Attributes
     ----------
     drive : str
-        Its make, and where it is.
+        Make and address of the drive.
     identity : tuple of Reported
         Vendor, product, revision, serial number, firmware.
     settings : tuple of Reported
-        Mode, and the drive's own limits.
+        Mode and the drive's own limits.
     watchdog : tuple of Reported
-        What makes the drive stop when the host is gone, read back from it.
+        Watchdog settings, read back from the drive.
     serial : str
-        The serial number; empty when it is not known.
+        Serial number; empty if not known.
     motor_on : bool or None
     trouble : str
-        What keeps the drive from working; empty when nothing does.
+        What prevents operation; empty if nothing does.
     position, velocity : float
         At the output [rad], [rad/s].
     reading : float
-        Raw, of the torque sensor, as in a `DriveSample`.
+        Raw reading of the torque sensor, as in a `DriveSample`.
     current : float
-        Active, in the motor [A].
+        Active motor current [A].
     supply, temperature : float
-        [V], [°C]. Each number is not a number when it is not known.
+        Supply voltage [V] and temperature [°C]. An unknown number is NaN.
     """
 
     drive: str
@@ -103,17 +103,17 @@ class DriveReport:
 
     @property
     def differences(self) -> tuple[Reported, ...]:
-        """All that is not what a session needs."""
+        """Entries that differ from what a session needs."""
         asked = (*self.identity, *self.settings, *self.watchdog)
         return tuple(each for each in asked if each.differs)
 
     def value(self, name: str) -> Value | None:
-        """Return the value of the entry with this name; None when there is none."""
+        """Return the value of the entry with this name; None if there is none."""
         asked = (*self.identity, *self.settings, *self.watchdog)
         return next((each.value for each in asked if each.name == name), None)
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields, of JSON's types: a number that is not known is None."""
+        """Return the fields as JSON types; an unknown number is None."""
         found: dict[str, Any] = asdict(self)
         for name, value in found.items():
             if isinstance(value, float) and not math.isfinite(value):

@@ -21,52 +21,52 @@ _ROUNDED = 1e-9  # a torque that is cut at the limit may be so much above it
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionLimits:
-    """Limits of a session; each is a stop with a name.
+    """Limits of a session; each one stops it under its own name.
 
     Attributes
     ----------
     position : tuple of float
         Lowest and highest output angle [rad].
     velocity : float
-        Estimated from the positions, and measured where the drive does: the larger one counts [rad/s].
+        Largest velocity [rad/s]: the estimate from positions or the drive's measurement, whichever is larger.
     torque : float
-        Commanded, at the output [N·m].
+        Largest commanded torque at the output [N·m].
     torque_rate : float
-        Of the command from one cycle to the next [N·m/s].
+        Largest rate of the torque command from cycle to cycle [N·m/s].
     tracking_error : float
-        [rad]
+        Largest deviation from the reference [rad].
     measured_torque : float, optional
-        Of the active current, where the drive reports it [N·m]. Default: 1.2 times `torque`.
+        Largest torque of the active current, if the drive reports it [N·m]. Default: 1.2 times `torque`.
     torque_difference : float, optional
-        Between commanded and measured torque, in the mean over ten samples [N·m]. Default: a quarter
-        of `torque`.
+        Largest difference between commanded and measured torque, averaged over ten samples [N·m]. Default: a
+        quarter of `torque`.
     saturated_samples : int
-        Cycles in which the torque limit cut the command, in all; the thesis stops beyond 20.
+        Total number of cycles with a command cut to the torque limit; the thesis stops beyond 20.
     missed_deadlines : int
-        Cycles in a row that ended after the next had to begin.
+        Consecutive cycles that ended after the start of the next cycle was due.
     repeated_positions : int
-        Times in a row that the position is the same to the count although the joint was moving just
-        before, or the torque has since changed by more than `torque` and more than four times the believed
-        breakaway torque (but never more than 1.98 times `torque`): an encoder that hangs, or a blocked joint.
+        Consecutive equal positions that show a stuck encoder or a blocked joint. They count if the joint was moving
+        just before, or if the torque has since changed by more than `torque` and more than four times the joint's
+        breakaway torque (at most 1.98 times `torque`).
     clipped_samples : int
-        Readings in a row at the end of the sensor's range.
+        Consecutive readings at the end of the sensor's range.
     late_samples : int
-        Cycles in a row without a sample in time, because an answer was late or lost or the loop stood
-        still. The last torque is held meanwhile, and the recording marks them (`Recording.late`).
+        Consecutive cycles without a sample in time, because an answer was late or lost or the loop paused. The last
+        torque holds meanwhile, and the recording marks them (`Recording.late`).
     late_share : float
-        Share of such cycles in the last 5 s; as many as `late_samples` are never too many.
+        Largest share of such cycles in the last 5 s; up to `late_samples` cycles are always allowed.
     torque_envelope : float, optional
-        How many times the torque that the reference needs by the joint's values (friction, inertia, weight)
-        may be commanded for longer than 50 ms; a twentieth of `torque` is added. Default: not watched;
-        `commission` takes 2 for runs with an identified joint.
+        Largest factor between the commanded torque, over more than 50 ms, and the torque that the reference needs by
+        the joint's friction, inertia and weight; a twentieth of `torque` is added. Default: not watched;
+        `commission` uses 2 for runs with an identified joint.
     watchdog_travel : float, optional
-        Farthest that the joint may go when the host dies, until the drive's watchdog has stopped it [rad]. Default:
-        as far as if the motor went off at once, and `watchdog_share`.
+        Largest travel after a failure of the host, until the drive's watchdog has stopped the joint [rad]. Default:
+        the travel with the motor off at once, plus `watchdog_share`.
 
     Raises
     ------
     InputError
-        A value is of a wrong kind, or not above 0; the window is empty.
+        A value of the wrong kind or not above 0; an empty position range.
     """
 
     position: tuple[float, float] = _NO_WINDOW
@@ -117,9 +117,9 @@ class SessionLimits:
 
     @property
     def watchdog_share(self) -> float:
-        """How much farther the joint may go because the drive's watchdog takes its time, by default [rad].
+        """Default travel that the delay of the drive's watchdog may add [rad].
 
-        A tenth of the window, at least 2°; 10° where there is no window.
+        A tenth of the position range, at least 2°; 10° without a range.
         """
         low, high = self.position
         if (low, high) == _NO_WINDOW:
@@ -127,7 +127,7 @@ class SessionLimits:
         return max(_WATCHDOG_SHARE * (high - low), _LEAST_SHARE)
 
     def passed_by(self, peaks: Peaks) -> str:
-        """Return which of position, velocity and torque some joints go beyond in a motion; empty: none.
+        """Return which of position, velocity and torque a motion exceeds; empty if none.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class SessionLimits:
 
     @classmethod
     def of(cls, joint: Joint, **changes: float | tuple[float, float] | None) -> SessionLimits:
-        """Return a joint's own limits, the smaller of torque and current, with some changes."""
+        """Return a joint's limits with some changes; the torque limit is the smaller of torque and current."""
         known = joint.limits
         values: dict[str, object] = {}
         if known.position is not None:

@@ -25,25 +25,26 @@ class SessionOptions:
     Attributes
     ----------
     period : float
-        Between commands [s]; at least 1e-5.
+        Time between commands [s]; at least 1e-5.
     approach_velocity : float
-        Largest, on the way to the start [rad/s]; at least 1e-4.
+        Largest velocity on the motion to the start [rad/s]; at least 1e-4.
     settle : float
-        Time at rest at the start [s]; at most 5 million periods.
+        Rest at the start of the trajectory [s]; at most 5 million periods.
     velocity_counts, velocity_time : int, float
-        Of the velocity estimator (6.3.1): counts at least, [s] at most.
+        Smallest number of counts and longest time [s] of the velocity estimator (thesis, 6.3.1).
     resolution : float, optional
         Output angle of an encoder count [rad]. Default: the drive's own `resolution`.
     answer_timeout : float, optional
-        For the drive's state in a cycle [s]; beyond, the position is stale. Default: three quarters of a
-        period: after a late cycle the bus carries more frames.
+        Longest wait for the drive's state in a cycle [s]; after it the position is stale. Default: three quarters of a
+        period.
     acknowledge_damped : bool
-        Start with a drive that does not switch its motor off when the host is gone, but damps, holds or brakes it.
+        Whether to start with a drive that damps, holds or brakes its motor, and does not switch it off, when the host
+        fails.
 
     Raises
     ------
     InputError
-        A value is of a wrong kind, or not within its range.
+        A value of the wrong kind or outside its range.
     """
 
     period: float = 2e-3
@@ -87,7 +88,7 @@ class SessionOptions:
 
     @property
     def timeout(self) -> float:
-        """For an answer in a cycle [s]."""
+        """Longest wait for an answer in a cycle [s]."""
         return 0.75 * self.period if self.answer_timeout is None else self.answer_timeout
 
 

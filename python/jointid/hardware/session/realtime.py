@@ -21,20 +21,20 @@ _HIGHEST_PRIORITY = 99
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealTimeOptions:
-    """Real-time settings to ask of the operating system during a session; by default none.
+    """Real-time settings of the operating system during a session; none by default.
 
     Attributes
     ----------
     priority : int, optional
-        Of SCHED_FIFO, 1 to 99; 70 to 80 is usual. Needs CAP_SYS_NICE or `ulimit -r`.
+        Priority of SCHED_FIFO, 1 to 99; 70 to 80 is usual. Needs CAP_SYS_NICE or `ulimit -r`.
     lock_memory : bool
-        Keep all memory out of swap. Needs CAP_IPC_LOCK or `ulimit -l unlimited`.
+        Whether to keep all memory out of swap. Needs CAP_IPC_LOCK or `ulimit -l unlimited`.
     cpus : tuple of int, optional
         Processors that the loop may run on.
     timer_slack : float, optional
-        By which sleeps may be prolonged [s]; Linux takes 50e-6 unless asked.
+        Largest extension of a sleep by the kernel [s]; Linux's default is 50e-6.
     freeze_garbage : bool
-        No garbage collection while the session runs.
+        Whether to stop garbage collection during the session.
     """
 
     priority: int | None = None

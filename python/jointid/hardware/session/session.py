@@ -62,40 +62,39 @@ __all__ = [
 class Session:
     """One run on a joint: check, enable, move to the start, settle, run, stop.
 
-    Every way out leaves zero torque and the motor off, and asks the drive to confirm it.
+    However it ends, the session commands zero torque, switches the motor off, and asks the drive to confirm it.
 
     Parameters
     ----------
     drive : Drive
-        Anything with a drive's methods; `open_drive` gives a bench's.
+        Any object with a drive's methods; `open_drive` returns that of a bench.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
-        The simulator's own; its law is computed in the core.
+        A controller of the simulator; the core computes its law.
     trajectory : Trajectory
     limits : SessionLimits
     options : SessionOptions
     output : path, optional
-        The recording grows in this .csv, the frames in a .log beside it.
+        The recording goes to this .csv, the frames to a .log with the same name.
     observer : callable, optional
-        Called with (phase, time, sample, reference, torque) in each cycle; for a console or a plot. What
-        it raises ends the session.
+        Called with (phase, time, sample, reference, torque) in each cycle; for a console or a plot. An exception
+        ends the session.
     real_time : RealTimeOptions, optional
-        What to ask of the operating system while the motor is on; what it does not grant is in the
-        recording's metadata. Default: nothing.
+        Settings of the operating system while the motor is on; the recording's metadata list those that are not
+        granted. Default: none.
     joint : Joint, optional
-        What limits that look ahead believe of inertia, friction and weight. Default: the drive's `joint`.
+        Inertia, friction and weight for limits that predict the motion. Default: the drive's `joint`.
     designed_for : DesignedFor, optional
-        A bench's; the recording's metadata say in what the session differs. Default: not known.
+        Joint of a designed motion; the recording's metadata say how the session differs. Default: not known.
 
     Attributes
     ----------
     recording : Recording or None
-        Of the last run, however it ended, also by a bug; None before it, and when too few samples were
-        recorded.
+        Recording of the last run, also after an error; None before a run or with too few samples.
 
     Raises
     ------
     InputError
-        The drive lacks a method, or the output angle of an encoder count is not known.
+        The drive lacks a method, or the encoder's resolution is not known.
     """
 
     def __init__(
@@ -132,17 +131,17 @@ class Session:
         self.recording: Recording | None = None
 
     def check(self) -> list[str]:
-        """Bring the drive up and return the reasons not to enable the motor, which stays off.
+        """Connect the drive and return the reasons not to enable the motor, which stays off.
 
         Returns
         -------
         list of str
-            Empty when all pre-flight checks pass.
+            Empty if all pre-flight checks pass.
 
         Raises
         ------
         InputError
-            The trajectory or the way to its start has more cycles than a session can keep.
+            The trajectory or the motion to its start has more cycles than a session can record.
         """
         options, limits = self._options, self._limits
         check_cycles("trajectory.duration", self._trajectory.duration, options.period)
@@ -168,25 +167,25 @@ class Session:
         Parameters
         ----------
         dry_run : bool
-            Only check: the motor stays off, and nothing is returned. Default False.
+            Whether to check only: the motor stays off, and the result is None. Default False.
 
         Returns
         -------
         Recording
-            Of the run itself; `metadata` has timing, limits, the drive's identity, and whether the motor
-            was seen off afterwards.
+            Recording of the run; `metadata` has timing, limits, the drive's identity, and whether the motor is
+            confirmed off.
 
         Raises
         ------
         InputError
             As in `check`.
         SessionRefusedError
-            A pre-flight check failed, or the drive raised a DriveFaultError or an OSError in it.
+            A pre-flight check failed, or the drive raised a DriveFaultError or an OSError during the check.
         SessionStoppedError
-            A limit, a fault, or the user stopped it; with what was recorded.
+            A limit, a fault or the user stopped the session; the error holds the recording.
         Exception
-            A bug in drive, controller, observer or session: raised again after the motor is off and the
-            recording closed, with a note of how the session ended. What was recorded is `recording`.
+            A bug in drive, controller, observer or session. It is raised again, with a note on how the session ended,
+            after the motor is off and the recording is closed; `recording` has the samples.
 
         Examples
         --------

@@ -9,27 +9,27 @@ from jointid.hardware.session.motor_state import MotorState, is_off, state_of
 
 @dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class DriveSilence:
-    """What a drive did when nothing was sent to it, its motor on at no torque.
+    """Reaction of a drive to a silent host, its motor on at zero torque.
 
-    Returned by a drive's method `fall_silent`, which sends nothing for twice the time that its watchdog takes,
-    and then asks the drive.
+    The drive's method `fall_silent` returns it. The method sends nothing for twice the watchdog's time, and then
+    asks the drive.
 
     Attributes
     ----------
     allowed : float
-        Time that the drive was told to wait for the host [s].
+        Watchdog time set in the drive [s].
     state : {"off", "damped", "held", "braked", "on"} or None
-        What it says of its motor; None: it does not answer.
+        State of the motor that the drive reports; None if it does not answer.
     told : float or None
-        From the host's last sign of life until the drive reported that it is missing [s]; None: it did not.
+        Time from the host's last sign of life until the drive reported the missing host [s]; None if it did not.
     asked : float
-        From then until it was asked [s].
+        Time from then until the drive was asked [s].
     missed_host : bool
-        It names the missing host as the reason.
+        Whether the drive names the missing host as the reason.
     failure : str
-        What it names. Default: nothing.
+        Reason that the drive names. Default: none.
     motor_off : bool or None
-        Whether `state` is "off"; as an argument the older name of it, True for "off" and False for "on".
+        Whether `state` is "off". As an argument, the former name of `state`: True is "off", False is "on".
     """
 
     allowed: float
@@ -57,5 +57,5 @@ class DriveSilence:
 
     @property
     def motor_off(self) -> bool | None:
-        """Whether it says that its motor is off; None: it does not answer."""
+        """Whether the drive reports that its motor is off; None if it does not answer."""
         return is_off(self.state)

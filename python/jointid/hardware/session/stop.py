@@ -27,11 +27,11 @@ class Stop:
     moment : float
         On the drive's clock, which stamps the frames too [s].
     message : str
-        What happened, by how much.
+        What happened, with numbers.
     measured, allowed : float or None
         The number that was beyond the limit, and the limit, in the limit's unit; None where there is none.
     motor_off : bool or None
-        Whether the drive was asked afterwards and confirmed it; None: this drive cannot be asked.
+        Whether the drive confirmed that its motor is off; None if it cannot be asked.
     """
 
     limit: str
@@ -47,7 +47,7 @@ class Stop:
         return f"stopped by {self.limit} after {self.time:.3f} s of {self.phase}: {self.message}"
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields, of JSON's types."""
+        """Return the fields as JSON types."""
         return asdict(self)
 
 
@@ -74,7 +74,7 @@ class LimitError(RuntimeError):
 
 
 class SessionRefusedError(RuntimeError):
-    """The session was not started: the motor has not been on."""
+    """The session did not start; the motor was never on."""
 
 
 class SessionStoppedError(RuntimeError):
@@ -84,7 +84,7 @@ class SessionStoppedError(RuntimeError):
     ----------
     stop : Stop
     recording : Recording or None
-        What was recorded until then, if it is long enough to be one.
+        Recording until the stop, if it is long enough.
     """
 
     def __init__(self, stop: Stop, recording: Recording | None) -> None:

@@ -18,23 +18,23 @@ _OWNER = "watchdog"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Watchdog:
-    """What makes a drive stop by itself when its host is gone: a fact of the drive, which a drive declares.
+    """How a drive stops its motor when the host fails; the drive declares it.
 
     Attributes
     ----------
     time : float
-        That it waits after the host's last sign of life [s].
+        Time from the host's last sign of life until the drive reacts [s].
     fed_by : str
-        What a sign of life is: "heartbeat", "command", "any frame to the node", "any frame from the master".
+        Sign of life: "heartbeat", "command", "any frame to the node", "any frame from the master".
     then : str
-        What it does with the motor after that: "off", "damped", "held", "braked", "nothing".
+        Reaction: "off", "damped", "held", "braked", "nothing".
     read_back : bool
-        The drive has confirmed all of it; False: only a motor that was seen to stop proves it.
+        Whether the drive has confirmed these settings. If False, only a test with the motor on proves them.
 
     Raises
     ------
     InputError
-        A value is of a wrong kind, or not one of these.
+        A value of the wrong kind, or an unknown value.
 
     Examples
     --------

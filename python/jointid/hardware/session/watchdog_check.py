@@ -61,7 +61,7 @@ class WatchdogTravel:
         return self.travel <= self.allowed
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields, of JSON's types."""
+        """Return the fields as JSON types."""
         watchdog = self.watchdog
         return {
             "time": watchdog.time,
