@@ -22,7 +22,7 @@ def block_starts(start: Array, count: int, joints: int = 1) -> Array:
     Parameters
     ----------
     start : ndarray, shape (windows,)
-        Of the windows of all joints, ascending [s].
+        Start of the windows of all joints, ascending [s].
     count : int
         Number of blocks.
     joints : int

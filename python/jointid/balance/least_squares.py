@@ -16,11 +16,11 @@ def solve(
     Parameters
     ----------
     triangle : ndarray, shape (rows, columns)
-        Of the core, column by column in memory.
+        Triangle of the core, column by column in memory.
     columns : list of int
     target : int
     rcond : float
-        Of the columns, brought to unit norm: below it they are combinations of each other. Default 1e-10.
+        Smallest relative singular value of the columns at unit norm; columns below it are dependent. Default 1e-10.
     """
     solved = _core.solve_independent(triangle, columns, target)
     if solved is not None:

@@ -69,11 +69,11 @@ def cells_of(
     jacobian : ndarray, shape (rows, p)
     residual : ndarray, shape (rows,)
     recording : ndarray of int
-        Of each row, ascending.
+        Recording of each row, ascending.
     begin, end : ndarray, shape (rows,)
         Motion before each row and with it [s], ascending.
     length : float
-        Of a block [s].
+        Length of a block [s].
     """
     limits: list[tuple[int, int]] = []
     starts: list[int] = []

@@ -23,19 +23,19 @@ class Action:
         a function is designed by it.
         "inspect": look at the hardware, the logger or the file.
     arguments : mapping of str to object
-        Of a call: the arguments to change, by name, e.g. ``{"model": "stribeck"}``,
+        Arguments to change in a call, by name, e.g. ``{"model": "stribeck"}``,
         ``{"columns": {"velocity": None}}``, ``{"parameters": {"viscous": 12.0}}``. Default: none.
         `parameters` is merged over that of the call, field by field of each parameter (None takes a field
         away), and `columns`, `units` and `scale` of a load signal by signal; every other argument replaces
         that of the call.
     text : str
-        Of "record" and "inspect": what, in a phrase without the syntax of any face. Of a call: what for,
-        if that needs to be said. Default: nothing.
+        What to record or inspect, in a phrase that fits a function call and a command line; for a call its purpose,
+        if it needs one. Default: empty.
     function : str
-        Of a call: which one: "identify" (default), "load", "compare_models", "sweep", "simulate",
-        "design_excitation" or "Joint" (arguments are then fields of the joint). Of "record":
-        "next_motion", the method of the estimate that designs the motion, with these arguments; or
-        "identify", which designs none.
+        Function to call: "identify" (default), "load", "compare_models", "sweep", "simulate",
+        "design_excitation" or "Joint" (arguments are then fields of the joint). For
+        "record": "next_motion", the estimate's method that designs the motion, with these arguments, or "identify"
+        without a design.
 
     Examples
     --------

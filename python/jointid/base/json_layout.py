@@ -29,9 +29,9 @@ def json_text(value: Any, indent: str = "") -> str:
     Parameters
     ----------
     value : object
-        Of JSON's types.
+        A value of JSON types.
     indent : str
-        Of the line that it begins in. Default: none.
+        Indentation of its first line. Default: none.
 
     Raises
     ------

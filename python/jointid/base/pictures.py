@@ -18,7 +18,7 @@ def write_picture(figure: Any, path: Path, **options: Any) -> None:
     path : Path
         Its ending chooses the format.
     **options
-        Of `Figure.savefig`.
+        Options of `Figure.savefig`.
 
     Raises
     ------

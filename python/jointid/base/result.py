@@ -57,7 +57,7 @@ class Overview:
     answer : tuple of str
         The answer in sentences, where there is no verdict; what follows a verdict, where there is one.
     level : str
-        Of the answer: "usable", "usable with care", "not usable", or "" where it is no verdict.
+        Level of the verdict: "usable", "usable with care", "not usable", or "" without a verdict.
     parameters : tuple of Quantity
         Rows of the main table: values and what follows from them; of a comparison its models, of a rollout its runs,
         of a study its cells.

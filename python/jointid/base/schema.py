@@ -77,7 +77,7 @@ def read_json(text: str) -> Any:
     Returns
     -------
     object
-        Of JSON's types; numbers may be infinite or NaN, which `Number` and `Plain` refuse.
+        A value of JSON types; numbers may be infinite or NaN, which `Number` and `Plain` refuse.
 
     Raises
     ------

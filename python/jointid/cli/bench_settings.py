@@ -37,7 +37,7 @@ class Setting:
     table, name : str
         As in the joint file, e.g. "limits" and "velocity".
     value : object
-        Of JSON's types.
+        A value of JSON types.
     stated : bool
         Whether the file has the key; else the value is a default.
     """
@@ -66,9 +66,9 @@ class InForce:
     ----------
     settings : tuple of Setting
     lowest, highest : float
-        Of the trajectory [rad].
+        Range of the trajectory [rad].
     fastest : float
-        [rad/s]
+        Largest velocity of the trajectory [rad/s].
     """
 
     settings: tuple[Setting, ...]

@@ -82,7 +82,7 @@ def joint_of(
     Parameters
     ----------
     arguments : Namespace
-        Of a command with `joint_arguments`.
+        Arguments of a command with `joint_arguments`.
     file : Joint or None
         As `joint_file` returned it.
     recordings : sequence of Recording
@@ -108,7 +108,7 @@ def with_facts(
     facts : mapping of str to object
         Fields of a joint, as of `facts_of`.
     name, kind, sensor
-        Of a joint that is in no file.
+        Fields of a joint without a file.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def weighed(facts: Mapping[str, Any], model: Model, *, sensor: bool) -> dict[str
     ----------
     facts : mapping of str to object
     model : Model
-        Of the joint file: what it says of gravity stays.
+        Model of the joint file; its gravity stays.
     sensor : bool
         Whether the joint has a torque sensor.
     """

@@ -28,7 +28,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
     Parameters
     ----------
     arguments : Namespace
-        Of `jointid identify`.
+        Arguments of `jointid identify`.
     joints : sequence of str
         Empty: all.
     """

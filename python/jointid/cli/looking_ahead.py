@@ -31,7 +31,7 @@ def looked_ahead(
     Parameters
     ----------
     error : InputError
-        Of the first reading.
+        Error of the first attempt.
     attempt : callable
         Reads again, with arguments of `load` beside those of the call; raises what is wrong then.
     torque_column : callable

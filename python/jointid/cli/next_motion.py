@@ -23,7 +23,7 @@ def words_of_next_motion(action: Action, joint: str, estimate: str, of_joint: st
     Parameters
     ----------
     action : Action
-        Of kind "record", with the function "next_motion".
+        An action of kind "record" with the function "next_motion".
     joint, estimate : str
         The joint file and the saved estimate, or what stands for them.
     of_joint : str

@@ -24,7 +24,7 @@ def required(verdicts: Mapping[str, Verdict | None], arguments: argparse.Namespa
     verdicts : mapping of str to Verdict or None
         By joint, whose name may be empty; None: it could not be identified.
     arguments : Namespace
-        Of `jointid identify`.
+        Arguments of `jointid identify`.
     """
     if arguments.require is None:
         return DONE

@@ -39,7 +39,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     Parameters
     ----------
     arguments : Namespace
-        Of `jointid identify`.
+        Arguments of `jointid identify`.
     joint : Joint
         With a voltage drive.
     """

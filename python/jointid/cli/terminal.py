@@ -117,7 +117,7 @@ def broken(line: str, width: int) -> Iterator[str]:
     ----------
     line : str
     width : int
-        Of the terminal; a small one breaks nothing.
+        Width of the terminal.
     """
     if width < _NARROWEST or _length(line) <= width:
         yield line
@@ -167,10 +167,7 @@ def _is_row(line: str, rule: str) -> bool:
 
 
 def _table(lines: Sequence[str], width: int) -> Iterator[str]:
-    """Yield a table; one that is too wide as tables below each other, each with the first column.
-
-    Of such a table columns without any entry are left out.
-    """
+    """Yield a table; a table that is too wide becomes several, each with the first column and no empty one."""
     spans = _spans(lines[1])
     if width < _NARROWEST or max(map(_length, lines)) <= width:
         yield from lines

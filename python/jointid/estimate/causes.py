@@ -45,9 +45,9 @@ class Cause:
     shares : mapping of str to float
         The same of all values, noticeable or not.
     uncertain : mapping of str to float
-        Of values that their own errors leave open: the change in standard errors, where it is a large share.
+        Large relative changes of uncertain values, in standard errors.
     near_zero : mapping of str to str
-        Of values near zero, which have no sensible share: the change in words, "from 0 to 0.12 N·m".
+        Changes of values near zero, in words: "from 0 to 0.12 N·m".
     effect : str
         What it does to the values as a part of a sentence, where that is more than a list of changes.
     harmful : bool

@@ -39,7 +39,7 @@ class Objection:
     Attributes
     ----------
     code : str
-        Of the finding.
+        Code of the finding.
     reason : str
         In a sentence.
     blocking : bool
@@ -47,7 +47,7 @@ class Objection:
     parameters : tuple of str
         Those concerned; empty where all are.
     share : float
-        Of the misfit, what it is the cause of. Default 0.
+        Share of the residual that it causes. Default 0.
     """
 
     code: str

@@ -39,7 +39,7 @@ class FittedModel:
     joint : Joint or None
         None: a joint without a gear, of which nothing is known.
     values : mapping of str to float
-        Of all parameters.
+        Values of all parameters.
     """
 
     settings: Mapping[str, Any]

@@ -81,7 +81,7 @@ class Rollout(Result):
     Attributes
     ----------
     runs : tuple of RunRollout
-        Of a robot one for each recording and joint.
+        Rollouts; for a robot, one per recording and joint.
     horizon : float or None
         Length of the stretches that begin at the logged state [s]; None: each run as a whole.
     """

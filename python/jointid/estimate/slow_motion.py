@@ -17,7 +17,7 @@ class SlowMotion:
         Mean friction that the slow windows have beyond what the faster ones predict [N·m or N]; negative:
         they have less, as a creeping or sticking joint does.
     stderr : float
-        Of `excess`, clustered over passes of slow motion.
+        Standard error of `excess`, clustered over passes of slow motion.
     level : float
         Dry friction of the faster windows [N·m or N].
     share : float

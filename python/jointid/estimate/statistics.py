@@ -139,7 +139,7 @@ class ResidualStatistics:
     r_squared : float
         Share of the measured variance that the model explains.
     autocorrelation : float
-        Of neighbouring windows; 0 for a perfect model with white noise.
+        Autocorrelation of neighboring windows; 0 for a perfect model with white noise.
     samples : int
         Samples in the recordings.
     left_out : float

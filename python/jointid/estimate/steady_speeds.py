@@ -35,7 +35,7 @@ class SteadyFriction:
     Attributes
     ----------
     values, errors : mapping of str to float
-        Of the parameters as `Estimate` names them, and their standard errors.
+        Parameter values, named as in `Estimate`, and their standard errors.
     kind : str
         "revolute" or "prismatic".
     speeds : tuple of float

@@ -55,7 +55,7 @@ class Use:
     parameters : tuple of str
         Those to mind, or because of which it does not serve; empty where it is not about single ones.
     codes : tuple of str
-        Of the findings that say so, and "explained", "self_test" or "given".
+        Codes of the findings behind it, and "explained", "self_test" or "given".
     within : float or None
         How far off what it needs may be at most (95 %), as a share of it: of `Estimate.within`. None where it does not
         serve, or where that is not known.
@@ -151,7 +151,7 @@ def judged(
     ----------
     estimate : Estimate
     self_test : SelfTest, optional
-        Of this estimate. Default: it is judged without one.
+        Self-test of this estimate. Default: none.
     parameters : iterable of str
         Those asked for. Default: all that are free.
 

@@ -32,7 +32,7 @@ def chosen_without_delays(
     Parameters
     ----------
     problem : Problem
-        Of the recordings as they are, with any choice of terms.
+        Problem of the unchanged recordings, with any choice of terms.
     request : Request
         As in `select_model`.
     settings : Settings

@@ -70,7 +70,7 @@ class Prepared:
         The direct sum over the windows.
     domain : SearchDomain
     settings : Settings
-        Of the call.
+        Settings of the call.
     given : tuple of Recording
         As given in the call; those of the problem may be shifted.
     refinements : Refinements

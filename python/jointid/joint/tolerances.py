@@ -22,14 +22,14 @@ class Tolerances:
     Parameters
     ----------
     torque_constant : str or float, optional
-        Of the motor [N·m/A]. A drive computes its torque from its current, so it scales the drive's torque
-        whatever signal that is read from. A share needs no known torque constant.
+        Torque constant of the motor [N·m/A]. A drive computes its torque from its current, so it scales the torque
+        of any signal. A relative tolerance needs no known torque constant.
     gear_ratio : str or float, optional
         It scales a torque that is recorded on the motor side, and the reflected inertia of a rotor.
     inertia, rotor_inertia : str or float, optional
         [kg·m²]
     mass, centre_of_mass, link_inertia : str or float, optional
-        Of the link [kg], [m], [kg·m²].
+        Mass [kg], center of mass [m] and inertia [kg·m²] of the link.
     symmetry : str or float, optional
         How far the Coulomb friction of each direction may be off the mean of both, as a share of it or in its unit:
         a sensor's offset takes that up. Default, where none is stated: "10 %".

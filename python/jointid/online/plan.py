@@ -46,7 +46,7 @@ class Plan:
     period : float
         Between samples [s].
     duration : float
-        Of a window of integration [s].
+        Duration of an integration window [s].
     stretch : float
         Duration of a piece, a whole number of windows [s].
     context : float

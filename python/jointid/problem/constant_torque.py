@@ -81,7 +81,7 @@ def undivided(names: Collection[str]) -> tuple[Undivided, ...]:
 def balanced(names: Sequence[str], lower: Array, upper: Array, values: Array) -> Array:
     """Return equivalent values with equal Coulomb frictions, as far as the bounds allow.
 
-    Of all values that fit alike, this is a convention and no finding.
+    All such values fit equally well; this choice is a convention.
     """
     free = [name for name, low, high in zip(names, lower, upper, strict=True) if low < high]
     result = values.copy()

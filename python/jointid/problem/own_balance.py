@@ -22,7 +22,7 @@ class OwnSignal:
     Attributes
     ----------
     series : ndarray
-        Of an inertia, without its mean: that belongs to the joint's inertia.
+        Values of an inertia without their mean, which belongs to the joint's inertia.
     friction : bool
         Whether the term is friction, of another joint or of this one.
     taken : bool

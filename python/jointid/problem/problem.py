@@ -39,7 +39,7 @@ class Problem:
     joint : Joint or None
     choice : TermChoice
     settings : Settings
-        Of the call, with what was chosen and done where it left the choice.
+        Settings of the call, completed by the automatic choices.
     threads : int
         0 (default): all.
     """

@@ -32,7 +32,7 @@ class Changes(Samples):
         Parameters
         ----------
         rows : slice or ndarray, optional
-            Of all samples, those that are kept: a slice, a mask or indices. Default: all.
+            Samples to keep: a slice, a mask or indices. Default: all.
         extra : mapping of str to array_like, each of shape (n,), optional
             Extra signals to add or to replace. Default: none.
         **signals : array_like of shape (n,), or None

@@ -29,7 +29,7 @@ class Clock:
     Attributes
     ----------
     time : ndarray, shape (n,)
-        Of the rows that are kept [s].
+        Time of the kept rows [s].
     kept : ndarray of int or None
         Numbers of these rows; None: all.
     notes : dict

@@ -145,10 +145,10 @@ def missing(
     ----------
     table : Table
     signals : sequence of str
-        Of time and position those without a column.
+        "time" and "position", if they have no column.
     found : Candidates
     kind : str, optional
-        Of joint, where it is known.
+        Kind of the joint, if known.
 
     Raises
     ------

@@ -12,7 +12,7 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
     Parameters
     ----------
     metadata : mapping
-        Of a recording.
+        Metadata of a recording.
 
     Examples
     --------

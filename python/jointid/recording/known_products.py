@@ -31,7 +31,7 @@ class Documented:
     source : str
         Who documents it.
     units : tuple of Unit
-        Of several the one that the position's rate shows; none: the name alone does not state it.
+        Possible units; the position's rate chooses among several. Empty: the name does not state a unit.
     whole : bool
         Whether the product's values are whole numbers: others were converted by somebody.
     asked : str

@@ -22,7 +22,7 @@ class Match:
     found : dict of str to Column
         Signal → its column, in the order of `SIGNALS`.
     kind : str
-        Of joint, as given or as the units show.
+        Kind of the joint, as stated or as the units show.
     left_out : list of dict
         Columns that a header assigns to a signal and that are not read: ``"column"`` (the header),
         ``"signal"`` and ``"reason"``.

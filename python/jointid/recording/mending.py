@@ -15,11 +15,11 @@ class Mend:
     Attributes
     ----------
     code : {"unwrapped", "held_rows", "held_torque"}
-        Of the finding that says so.
+        Code of the finding.
     count : int
         Wraps, or rows that were left out, or that hold the torque.
     size : float
-        Of a wrap [rad]; of held rows the usual number of rows with one sample; of a held torque the time [s].
+        Size of a wrap [rad], usual number of rows per sample for held rows, or time [s] for a held torque.
     """
 
     code: str

@@ -22,7 +22,7 @@ def shifts_of_runs(time: FloatArray, runs: Sequence[Rows]) -> FloatArray:
     Parameters
     ----------
     time : ndarray, shape (n,)
-        Of each run from a clock of its own.
+        Time in each run, starting at the run's own zero.
     runs : sequence of ndarray
         The rows of each run.
     """
@@ -39,7 +39,7 @@ def one_run(contents: Contents) -> tuple[Action, ...]:
     Parameters
     ----------
     contents : Contents
-        Of a file in which time goes back.
+        Contents of a file in which time goes back.
 
     Returns
     -------

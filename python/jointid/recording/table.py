@@ -69,7 +69,7 @@ class RenamedTable:
     other_names : mapping of str to int, optional
         Default: those of the table.
     indices : sequence of int, optional
-        Of each column here its number in the table. Default: all in order.
+        Number of each column in the table. Default: all in order.
     """
 
     def __init__(

@@ -18,7 +18,7 @@ def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
     Parameters
     ----------
     text : str
-        Of a file that begins with `CSV_MARK`.
+        Text of a file that begins with `CSV_MARK`.
 
     Returns
     -------

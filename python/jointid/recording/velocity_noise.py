@@ -19,8 +19,8 @@ def follows_position(recording: Recording) -> bool:
 def noise_of_velocity(recording: Recording) -> float:
     """Return the standard deviation of the velocity's noise, a median over the samples [rad/s or m/s].
 
-    Of a derived velocity it follows from the position's noise; of a recorded one from its own steps and
-    differences, which show neither a delay nor a filter.
+    For a derived velocity it follows from the position's noise. For a recorded velocity it follows from its own
+    steps and differences, which show neither a delay nor a filter.
     """
     if follows_position(recording):
         return median(recording.derived.noise)

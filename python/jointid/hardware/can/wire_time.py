@@ -38,7 +38,7 @@ def frame_time(message: can.Message, bitrate: float, data_bitrate: float | None 
     bitrate : float
         [bit/s]
     data_bitrate : float, optional
-        Of the data of a CAN FD frame that switches the bit rate [bit/s]. Default: the same.
+        Bit rate of the data of a CAN FD frame that switches the bit rate [bit/s]. Default: the same.
     """
     length = 0 if message.is_remote_frame else message.dlc
     if not message.is_fd:

@@ -122,7 +122,7 @@ class Reply:
     letters : str
     index : int
     value : int or float
-        Of an assignment, the value assigned; of an execution, 0.
+        The assigned value, or 0 for an execution.
     """
 
     letters: str

@@ -24,7 +24,7 @@ class ElmoEmulation:
     idle_loop : float
         Time between two interpreter commands of the drive [s]. Default 0.0003.
     mantissa_bits : int
-        Of a current command that count: 24 for a float, 4 for the thesis's link. Default 24.
+        Significant bits of a current command: 24 for a float, 4 for the thesis's link. Default 24.
     idle_jitter : float
         How much longer that may be, each time anew [s]. Default 0.
     enable_time : float

@@ -28,7 +28,7 @@ class EmulatedConverter:
     identifier : int
         COB-ID of its frame.
     bits, lowest, highest : int, float, float
-        Of the converter; [V].
+        Bits of the converter, and its range [V].
     conversions : int
         Summed for one frame.
     """

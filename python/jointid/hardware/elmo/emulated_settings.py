@@ -31,7 +31,7 @@ class ElmoSettings:
     enable_time : float
         From MO=1 until the motor is on and says so: brake, commutation [s].
     mantissa_bits : int
-        Of the current command that count; 24 is a float's own, 4 the thesis's link.
+        Significant bits of the current command: 24 for a float, 4 for the thesis's link.
     position_offset : float
         Output angle at count 0 [rad].
     analog : SensorScaling

@@ -129,7 +129,7 @@ class DriveStatus:
     Attributes
     ----------
     problem : str
-        Of the power stage; empty when there is none.
+        Problem of the power stage; empty without one.
     motor_on : bool
     failure : bool
         The motor was shut down: read MF.
@@ -170,7 +170,7 @@ class Emergency:
     Attributes
     ----------
     code : int
-        Of CiA 301, or the manufacturer's; 0: the error is gone.
+        Code of CiA 301 or of the manufacturer; 0: the error is gone.
     register : int
         Error register 1001h.
     elmo_code : int

@@ -41,11 +41,11 @@ class ElmoOptions:
     torque : SyncedConverter, AnalogInput or None
         Where the joint's torque sensor is read.
     bitrate : float
-        Of the bus [bit/s], to estimate its load.
+        Bit rate of the bus [bit/s], to estimate its load.
     execution_delay : float
         From a command's arrival until the drive acts on it: it waits for the drive's idle loop [s].
     mantissa_bits : int
-        Of a current command that the drive keeps: 24 of a float, 4 over the thesis's link. Commands are
+        Bits of a current command that the drive keeps: 24 for a float, 4 over the thesis's link. Commands are
         rounded to it, so that what is recorded is what the drive does.
     """
 

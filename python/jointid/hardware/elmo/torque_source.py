@@ -127,7 +127,7 @@ class AnalogInput:
     number : int
         1 or 2: AN[number].
     lowest, highest : float
-        Of the input [V].
+        Range of the input [V].
     every : int
         Control cycles between two questions; each cycle would load bus and drive too much.
     scaling : SensorScaling

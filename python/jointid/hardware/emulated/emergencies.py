@@ -50,7 +50,7 @@ class Emergencies:
         Parameters
         ----------
         code : int
-            Of the emergency.
+            Code of the emergency.
         register : int
             Bits of the error register.
         told : bool

@@ -25,7 +25,7 @@ class AccessError(Exception):
     Parameters
     ----------
     code : int
-        Of the abort that answers an SDO.
+        Code of the SDO abort.
     """
 
     def __init__(self, code: int) -> None:

@@ -51,7 +51,7 @@ class SdoServer:
         Parameters
         ----------
         payload : bytes
-            Of a frame to the server; eight bytes, else it is aborted.
+            Payload of a frame to the server; it is aborted unless it has eight bytes.
         """
         if payload[:1] == b"\x80":
             self._transfer = None

@@ -113,7 +113,7 @@ def bitrate_to_emulate(interface: str, channel: str | None, bitrate: float) -> f
     interface, channel : str
         As python-can names them.
     bitrate : float
-        Of the bus that is emulated [bit/s].
+        Bit rate of the emulated bus [bit/s].
 
     Returns
     -------

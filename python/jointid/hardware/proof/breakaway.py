@@ -57,7 +57,7 @@ def find_breakaway(
         Largest torque [N·m].
     options : FirstMotionOptions
     deviation : float
-        Of the torque sensor's readings at rest. Default: not a number, there is none to be watched.
+        Deviation of the torque sensor's readings at rest. Default: NaN, no sensor to watch.
 
     Raises
     ------

@@ -32,7 +32,7 @@ class Expected:
     sensor : bool
         There is a torque sensor.
     sensor_sign : float
-        Of its gain.
+        Sign of the sensor's gain.
     """
 
     breakaway: float | None

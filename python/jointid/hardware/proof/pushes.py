@@ -183,7 +183,7 @@ class SensorResponse:
     Attributes
     ----------
     slope : float
-        Of the reading over the acceleration [reading·s²/rad].
+        Slope of the reading over the acceleration [reading·s²/rad].
     error : float
         Its standard error.
     """

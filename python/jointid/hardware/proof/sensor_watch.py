@@ -15,7 +15,7 @@ class SensorWatch:
     Parameters
     ----------
     mean, deviation : float
-        Of the readings at rest; a deviation that is not a number: there is no sensor, and nothing is ever beyond.
+        Mean and deviation of the readings at rest; a NaN deviation means no sensor, and no reading is beyond.
     """
 
     def __init__(self, mean: float, deviation: float) -> None:

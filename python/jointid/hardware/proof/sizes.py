@@ -25,7 +25,7 @@ class Sizes:
     Attributes
     ----------
     resolution : float
-        Of an encoder count.
+        Resolution of an encoder count.
     few, more : float
         That are a motion; that must follow while the torque is held.
     span : float

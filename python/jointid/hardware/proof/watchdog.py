@@ -50,7 +50,7 @@ def prove_watchdog(
     steps : Steps
         That have passed, the motor on; `found`, `unchecked` and `lines` are added to.
     fall_silent : callable
-        Of the drive.
+        Method `fall_silent` of the drive.
     declared : Watchdog or None
         What the drive declares.
     callback : callable, optional

@@ -106,7 +106,7 @@ def brake(
     velocity : float
         Known with it [rad/s].
     period, timeout : float
-        Of the cycles, and for an answer [s].
+        Period of the cycles, and timeout of an answer [s].
 
     Returns
     -------

@@ -131,7 +131,7 @@ class Follower:
         ------
         LimitError, DriveFaultError
         Exception
-            Of the controller or the observer.
+            An error of the controller or the observer.
         """
         options, clock, lateness = self._options, self._drive.clock, self._guard.lateness
         period = options.period

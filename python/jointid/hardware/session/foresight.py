@@ -33,7 +33,7 @@ class Foresight:
         [s]
     joint : MovingJoint
     latency : float
-        Of a command, in drive and bus [s].
+        Latency of a command, in drive and bus [s].
     """
 
     def __init__(

@@ -145,7 +145,7 @@ class Guard:
         ----------
         torque : float
         saturations : int
-            Of the controller, in all.
+            Saturations of the controller in total.
         wanted : tuple of float, optional
             Position, velocity and acceleration of the reference. Default: there is none.
 

@@ -61,7 +61,7 @@ class Recorder:
     Parameters
     ----------
     path : Path
-        Of the recording, .csv; the frames go to the same name with .log.
+        Path of the recording, .csv; the frames go to the same name with .log.
     metadata : mapping
         Metadata of the recording; JSON.
     name : str

@@ -100,7 +100,7 @@ class DeadHost:
         ----------
         trajectory : Trajectory
         period : float
-            Of the commands [s].
+            Period of the commands [s].
         offset : float
             Added to the trajectory's positions [rad].
         """

@@ -123,11 +123,11 @@ def watchdog_travel(
     Parameters
     ----------
     watchdog : Watchdog
-        Of the drive.
+        Watchdog of the drive.
     joint : Joint or None
         What it states of inertia, friction and weight is believed.
     controller, trajectory, limits, options
-        Of the session.
+        As in the session.
     position : float
         Where the joint stands before it [rad].
     """

@@ -19,11 +19,11 @@ class Attributed:
     ----------
     candidate : Candidate
     share : float
-        Of the misfit at its best scale, out of sample.
+        Share of the residual at its best scale, out of sample.
     factor : int
         That scale: neighbouring windows summed.
     coefficients : ndarray, shape (m,)
-        Of its columns.
+        Coefficients of its columns.
     shifts : ndarray
         Change of the free parameters by this cause, after those found before it.
     alike : tuple of str

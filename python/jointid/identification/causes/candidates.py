@@ -36,7 +36,8 @@ class Candidate:
     numbers : tuple
         Name, value and unit behind the length of the numbers in `detail`, where @ is the unit of length.
     unit : str
-        Of its coefficient, where that is its size, for a hinge and behind a bar for a slide. Default: none is shown.
+        Unit of its coefficient, if that is its size: for a revolute joint, then after a bar for a prismatic one.
+        Default: not shown.
     family : str
         Causes that a recording hardly separates share one.
     finest : bool
@@ -176,7 +177,7 @@ def ripple(fit: FittedBalance) -> Iterator[Candidate]:
 def delay(fit: FittedBalance) -> Iterator[Candidate]:
     """To first order, the integral of a signal that is late changes by its rise over the window.
 
-    Of a signal whose delay was measured by itself, that says more than the misfit of the whole balance.
+    If the delay of a signal was measured directly, that measurement says more than the residual of the balance.
     """
     for signal in LATE:
         change = fit.late(signal)

@@ -57,7 +57,7 @@ def find_causes(
     torque_level : float
         Root mean square of the torque [N·m or N]; what an offset is held against.
     delays : mapping of str to Delay
-        Of the signals against the position, as estimated before.
+        Delays of the signals against the position, estimated before.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -113,14 +113,14 @@ def share_of(
     penalty: _core.Penalty,
     parameters: Mapping[str, ParameterEstimate],
 ) -> float:
-    """Return the largest share of the misfit that one candidate of a family explains by itself; 0 where none does.
+    """Return the largest share of the residual that one candidate of a family explains alone; 0 if none does.
 
-    Of a recording so long that stretches tell its causes it is 1: what they tell is known after a look at all.
+    It is 1 for a recording so long that its causes come from stretches: these need the whole recording first.
 
     Parameters
     ----------
     name : str
-        Of the family, e.g. "drift".
+        Name of the family, e.g. "drift".
     """
     from jointid.identification.causes.attribution import shares
 
@@ -146,7 +146,7 @@ def cause_of(
     Parameters
     ----------
     name, detail : str
-        Of the cause, e.g. "ripple", "2", or "delay", "torque".
+        Name and detail of the cause, e.g. "ripple", "2", or "delay", "torque".
     share : float
         Share of a misfit that it explains.
     size : float, optional

@@ -47,7 +47,7 @@ def of_a_scale(
     Parameters
     ----------
     shifts : mapping of str to float
-        Of the values, with the inertia that the torque shows.
+        Shifts of the values, with the inertia from the torque.
     share : float
         By which the torque shows a larger inertia.
     """

@@ -27,7 +27,7 @@ class LocalEvent:
     ----------
     rows : ndarray of bool, shape (windows,)
     share : float
-        Of the misfit.
+        Share of the residual.
     torque : float
         Largest mean torque of a window there [N·m or N].
     text : str

@@ -41,7 +41,7 @@ class Folds:
     Attributes
     ----------
     blocks : Folds
-        Of the core; the last column is the residual.
+        Folds of the core; the last column is the residual.
     """
 
     blocks: _core.Folds

@@ -25,7 +25,7 @@ def harm_of(
     Parameters
     ----------
     error : float
-        Of the value.
+        Standard error of the value.
     share : float
         The shift as a share of what it is held against.
     left : float
@@ -45,9 +45,9 @@ def harm_of(
 
 
 def error_of(p: ParameterEstimate, more: Mapping[str, float] | None = None) -> float:
-    """Its error with what is systematic: a shift that the interval states already is nothing new.
+    """Return the error of a value with its systematic part, so that a shift within the interval does not count.
 
-    Of what was removed the interval states nothing: chance is what hides it, with `more` by the removed itself.
+    The interval does not cover a removed effect: there the error is random, plus `more` from the removed effect.
     """
     if more is not None:
         return float(np.hypot(p.stderr or 0.0, more.get(p.name, 0.0)))

@@ -24,7 +24,7 @@ class SlowRows:
     ----------
     rows : ndarray of bool, shape (windows,)
     share : float
-        Of the misfit.
+        Share of the residual.
     speed : float
         Below which a window counts as slow [rad/s or m/s].
     """

@@ -76,7 +76,7 @@ def drawn_parameter(
     room : (float, float)
         How far it may move: below 0 and above.
     freedom : int
-        Of Student's t.
+        Degrees of freedom of Student's t.
     """
     # Not their standard deviation: a draw that lacks a direction of motion may end anywhere.
     left, right = np.quantile(moved, _MIDDLE)

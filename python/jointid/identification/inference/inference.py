@@ -38,7 +38,7 @@ class Freedom:
     Attributes
     ----------
     indices : tuple of int
-        Of the parameters that vary and that no bound holds.
+        Indices of the free parameters that are not at a bound.
     at_bound : tuple of str or None
         "min" or "max" for each parameter that a bound holds.
     """

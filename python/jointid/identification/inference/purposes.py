@@ -31,11 +31,11 @@ class Torques:
     Attributes
     ----------
     single : mapping of str to float
-        Of each coefficient of 1.
+        Torque of each term with coefficient 1.
     friction : frozenset of str
         Coefficients and shapes of friction.
     of_friction, of_drive : float
-        Of all friction, and of the drive.
+        Torque of all friction, and of the drive.
     """
 
     single: Mapping[str, float]
@@ -94,7 +94,7 @@ def within(
     Parameters
     ----------
     names : sequence of str
-        Of the parameters that `spread` is about.
+        Names of the parameters in `spread`.
     gram : ndarray, shape (p, p)
         Inner products of the residuals' derivatives by these.
     """

@@ -42,7 +42,7 @@ def variance_over_segments(
         Its minimum.
     free : sequence of int
     segments : Segments
-        Of its motion.
+        Segments of its motion.
 
     Returns
     -------

@@ -110,9 +110,9 @@ def systematic_errors(
     free : list of int
         Free parameters.
     count : int
-        Of all parameters.
+        Number of all parameters.
     triangle : Triangle
-        Of the residuals' derivatives by the free parameters, and behind them of what is lacking.
+        Triangle of the residuals' derivatives by the free parameters, then by the missing terms.
     lacking : collection of str
         The causes of what is lacking, in that order.
     shifts : tuple of ndarray or None

@@ -71,7 +71,7 @@ def velocity_systematic(
     free : sequence of int
         Parameters that vary and that no bound holds.
     segments : Segments
-        Of the motion.
+        Segments of the motion.
     """
     noisy = [is_noisy(run, penalty.noise_share) for run in problem.recordings]
     if not any(noisy):

@@ -108,7 +108,7 @@ class Motion:
         Parameters
         ----------
         factor : int
-            Of the windows' length. Default 1.
+            Factor on the windows' length. Default 1.
         varying : bool
             Whether the inertia may vary with the angle. Default False.
         """

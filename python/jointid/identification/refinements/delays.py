@@ -47,7 +47,7 @@ def refined_delays(
     Parameters
     ----------
     problem : Problem
-        Of the recordings as they are.
+        Problem of the unchanged recordings.
     given : mapping of str to float, optional
         Delays to take away [s], no others. Default: those that are certain and without which the torque
         balance fits better; never a torque that is early by more than a sample. One that fits better as held

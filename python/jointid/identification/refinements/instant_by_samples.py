@@ -32,7 +32,7 @@ def by_samples(problem: Problem, half: float) -> tuple[float, float] | None:
     Parameters
     ----------
     problem : Problem
-        Of which recordings with a held torque, a recorded velocity and coarse samples are used.
+        Problem; it uses the recordings with a held torque, a recorded velocity and a low sampling rate.
     half : float
         What half a step of 1 N·m changes the reading by; the link's inertia is in it.
 

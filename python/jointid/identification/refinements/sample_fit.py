@@ -49,7 +49,7 @@ def delay_by_samples(
     reach : float
         Longest delay [s].
     inertia : float
-        Of drive and link.
+        Inertia of drive and link.
     """
     pieces = [piece for piece in pieces if not piece.stretch.derived]
     if not pieces or not inertia > 0.0 or sum(len(piece.torque) for piece in pieces) < _FEW:

@@ -148,8 +148,7 @@ _STEPS = 4  # column of the torque's steps
 def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Array:
     """Window integrals, a column each: of the link's motion, the torque's steps and friction; the torque; the reading.
 
-    Of whole windows, in which angle and speed are those of their middle: all but the reading and the steps is
-    smooth enough.
+    Angle and speed are those of each window's middle, because all but the reading and the steps is smooth enough.
     """
     periods = [
         recording.sample_period if held[number] else 0.0

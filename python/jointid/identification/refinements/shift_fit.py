@@ -21,7 +21,7 @@ class Balance:
     Attributes
     ----------
     windows : list of _core.SmoothWindows
-        Of each stretch.
+        Windows of each stretch.
     signals : list of ndarray
         The signal of each stretch, sample by sample.
     columns : list of ndarray, each of shape (windows, columns)

@@ -35,12 +35,12 @@ class Piece:
     angle : ndarray
         The position as an angle; of a prismatic axis, its travel as half a turn.
     torque : ndarray
-        Of the drive at the output.
+        Torque of the drive at the output.
     sensor : ndarray or None
     held : bool
         Whether the torque is held between samples.
     own : tuple of OwnSignal
-        Of the model's own terms.
+        Signals of the model's own terms.
     """
 
     stretch: Stretch

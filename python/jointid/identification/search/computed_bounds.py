@@ -85,7 +85,7 @@ class ComputedBounds:
         Parameters
         ----------
         index : int
-            Of the coefficient in the penalty.
+            Index of the coefficient in the penalty.
         fixed : mapping of str to float
             Values of the fixed parameters.
 

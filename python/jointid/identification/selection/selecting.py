@@ -44,7 +44,7 @@ def select_model(
     problem : Problem
         With any choice of terms.
     request : Request
-        Of the call.
+        Request of the call.
     parameters, windows
         As in `identify`.
     unfit : mapping of str to str, optional

@@ -40,17 +40,17 @@ class Injection:
     Parameters
     ----------
     problem : Problem
-        Of the recordings.
+        Problem of the recordings.
     windows : int, float, str, WindowOptions or None
-        Of the estimate.
+        Windows of the estimate.
     names : sequence of str
-        Of the parameters, in the penalty's order.
+        Names of the parameters, in the penalty's order.
     theta : ndarray, shape (p,)
         The estimate.
     table : WindowTable
-        Of the estimate: its residuals are what the log has beside the model.
+        Windows of the estimate; their residuals are the part of the log that the model lacks.
     rng : Generator
-        Of the noise of a trial without a disturbance.
+        Random generator of the noise in a trial without a disturbance.
     """
 
     def __init__(
@@ -140,7 +140,7 @@ class Injection:
         theta : ndarray, shape (p,)
             In the order of the names.
         rng : Generator
-            Of the noise.
+            Random generator of the noise.
         """
         fine = self._fine
         columns = fine.columns(theta[fine.coefficients :])

@@ -36,7 +36,7 @@ class Regressor:
     Attributes
     ----------
     names : tuple of str
-        Of the coefficients.
+        Names of the coefficients.
     triangle : Triangle
     """
 
@@ -86,9 +86,9 @@ class Evidence:
     own_noise : OwnNoise or None
         What the noise of the extra signals of own terms does to them; None where it is harmless.
     correlations : mapping
-        Of each pair of free parameters, offsets centred.
+        Correlation of each pair of free parameters, offsets centered.
     delays : mapping of str to Delay
-        Of the signals against the position.
+        Delays of the signals against the position.
     slow_motion : SlowMotion or None
         How slow windows disagree with faster ones.
     white : bool

@@ -20,7 +20,7 @@ def merged(found: Iterable[tuple[int, Finding]], names: Sequence[str]) -> list[F
     found : iterable of tuple
         Number of the recording, and what is found about it.
     names : sequence of str
-        Of all recordings; of a single one nothing needs to be said.
+        Names of all recordings; a single recording is not named.
     """
     groups: dict[object, list[tuple[int, Finding]]] = {}
     for number, each in found:

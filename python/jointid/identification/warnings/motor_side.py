@@ -54,7 +54,7 @@ def other_side(ratio: float | None, factor: float) -> tuple[str, Action] | None:
     Parameters
     ----------
     ratio : float or None
-        Of the gear, where it is known.
+        Gear ratio, if known.
     factor : float
         The position's change over the integral of the velocity.
     """

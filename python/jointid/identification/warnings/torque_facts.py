@@ -23,7 +23,7 @@ def corrections_of(evidence: Evidence, ratio: float) -> Iterator[Action]:
     ----------
     evidence : Evidence
     ratio : float
-        Of the inertia that the recording shows to the known one.
+        Ratio of the identified to the known inertia.
     """
     recording = evidence.recordings[0]
     joint = evidence.joint

@@ -131,9 +131,9 @@ def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, La
 
 
 def _as_uncertain(evidence: Evidence, names: Collection[str]) -> list[ParameterEstimate]:
-    """Parameters nearly as badly determined as one of `names` that moves with them.
+    """Return parameters nearly as uncertain as one of `names` that correlates with them.
 
-    Of two that the recording hardly separates, both are wrong together; one may stay just below the limit.
+    Two parameters that the recording hardly separates are wrong together; one may stay just below the limit.
     """
     tied = {
         name

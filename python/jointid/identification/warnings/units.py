@@ -46,7 +46,7 @@ def unit_by_factor(
     factor : float
         Position's change over the integral of the velocity.
     ratio : float, optional
-        Of the gear: one of the two may be the motor's, too. Default: not known.
+        Gear ratio: one of the two signals may be on the motor side. Default: not known.
     """
     assumed = recording.metadata.get("assumed_units")
     unstated = set(assumed) if isinstance(assumed, list | tuple) else set()

@@ -32,7 +32,7 @@ class Vector:
     Attributes
     ----------
     path : str
-        Of its dataset, without the first slash.
+        Path of the dataset, without the first slash.
     field : tuple of str
         The field of a table, and those inside it. Empty: the dataset has none.
     part : int, optional

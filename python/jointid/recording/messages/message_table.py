@@ -33,7 +33,7 @@ class MessageTable:
     collected : Collected
         Its messages, at least one.
     kind : {"revolute", "prismatic"}
-        Of the joints, which messages do not say.
+        Kind of the joints, which messages do not state.
     incomplete : str
         Why the file ends early; empty if it does not.
     """

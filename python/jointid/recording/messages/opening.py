@@ -24,7 +24,7 @@ def opened(
     topic : str or None
         Default: the only topic with joints.
     kind : {"revolute", "prismatic"}, optional
-        Of the joints. Default: revolute.
+        Kind of the joints. Default: revolute.
 
     Raises
     ------

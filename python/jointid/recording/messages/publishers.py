@@ -19,7 +19,7 @@ def jump_between_publishers(position: FloatArray) -> float | None:
     Parameters
     ----------
     position : ndarray, shape (n,)
-        Of one joint, in the order of time [rad or m].
+        Positions of one joint in the order of time [rad or m].
 
     Examples
     --------

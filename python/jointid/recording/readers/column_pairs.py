@@ -27,7 +27,7 @@ class Paired:
     lines : int
         That stand above the rows.
     names, units : tuple of str
-        Of each column; a time column has no name.
+        Name and unit of each column; a time column has no name.
     time_unit : str
         As a header states it; empty where none does.
     recognised : bool

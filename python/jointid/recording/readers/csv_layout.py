@@ -29,7 +29,7 @@ class Layout:
     Attributes
     ----------
     separator : str
-        Of its cells; a blank stands for any number of them.
+        Separator of the cells; a blank means any number of blanks.
     headers : tuple of str
     header_line : int
         1-based; of the first row where there is no header.

@@ -22,7 +22,7 @@ def without_torn_line(text: str, layout: Layout) -> str | None:
     ----------
     text : str
     layout : Layout
-        Of its table.
+        Layout of its table.
     """
     ended = text.rstrip("\r\n \t") if layout.separator != "\t" else text.rstrip("\r\n")
     cut = max(ended.rfind("\n"), ended.rfind("\r")) + 1

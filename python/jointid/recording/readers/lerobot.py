@@ -131,7 +131,7 @@ class LeRobotTable(RenamedTable):
     ----------
     table : Table
     info : mapping
-        Of ``meta/info.json``; empty if there is none.
+        Content of ``meta/info.json``; empty without the file.
     """
 
     def __init__(self, table: Table, info: Mapping[str, Any]) -> None:

@@ -27,7 +27,7 @@ class OwnColumns:
     of : dict of str to int or None
         Signal → column of the table; None: the user leaves it out, or nothing may be taken for it.
     side : str
-        Of the gear, on which the position is: "joint" or "motor".
+        Side of the gear of the position: "joint" or "motor".
     other_sides : dict of str to str
         Signal → its side, where that is not `side`.
     asked : tuple of JointHeader

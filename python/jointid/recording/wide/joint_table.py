@@ -35,7 +35,7 @@ class JointTable(RenamedTable):
     columns : dict of str to int or None
         Signal → column of this table; what the headers do not say otherwise.
     side : str
-        Of the gear: "motor" if the position is the motor's, else "joint".
+        Side of the gear: "motor" for a motor's position, otherwise "joint".
     other_sides : dict of str to str
         Signal → its side, where that is not `side`.
     extra : dict of str to int

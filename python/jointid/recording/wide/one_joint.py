@@ -27,7 +27,7 @@ class OneJoint:
     extra : collection, mapping or None
         As `read_contents` takes it.
     side : str
-        Of the gear, on which the position is: "joint" or "motor".
+        Side of the gear of the position: "joint" or "motor".
     other_sides : mapping of str to str
         Signal → its side, where that is another one.
     joint : str

@@ -57,9 +57,9 @@ class Meaning:
     signal : str
         One of a recording's.
     side : str
-        Of the gear: "joint" or "motor".
+        Side of the gear: "joint" or "motor".
     rank : int
-        Of several columns of one signal and side the one with the lowest rank is taken.
+        Among several columns of one signal and side, the lowest rank is chosen.
     side_said : bool
         Whether a word says the side; else it is assumed.
     asked : bool
