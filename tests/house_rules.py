@@ -14,8 +14,8 @@ from pathlib import Path
 
 LONGEST = 400  # lines of a file
 
-# --- C++: the folders of cpp/ and the folders each may include (itself always). Each lists only
-# folders above it, so that no circle is possible; a test holds the table to that. ---
+# --- C++: the folders of cpp/ and the folders each may include (itself always). docs/contributors/house.md
+# has them in an order in which each uses only folders above it. ---
 ROOMS: dict[str, set[str]] = {
     "base": set(),
     "model": {"base"},
@@ -44,7 +44,8 @@ ROOMS["bind"] = ROOMS["tests"] = set(ROOMS)
 PRINTING = {"iostream", "cstdio", "stdio.h", "print"}
 WRITES_TEXT = ("base/digits.cpp", "cstdio")  # numbers in messages, by snprintf
 
-# --- Python: the folders of jointid, those each may use (itself always), and the packages. ---
+# --- Python: the folders of jointid, those each may use (itself always), and the packages. In the
+# table of docs/contributors/house.md each uses only folders above it. ---
 
 
 @dataclass(frozen=True, kw_only=True)

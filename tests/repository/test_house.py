@@ -1,6 +1,5 @@
-"""Who may use whom: the rules of `house.py` hold in this repository, and each of them can fail."""
+"""Who may use whom: the rules of `house_rules.py` hold in this repository, and each of them can fail."""
 
-import graphlib
 import re
 from pathlib import Path
 
@@ -76,13 +75,6 @@ CLEAN = {
     "python/jointid/hardware/can/__init__.py": "",
     "python/jointid/hardware/can/bus.py": "import can\nclass Bus: pass\n",
 }
-
-
-def test_the_folders_of_the_core_have_no_circle() -> None:
-    above: set[str] = set()
-    for room, used in ROOMS.items():
-        assert room in {"bind", "tests"} or used <= above, room
-        above.add(room)
 
 
 def test_a_clean_house_passes(tmp_path: Path) -> None:
@@ -250,31 +242,51 @@ def test_the_tables_name_only_what_they_know() -> None:
     assert all(folder.may_use <= FOLDERS.keys() for folder in FOLDERS.values())
     assert set().union(*(folder.packages for folder in FOLDERS.values())) >= HEAVY - {"canopen"}
     assert all(name.count("/") < 2 for name in FOLDERS)
-    graphlib.TopologicalSorter(
-        {n: f.may_use - {"", n} for n, f in FOLDERS.items() if n}
-    ).prepare()  # raises where the table itself has a circle
-
-
-def test_contributing_says_what_each_folder_may_use() -> None:
-    text = (REPOSITORY / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| `python/jointid/([\w/]+)` \|[^|]*\|([^|]*)\|$", text, re.MULTILINE)
-    assert len(rows) == len(FOLDERS) - 1
-    for name, cell in rows:
-        said = {word.strip(" `") for word in cell.split(",")} - {"_core", "standard library"}
-        assert said == FOLDERS[name].may_use - {name, ""}, name
 
 
 def test_the_table_allows_no_more_than_is_used() -> None:
     assert unused_arrows(REPOSITORY / "python" / "jointid") == []
 
 
-def test_contributing_has_a_row_for_every_folder() -> None:
-    """What a newcomer reads is what the checker knows."""
-    text = (REPOSITORY / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    rows = set(re.findall(r"^\| `(cpp|python/jointid)/([\w/]+)`", text, re.MULTILINE))
-    wanted = {("python/jointid", name) for name in FOLDERS if name}
-    assert wanted - rows == set()
-    assert {name for place, name in rows - wanted if place == "python/jointid"} == set()
-    assert {name for place, name in rows if place == "cpp"} == ROOMS.keys() - {"identify"} | {
-        f"identify/{folder.name}" for folder in (REPOSITORY / "cpp/identify").iterdir()
-    }
+HOUSE = (REPOSITORY / "docs" / "contributors" / "house.md").read_text(encoding="utf-8")
+TABLES = [
+    pytest.param("Python", {n: f.may_use - {""} for n, f in FOLDERS.items() if n}, id="Python"),
+    pytest.param("Core", ROOMS, id="core"),
+]
+
+
+def rows(heading: str) -> list[str]:
+    """The folders of a table of the house's page, in its order."""
+    (table,) = re.findall(rf"^## {heading}: .*?\n(.*?)(?=^## |\Z)", HOUSE, re.MULTILINE | re.DOTALL)
+    return re.findall(r"^\| `([\w/]+)` \|", table, re.MULTILINE)
+
+
+@pytest.mark.parametrize(("heading", "used"), TABLES)
+def test_the_house_has_one_row_for_each_folder(heading: str, used: dict[str, set[str]]) -> None:
+    assert sorted(rows(heading)) == sorted(used)
+
+
+@pytest.mark.parametrize(("heading", "used"), TABLES)
+def test_a_folder_uses_only_rows_above_its_own(heading: str, used: dict[str, set[str]]) -> None:
+    """So no circle is possible, and the order of the rows is the flow of the data."""
+    above: set[str] = set()
+    for folder in rows(heading):
+        assert used[folder] - {folder} <= above, folder
+        above.add(folder)
+
+
+def test_the_arrows_that_are_drawn_are_allowed() -> None:
+    (drawing,) = re.findall(r"^```mermaid\nflowchart LR\n(.*?)^```", HOUSE, re.MULTILINE | re.DOTALL)
+    names = dict(re.findall(r'(\w+)\["([\w/]+)"\]', drawing))
+    for line in drawing.splitlines():
+        arrow = re.fullmatch(r'  (\w+)(?:\[".*"\])? (-->|-\. makes \.->) (\w+)', line)
+        assert arrow, line
+        left, right = (names.get(arrow[each], arrow[each]) for each in (1, 3))
+        user, source = (right, left) if arrow[2] == "-->" else (left, right)
+        assert source in {inner.split("/")[0] for inner in used_by(user)} | used_by(user), line
+
+
+def used_by(place: str) -> set[str]:
+    """The folders that a folder and those inside it may use."""
+    inside = [f.may_use for n, f in FOLDERS.items() if n == place or n.startswith(f"{place}/")]
+    return set().union(*inside)

@@ -15,7 +15,7 @@ import pytest
 from documentation import defective, public_names, reference
 from documentation.defective import Case
 from documentation.links import Page, broken, pages_of
-from documentation.staging import Stage, linked_findings
+from documentation.staging import Stage, linked_findings, stage_documents
 from documentation.symptoms import SYMPTOMS
 from documents import ROOT, read
 
@@ -179,14 +179,22 @@ def test_links_are_led_to_where_their_targets_are(tmp_path: Path) -> None:
     stage = Stage(tmp_path)
     text = (
         "[a](guide.md#errors) [b](../README.md) [c](../examples/README.md) [`spikes`](findings.md) `[d](x.md)` "
-        "[e](../examples/hardware/joint.toml) [f](pictures/thesis) [g](../notebooks/01_identify_a_joint.ipynb)"
+        "[e](../examples/hardware/joint.toml) [f](pictures/thesis) [g](../notebooks/01_identify_a_joint.ipynb) "
+        "[`h`](contributors/house.md#who) [i](../SECURITY.md)"
     )
     assert stage.relinked(text, "docs/page.md", "deep/page.md") == (
         "[a](../guide.md#errors) [b](../index.md) [c](../examples.md) [`spikes`](../gallery/spikes.md) `[d](x.md)` "
-        "[e](../repository/examples/hardware/joint.toml) f [g](../tutorials/01_identify_a_joint.ipynb)"
+        "[e](../repository/examples/hardware/joint.toml) f [g](../tutorials/01_identify_a_joint.ipynb) "
+        "`h` i"
     )
     assert (tmp_path / "repository/examples/hardware/joint.toml").is_file()
     assert "| [`spikes`](gallery/spikes.md) |" in linked_findings(read("docs/findings.md"))
+
+
+def test_contributors_pages_are_not_on_the_site(tmp_path: Path) -> None:
+    stage_documents(Stage(tmp_path))
+    assert "contributing.md" in {path.name for path in tmp_path.iterdir()}
+    assert not list(tmp_path.rglob("house.md"))
 
 
 def test_what_is_staged_no_more_is_removed(tmp_path: Path) -> None:

@@ -23,13 +23,15 @@ ELSEWHERE = {
 # What has no page of its own, and the page that stands for it.
 INSTEAD = {
     "README.md": "index.md",
-    "README.md#source-and-licence": "how_to/cite.md",
-    "notebooks": "tutorials.md",
+    "README.md#source-and-licence": "reports.md",
+    "notebooks": "guide.md",
     "examples": "examples.md",
-    "CITATION.cff": "how_to/cite.md",
+    "CITATION.cff": "reports.md",
 }
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 _CODE = re.compile(r"(^```.*?^```|^~~~.*?^~~~|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
+# Pages of the repository alone: on the site a link to one of them is its text.
+_OFF_THE_SITE = ("docs/contributors/", "SECURITY.md")
 # What docs/ has for Sphinx itself, or for nobody's page.
 _ENDINGS = (".md", ".png", ".svg", ".csv", ".css", ".js", ".html")
 
@@ -92,13 +94,15 @@ class Stage:
         return shown
 
     def _place(self, target: str) -> str | None:
-        """Where a file of the repository is on the site; None: nowhere, it is a folder."""
+        """Where a file of the repository is on the site; None: nowhere, it is a folder or a contributors' page."""
         path, hash_sign, anchor = target.partition("#")
         for known, there in (*INSTEAD.items(), *ELSEWHERE.items()):
             if target == known:
                 return there
             if path == known:
                 return there if known in INSTEAD else there + hash_sign + anchor
+        if path.startswith(_OFF_THE_SITE):
+            return None
         if path.startswith("docs/") and path.endswith(_ENDINGS):  # also pages that are written here
             return target.removeprefix("docs/")
         if path.startswith("notebooks/"):
@@ -155,5 +159,6 @@ def linked_findings(table: str) -> str:
 def _documents() -> Iterator[Path]:
     """The files of docs/ that go to the site as they are."""
     for path in sorted((ROOT / "docs").rglob("*")):
-        if path.is_file() and path.suffix in _ENDINGS:
+        place = path.relative_to(ROOT).as_posix()
+        if path.is_file() and path.suffix in _ENDINGS and not place.startswith(_OFF_THE_SITE):
             yield path
