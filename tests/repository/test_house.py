@@ -276,12 +276,14 @@ def test_a_folder_uses_only_rows_above_its_own(heading: str, used: dict[str, set
 
 
 def test_the_arrows_that_are_drawn_are_allowed() -> None:
-    (drawing,) = re.findall(r"^```mermaid\nflowchart LR\n(.*?)^```", HOUSE, re.MULTILINE | re.DOTALL)
+    (drawing,) = re.findall(
+        r"^```mermaid\nflowchart LR\n(.*?)^```", HOUSE, re.MULTILINE | re.DOTALL
+    )
     names = dict(re.findall(r'(\w+)\["([\w/]+)"\]', drawing))
     for line in drawing.splitlines():
         arrow = re.fullmatch(r'  (\w+)(?:\[".*"\])? (-->|-\. makes \.->) (\w+)', line)
         assert arrow, line
-        left, right = (names.get(arrow[each], arrow[each]) for each in (1, 3))
+        left, right = (names.get(each, each) for each in (str(arrow[1]), str(arrow[3])))
         user, source = (right, left) if arrow[2] == "-->" else (left, right)
         assert source in {inner.split("/")[0] for inner in used_by(user)} | used_by(user), line
 
