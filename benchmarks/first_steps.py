@@ -1,9 +1,9 @@
 """The steps from `pip install` to an estimate of one's own log, each timed. Ratios of CPU time; Markdown.
 
-The log is a stranger's: nobody says which column is what, or how to read it. What a step prints is pasted into the
-next one, as a newcomer does. Each step is a program of its own; the shortest of `--runs` counts.
+Nobody says which column of the log is what, or how to read it. What a step prints is pasted into the next one, as a
+newcomer does. Each step is a program of its own; the shortest of `--runs` counts.
 
-    python benchmarks/first_steps.py --write docs/first_steps.md
+    python benchmarks/first_steps.py
     python benchmarks/first_steps.py --wheel dist/jointid-*.whl
 """
 
@@ -18,9 +18,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 LOG = REPOSITORY / "tests" / "cli" / "foreign_logs" / "kr300_125_hz.csv.gz"
-PAGE = REPOSITORY / "docs" / "first_steps.md"
 RATIO = "256.86"  # from the robot's data sheet: what the newcomer knows
-_TABLE = re.compile(r"(?<=<!-- times -->\n).*?(?=<!-- end -->)", re.DOTALL)
 
 
 def run(command: list[str], folder: Path) -> tuple[float, str]:
@@ -84,22 +82,17 @@ def installed(wheel: Path) -> tuple[str, float, str]:
 
 
 def main() -> None:
-    """Print or write the table."""
+    """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--wheel", type=Path)
-    parser.add_argument("--write", type=Path)
     arguments = parser.parse_args()
     numpy = min(run([sys.executable, "-c", "import numpy"], REPOSITORY)[0] for _ in range(9))
     rows = [installed(arguments.wheel)] if arguments.wheel else []
     rows += steps(arguments.runs)
-    table = "| step | does | CPU time, in imports of NumPy |\n|---|---|--:|\n"
-    table += "".join(f"| {step} | {does} | {cpu / numpy:.1f} |\n" for step, cpu, does in rows)
-    if arguments.write is None:
-        print(table)
-        return
-    page = arguments.write.read_text(encoding="utf-8")
-    arguments.write.write_text(_TABLE.sub(lambda _: table, page), encoding="utf-8")
+    print("| step | does | CPU time, in imports of NumPy |\n|---|---|--:|")
+    for step, cpu, does in rows:
+        print(f"| {step} | {does} | {cpu / numpy:.1f} |")
 
 
 if __name__ == "__main__":

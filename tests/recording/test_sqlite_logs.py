@@ -80,7 +80,7 @@ def test_messages_in_a_log_are_said_with_the_way_to_them(bag: Path, tmp_path: Pa
     )
     assert _contents(path.parent) == before
     copy = _copied(path, tmp_path / "whole", "-wal")
-    with closing(sqlite3.connect(copy)) as connection:  # as docs/robot_logs.md says
+    with closing(sqlite3.connect(copy)) as connection:  # as docs/logs.md says
         connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     assert len(jid.load(copy)) == _COUNT
     assert _said(copy) is None

@@ -69,7 +69,7 @@ def test_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     names = run_python_blocks(read("docs/guide.md"), tmp_path, monkeypatch)
     assert (tmp_path / "grid.csv").is_file()
     assert names["comparison"].winner == "stribeck"
-    assert names["measured"].status == names["together"].status == "converged"
+    assert names["together"].status == "converged"
 
 
 def test_the_page_about_own_terms_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,9 +86,10 @@ def test_the_page_on_reports_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     run_python_blocks(read("docs/reports.md"), tmp_path, monkeypatch)
-    assert capsys.readouterr().out == "usable\n"
+    assert capsys.readouterr().out.startswith("usable\n")
     assert "<b>Use stribeck: " in (tmp_path / "models.html").read_text(encoding="utf-8")
-    assert (tmp_path / "joint.html").is_file()
+    for name in ("joint.html", "friction.pdf", "friction.csv"):
+        assert (tmp_path / name).is_file()
     for name in re.findall(r"pictures/report_\w+\.png", read("docs/reports.md")):
         assert (ROOT / "docs" / name).stat().st_size < 150_000
 
@@ -188,14 +189,15 @@ def _anchors(text: str) -> set[str]:
 
 
 def test_every_page_can_be_found_from_the_readme() -> None:
+    """In three clicks; pages for contributors by CONTRIBUTING.md."""
     found = {"README.md"}
-    for _ in range(3):  # the site's front page and CONTRIBUTING lead to the others
+    for _ in range(3):
         found |= {
             os.path.normpath(Path(page).parent / link.partition("#")[0])
-            for page in found & set(PAGES)
+            for page in found.intersection(PAGES)
             for link in re.findall(r"\]\(([^)\s]+)\)", read(page))
         }
-    assert {page for page in PAGES if page.startswith("docs/")} <= found
+    assert set(PAGES) - found == set()
 
 
 def test_the_citation_names_this_version_and_the_thesis() -> None:
@@ -213,7 +215,7 @@ def test_the_citation_names_this_version_and_the_thesis() -> None:
 
 
 def test_the_thesis_is_cited_in_full_once_beside_the_page_for_that() -> None:
-    pages = [page for page in PAGES if page != "docs/how_to/cite.md"]
+    pages = [page for page in PAGES if page != "docs/reports.md"]
     whole = " ".join("\n".join(read(page) for page in pages).split())
     assert whole.count("Ryerson University") == 1
 

@@ -203,12 +203,11 @@ def has(cls: type[Result], method: str) -> bool:
 
 
 def table() -> list[str]:
-    """The kinds and their methods in Markdown, as the guide shows them."""
-    shown = [name.replace("_repr_html_", "notebook") for name in METHODS]
-    lines = [f"| result | {' | '.join(shown)} | why not kept |", "|---" * (len(METHODS) + 2) + "|"]
+    """Which kinds are kept, in Markdown, as the guide shows them."""
+    lines = ["| result | saved, loaded, `to_json`, `to_pandas` |", "|---|---|"]
     for name, cls in CLASSES.items():
-        marks = ["yes" if has(cls, method) else "–" for method in METHODS]
-        lines.append(f"| `{cls.__name__}` | {' | '.join(marks)} | {HOLES.get(name, '')} |")
+        kept = "yes" if all(has(cls, method) for method in _KEPT) else f"no: {HOLES[name]}"
+        lines.append(f"| `{cls.__name__}` | {kept} |")
     return lines
 
 

@@ -27,16 +27,16 @@ WITHOUT_SPHINX = "Sphinx is not installed: `pip install --group docs`"
 # What a newcomer asks: the clicks from the front page, and what the last page says.
 QUESTIONS: Mapping[str, tuple[tuple[str, ...], str]] = {
     "my columns are counts and mA": (
-        ("index.html", "how_to/units.html"),
+        ("index.html", "quickstart.html"),
         "encoder counts of the motor",
     ),
     "what does this finding mean": (
         ("index.html", "gallery/index.html", "gallery/reversed_sign.html"),
         "Flip the sign of the wrong column",
     ),
-    "how do I move my joint": (("index.html", "how_to/move_my_joint.html"), "jointid design"),
-    "is it safe to run": (("index.html", "how_to/is_it_safe.html"), "was ever connected"),
-    "cite this": (("index.html", "how_to/cite.html"), "@software{jointid"),
+    "how do I move my joint": (("index.html", "design.html"), "jointid design"),
+    "is it safe to run": (("index.html", "safety.html"), "was ever connected"),
+    "cite this": (("index.html", "reports.html"), "@software{jointid"),
 }
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from documents import ROOT, blocks, enter, read
+from documents import ROOT, blocks, enter, read, same_text
 
 from jointid.cli import main
 from jointid.cli.parser import command_parser
@@ -23,10 +23,10 @@ RUN_BY = {
     "docs/guide.md": "test_documents.py",
     "docs/hardware.md": "test_first_motion_documents.py",
     "docs/index.md": "test_site_pages.py",
+    "docs/logs.md": "test_logs_document.py",
     "docs/next_motion.md": "test_documents.py",
     "docs/own_terms.md": "test_documents.py",
     "docs/reports.md": "test_documents.py",
-    "docs/robot_logs.md": "test_robot_logs_document.py",
     "docs/robot_reference.md": "test_robots_document.py",
     "docs/robots.md": "test_robots_document.py",
     "docs/servos.md": "test_servos_document.py",
@@ -82,8 +82,21 @@ def test_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         assert "usable" in Path("report.html").read_text(encoding="utf-8")
     if page == "docs/how_to/read_a_finding.md":
         assert names["finding"].code == "reversed_sign"
-    if page == "docs/how_to/units.md":
-        assert names["estimate"].parameters["viscous"].value > 0.0
+
+
+def test_the_quickstart_shows_what_its_commands_print(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    enter(tmp_path, monkeypatch)
+    page = read("docs/quickstart.md")
+    shown = blocks(page, "text")
+    run_page(page)
+    assert main(["identify", "log.csv"]) == 2
+    printed = "".join(capsys.readouterr())
+    for block in shown:
+        begin = printed.index(block.partition("\n")[0])
+        assert same_text(block, printed[begin:], within=0.02), block
+    assert len(shown) == 3
 
 
 def test_the_front_page_shows_commands_that_run(
@@ -121,7 +134,7 @@ def test_the_code_of_every_page_is_run_by_a_test() -> None:
 def test_the_citation_is_that_of_the_repository() -> None:
     yaml: Any = pytest.importorskip("yaml")
     citation = yaml.safe_load(read("CITATION.cff"))
-    package, thesis = blocks(read("docs/how_to/cite.md"), "bibtex")
+    package, thesis = blocks(read("docs/reports.md"), "bibtex")
     for text in (citation["title"], f"{{{citation['version']}}}", citation["license"]):
         assert text in package
     (source,) = citation["references"]

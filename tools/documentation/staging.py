@@ -23,10 +23,9 @@ ELSEWHERE = {
 # What has no page of its own, and the page that stands for it.
 INSTEAD = {
     "README.md": "index.md",
-    "README.md#source-and-licence": "reports.md",
-    "notebooks": "guide.md",
+    "notebooks": "index.md#notebooks",
     "examples": "examples.md",
-    "CITATION.cff": "reports.md",
+    "CITATION.cff": "reports.md#cite",
 }
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 _CODE = re.compile(r"(^```.*?^```|^~~~.*?^~~~|`[^`\n]+`)", re.DOTALL | re.MULTILINE)

@@ -128,7 +128,7 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     was commanded is never taken for what was measured. A signal without a unit is assumed to be in SI units and
     listed in ``metadata["assumed_units"]``; stamps whose size or steps show another unit are read in it
     (``metadata["recognised_units"]``). A column that has a signal's name and is not needed, but cannot be read,
-    is left out: ``metadata["left_out"]`` says why. `docs/text_logs.md` has the rules.
+    is left out: ``metadata["left_out"]`` says why. `docs/logs.md` has the rules.
 
     Parameters
     ----------

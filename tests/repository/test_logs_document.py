@@ -1,4 +1,4 @@
-"""The code in docs/robot_logs.md runs on logs with the topics, joints and groups that it names."""
+"""The code in docs/logs.md runs on logs with the topics, joints and groups that it names."""
 
 from pathlib import Path
 
@@ -8,11 +8,10 @@ from documents import read, run_python_blocks
 from message_files import joint_state, mcap, motion
 
 h5py = pytest.importorskip("h5py")
-LINES = "docs/robot_logs.md"
 
 
 def test_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    text = read(LINES)
+    text = read("docs/logs.md")
     first = next(line for line in text.splitlines() if line.startswith("recording = "))
     states = [joint_state("/joint_states", each) for each in motion(joints=["elbow", "slide"])]
     mcap(tmp_path / "run.mcap", states)
