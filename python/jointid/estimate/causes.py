@@ -25,7 +25,7 @@ class Cause:
     Attributes
     ----------
     name : str
-        E.g. "gravity", "load_friction", "drift"; the guide lists them.
+        E.g. "gravity", "load_friction", "drift"; `docs/findings.md` lists them.
     meaning : str
         What the name means, as the beginning of a sentence.
     detail : str
