@@ -19,7 +19,7 @@ from jointid.cli.demonstration import data_folder
 from jointid.estimate.findings import Finding
 from jointid.identification import warnings
 from jointid.identification.warnings import registry
-from jointid.identification.warnings.table import findings_page
+from jointid.identification.warnings.table import findings_table, in_place_of_the_table
 from jointid.report.saving import report_page
 
 ROOT = Path(__file__).parents[2]
@@ -353,7 +353,7 @@ def test_a_check_is_a_file_and_a_line(
     assert "the base wobbles in 1 recording(s)" in estimate._repr_html_()
     again = jid.Estimate.from_json(estimate.to_json())
     assert again.findings == estimate.findings
-    assert "| `wobble` | warning | the base wobbles | bolt it down |" in findings_page()
+    assert "| `wobble` | warning | the base wobbles | bolt it down |" in findings_table()
 
 
 def test_no_file_is_forgotten() -> None:
@@ -375,9 +375,11 @@ def test_a_check_lists_what_it_yields(path: Path) -> None:
 
 def test_the_page_of_findings_is_what_the_checks_say() -> None:
     written = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
-    assert written == findings_page(), (
-        "write it anew: python -m jointid.identification.warnings.table > docs/findings.md"
+    assert written == in_place_of_the_table(written, findings_table()), (
+        "write it anew: python -m jointid.identification.warnings.table docs/findings.md"
     )
+    with pytest.raises(ValueError, match="0 tables"):
+        in_place_of_the_table("# Findings\n", findings_table())
 
 
 def test_a_shift_in_milliseconds_is_doubted(well_excited: jid.Recording) -> None:

@@ -14,14 +14,16 @@ from typing import Any
 import pytest
 from documentation import defective, public_names, reference
 from documentation.defective import Case
+from documentation.findings_gallery import listed_sections
 from documentation.links import Page, broken, pages_of
-from documentation.staging import Stage, linked_findings, stage_documents
+from documentation.staging import Stage, stage_documents
 from documentation.symptoms import SYMPTOMS
 from documents import ROOT, read
 
 import jointid as jid
 from jointid.cli.command_table import HELP
 from jointid.identification.warnings.registry import finding_types
+from jointid.identification.warnings.table import in_place_of_the_table
 
 WITHOUT_SPHINX = "Sphinx is not installed: `pip install --group docs`"
 # What a newcomer asks: the clicks from the front page, and what the last page says.
@@ -31,7 +33,7 @@ QUESTIONS: Mapping[str, tuple[tuple[str, ...], str]] = {
         "encoder counts of the motor",
     ),
     "what does this finding mean": (
-        ("index.html", "gallery/index.html", "gallery/reversed_sign.html"),
+        ("index.html", "findings.html"),
         "Flip the sign of the wrong column",
     ),
     "how do I move my joint": (("index.html", "design.html"), "jointid design"),
@@ -134,13 +136,13 @@ def test_each_finding_has_a_recording(made: dict[str, Case]) -> None:
 
 
 @pytest.mark.parametrize("code", ["reversed_sign", "spikes", "at_bound"])
-def test_the_recording_of_the_gallery_has_the_finding(code: str) -> None:
+def test_the_recording_in_a_picture_has_the_finding(code: str) -> None:
     _check(defective.damaged(jid.load(defective.GOOD))[code], code)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("code", finding_types())
-def test_each_recording_of_the_gallery_has_its_finding(made: dict[str, Case], code: str) -> None:
+def test_each_recording_in_a_picture_has_its_finding(made: dict[str, Case], code: str) -> None:
     _check(made[code], code)
 
 
@@ -183,12 +185,21 @@ def test_links_are_led_to_where_their_targets_are(tmp_path: Path) -> None:
         "[`h`](contributors/house.md#who) [i](../SECURITY.md)"
     )
     assert stage.relinked(text, "docs/page.md", "deep/page.md") == (
-        "[a](../guide.md#errors) [b](../index.md) [c](../examples.md) [`spikes`](../gallery/spikes.md) `[d](x.md)` "
+        "[a](../guide.md#errors) [b](../index.md) [c](../examples.md) [`spikes`](../findings.md#spikes) `[d](x.md)` "
         "[e](../repository/examples/hardware/joint.toml) f [g](../tutorials/01_identify_a_joint.ipynb) "
         "`h` i"
     )
     assert (tmp_path / "repository/examples/hardware/joint.toml").is_file()
-    assert "| [`spikes`](gallery/spikes.md) |" in linked_findings(read("docs/findings.md"))
+
+
+def test_each_finding_is_listed_and_has_a_section() -> None:
+    text = listed_sections({code: f"#### `{code}`\n" for code in finding_types()})
+    page = in_place_of_the_table(read("docs/findings.md"), text)
+    assert "| code |" not in page
+    for code in finding_types():
+        assert page.count(f"[`{code}`](#{code})") == page.count(f"#### `{code}`\n") == 1
+    blocking, warning = (page.index(f"\n### {each}\n") for each in ("Blocking", "Warning"))
+    assert blocking < page.index("#### `reversed_sign`") < warning < page.index("#### `spikes`")
 
 
 def test_contributors_pages_are_not_on_the_site(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from documents import ROOT, blocks, enter, read, same_text
 from jointid.cli import main
 from jointid.cli.parser import command_parser
 
-PAGES = ["docs/quickstart.md"]
+PAGES = ["docs/findings.md", "docs/quickstart.md"]
 PAGES += [f"docs/how_to/{path.name}" for path in sorted((ROOT / "docs/how_to").glob("*.md"))]
 SLOW = {"docs/how_to/move_my_joint.md", "docs/how_to/is_it_safe.md"}  # they run benches
 # Elsewhere: the page, and the test that runs it.
@@ -68,7 +68,9 @@ def test_a_page_has_commands_that_there_are(page: str) -> None:
     "page",
     [pytest.param(page, marks=[pytest.mark.slow] if page in SLOW else []) for page in PAGES],
 )
-def test_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_runs(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     pyplot = pytest.importorskip("matplotlib.pyplot")
     enter(tmp_path, monkeypatch)
     try:
@@ -80,8 +82,9 @@ def test_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         assert names["coulomb"].value == pytest.approx(25.0, rel=0.001)
         assert 'friction = "stribeck"' in Path("joint.toml").read_text(encoding="utf-8")
         assert "usable" in Path("report.html").read_text(encoding="utf-8")
-    if page == "docs/how_to/read_a_finding.md":
-        assert names["finding"].code == "reversed_sign"
+    if page == "docs/findings.md":
+        shown = capsys.readouterr().out
+        assert shown == "".join(blocks(read(page), "text"))
 
 
 def test_the_quickstart_shows_what_its_commands_print(

@@ -10,7 +10,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from documentation.findings_gallery import write_gallery, write_pictures
+from documentation.findings_gallery import write_findings, write_pictures
 from documentation.links import broken
 from documentation.pictures import style
 from documentation.public_names import check_groups
@@ -35,7 +35,7 @@ def main() -> int:
     check_groups()
     stage_documents(stage)
     write_pictures(stage)
-    write_gallery(stage)
+    write_findings(stage)
     write_reference(stage)
     stage.write("_static/pictures.css", style())
     site = arguments.output / "site"

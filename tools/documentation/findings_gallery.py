@@ -1,4 +1,4 @@
-"""The gallery: a page for each finding, with a recording that has it: symptom, cause, picture, remedy.
+"""The site's page of findings: a section for each, with a recording that has it: picture, meaning, remedy.
 
 What a finding means and what to do comes from the registry of the checks, its sentence from the identification of a
 recording that was made for it.
@@ -8,25 +8,22 @@ from __future__ import annotations
 
 import re
 import tempfile
+from collections.abc import Mapping
 from html import escape
 from pathlib import Path
+from typing import get_args
 
 import jointid as jid
 from documentation.defective import GOOD, Case, cases
 from documentation.pictures import friction, windows
-from documentation.staging import Stage
+from documentation.staging import ROOT, Stage
 from documentation.symptoms import SYMPTOMS
 from jointid.base.html import Html
 from jointid.cli.advice import words_of_action
-from jointid.estimate.findings import Finding
+from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings.check import FindingType
 from jointid.identification.warnings.registry import finding_types
-
-_KINDS = {
-    "blocking": "Blocking: the values cannot be used before the cause is removed.",
-    "warning": "Warning: values may be biased, or less certain than usual.",
-    "info": "Info: worth knowing; values are not affected.",
-}
+from jointid.identification.warnings.table import in_place_of_the_table
 
 
 def write_pictures(stage: Stage) -> None:
@@ -40,15 +37,17 @@ def write_pictures(stage: Stage) -> None:
     stage.write("generated/windows.html", _framed(windows(good, estimate)))
 
 
-def write_gallery(stage: Stage) -> None:
-    """Put a page for each finding there, and one with all of them."""
-    pictures = {}
+def write_findings(stage: Stage) -> None:
+    """Put the page of findings there, with a section for each finding instead of its table."""
+    sections = {}
     with tempfile.TemporaryDirectory() as folder:
         made = cases(Path(folder))
         for code, each in finding_types().items():
-            found, pictures[code] = _shown(code, made[code])
-            stage.write(f"gallery/{code}.md", _page(each, made[code], found, pictures[code]))
-    stage.write("gallery/index.md", _overview(pictures))
+            found, picture = _shown(code, made[code])
+            sections[code] = _section(each, made[code], found, picture)
+    page = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
+    page = in_place_of_the_table(page, listed_sections(sections))
+    stage.write("findings.md", stage.relinked(page, "docs/findings.md", "findings.md"))
 
 
 def _shown(code: str, case: Case) -> tuple[Finding, str]:
@@ -68,9 +67,9 @@ def _framed(figure: Html) -> str:
     return f'<div class="jointid-picture">{figure}</div>'
 
 
-def _page(each: FindingType, case: Case, found: Finding, picture: str) -> str:
+def _section(each: FindingType, case: Case, found: Finding, picture: str) -> str:
     lines = [
-        f"# `{each.code}`",
+        f"#### `{each.code}`",
         "",
         f"**What you see.** {SYMPTOMS[each.code].seen}",
         "",
@@ -80,31 +79,27 @@ def _page(each: FindingType, case: Case, found: Finding, picture: str) -> str:
             if case.text and SYMPTOMS[each.code].picture
             else []
         ),
-        "## Cause",
+        f"**Meaning.** {_sentence(each.meaning)}",
         "",
-        f"{_KINDS[each.severity]} It is raised when: {each.meaning}.",
-        "",
-        "Of the recording in the picture, `identify` says:",
+        "For the recording in the picture, `identify` says:",
         "",
         f"> {_plain(found.cause)}.",
         "",
-        "## Remedy",
-        "",
-        f"{each.advice[:1].upper()}{each.advice[1:]}.",
+        f"**What to do.** {_sentence(each.advice)}",
         "",
     ]
     python = [str(action) for action in found.advice]
     shell = [text for action in found.advice if (text := words_of_action(action, "identify"))]
     if python:
-        lines += ["Advice for this recording, in Python:", ""]
+        lines += ["For this recording, in Python:", ""]
         lines += [f"- {_code(text)}" for text in python] + [""]
     if shell and shell != python:
         lines += ["On the command line:", "", *(f"- {_code(text)}" for text in shell), ""]
-    lines += [
-        "[All findings in one table](../findings.md) · [how to read a finding](../how_to/read_a_finding.md)",
-        "",
-    ]
     return "\n".join(lines)
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def _plain(text: str) -> str:
@@ -125,25 +120,22 @@ def _raw(html: str) -> list[str]:
     return ["```{raw} html", html, "```", ""]
 
 
-def _overview(pictures: dict[str, str]) -> str:
-    types = finding_types()
-    lines = [
-        "# Gallery of findings",
-        "",
-        "Each picture shows a recording that was made with one defect, and what `identify` finds in it. "
-        "Look for what your own signals look like; each page has the cause and the remedy. "
-        "Nothing found means that nothing suspicious was found, not that the joint is as modelled.",
-        "",
-    ]
-    for severity, meaning in _KINDS.items():
-        lines += [f"## {severity.capitalize()}", "", meaning.partition(": ")[2].capitalize(), ""]
-        cards = [
-            f'<a class="card" href="{code}.html">{pictures[code]}<code>{code}</code>'
-            f"<span>{escape(SYMPTOMS[code].seen)}</span></a>"
-            for code, each in types.items()
-            if each.severity == severity
-        ]
-        lines += _raw(f'<div class="cards pictures">{"".join(cards)}</div>')
-    names = [f"{code} <{code}>" for code in types]
-    lines += ["```{toctree}", ":hidden:", "", *names, "```", ""]
+def listed_sections(sections: Mapping[str, str]) -> str:
+    """Return the list of all findings, and the section of each, by severity.
+
+    Parameters
+    ----------
+    sections : mapping of str to str
+        By code.
+    """
+    codes = {
+        severity: [code for code, each in finding_types().items() if each.severity == severity]
+        for severity in get_args(Severity)[::-1]
+    }
+    lines = ["Each picture shows a recording that was made with one defect.", ""]
+    for severity, listed in codes.items():
+        links = " · ".join(f"[`{code}`](#{code})" for code in listed)
+        lines += [f"**{severity.capitalize()}:** {links}", ""]
+    for severity, listed in codes.items():
+        lines += [f"### {severity.capitalize()}", "", *(sections[code] for code in listed)]
     return "\n".join(lines)

@@ -81,7 +81,7 @@ class Stage:
                 return found[0]
             code = hidden.get(label, label).strip("`")
             if target.endswith("findings.md") and code in finding_types():
-                return f"[{label}]({posixpath.relpath(f'gallery/{code}.md', posixpath.dirname(name) or '.')})"
+                return f"[{label}]({posixpath.relpath('findings.md', posixpath.dirname(name) or '.')}#{code})"
             there = self._place(posixpath.normpath(posixpath.join(posixpath.dirname(home), target)))
             if there is None:
                 return label
@@ -126,14 +126,14 @@ def stage_documents(stage: Stage) -> None:
     """Put everything there that is not written by a program."""
     for path in _documents():
         place = path.relative_to(ROOT / "docs").as_posix()
+        if place == "findings.md":
+            continue  # it gets pictures: findings_gallery
         if path.suffix == ".md":
             stage.page(f"docs/{place}", place)
         else:
             stage.write_bytes(place, path.read_bytes())
     for home, name in ELSEWHERE.items():
         stage.page(home, name)
-    table = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
-    stage.write("findings.md", linked_findings(table))
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
         for folder in ("tutorials", "as_it_is/notebooks"):  # as a page, and to be downloaded
             stage.write_bytes(f"{folder}/{path.name}", path.read_bytes())
@@ -147,12 +147,6 @@ def _without_missing(text: str) -> str:
         return f"{found[1]} <{found[2]}>\n" if there else ""
 
     return re.sub(r"^\? (.+) <([\w/]+)>\n", kept, text, flags=re.MULTILINE)
-
-
-def linked_findings(table: str) -> str:
-    """Return the page of all findings with each code linked to its page of the gallery."""
-    table = re.sub(r"^\| `(\w+)` \|", r"| [`\1`](gallery/\1.md) |", table, flags=re.MULTILINE)
-    return table.replace("\n\n", "\n\n**With pictures:** [gallery](gallery/index.md).\n\n", 1)
 
 
 def _documents() -> Iterator[Path]:

@@ -50,7 +50,7 @@ def explain(arguments: argparse.Namespace) -> None:
         subject, found = _findings_of(arguments.estimate)
         subjects = [subject]
         print(*_explained(code, found, arguments.estimate), "", sep="\n")
-        if code not in types[subject]:  # causes of a misfit are those of a joint
+        if code not in types[subject]:  # causes of a residual are those of a joint
             subjects = [_JOINT]
     for subject in subjects:
         if code in types[subject]:

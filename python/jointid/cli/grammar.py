@@ -68,7 +68,7 @@ def add_identify(identify: CommandParser) -> None:
     identify.add_argument(
         "--causes",
         action="store_true",
-        help="list the causes of the misfit: what each explains, and which values it moves",
+        help="list the causes of the residual: what each explains, and which values it moves",
     )
     identify.add_argument(
         "--by",

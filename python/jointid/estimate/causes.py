@@ -15,7 +15,7 @@ from jointid.estimate.findings import TITLE, Measured
 from jointid.estimate.wording import percent, signed_percent
 
 _SHOWN = 3  # changes in a sentence
-_NOTHING = "no cause of a misfit was found"
+_NOTHING = "no cause of the residual was found"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +31,7 @@ class Cause:
     detail : str
         Which of its kind: the coefficient that drifts, the order of a harmonic, the signal that is late.
     share : float
-        Share of the misfit that it explains, in stretches of time that it was not fitted to.
+        Share of the residual that it explains, in stretches of time that it was not fitted to.
     scale : float
         Length of the windows at which that share was taken [s].
     size : str
@@ -110,7 +110,7 @@ class Cause:
     def details(self) -> str:
         """How much it explains, what it does, and what looks like it."""
         said = [
-            f"explains {percent(self.share)} of the misfit in windows of {_seconds(self.scale)}",
+            f"explains {percent(self.share)} of the residual in windows of {_seconds(self.scale)}",
             self.size.partition(", ")[2],
             "" if self.harmful and self._is_in_title else self.does,
             f"hardly separable from {' and '.join(self.alike)}" if self.alike else "",
@@ -208,13 +208,13 @@ class Causes(Result):
         """Return the summary that a report page shows."""
         tried = self.excluded
         return Overview(
-            title="causes of the misfit",
+            title="causes of the residual",
             answer=tuple(map(_sentence, self.found)) or (_NOTHING,),
             parameters=tuple(
                 Quantity(
                     name=cause.name,
                     value=float(f"{100.0 * cause.share:.2g}"),
-                    unit="% of the misfit",
+                    unit="% of the residual",
                     meaning=str(cause),
                     remark="" if cause in self.found else "harmless",
                 )

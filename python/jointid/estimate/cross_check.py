@@ -1,4 +1,4 @@
-"""The second look at an estimate: values of an independent least squares, and whether they agree."""
+"""The cross-check of an estimate: values of an independent least squares, and whether they agree."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid.base.values import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SecondValue:
-    """One parameter by the second look.
+    """One parameter by the cross-check.
 
     Attributes
     ----------
@@ -44,12 +44,12 @@ class CrossCheck:
     Attributes
     ----------
     values : mapping of str to SecondValue
-        By parameter, those that the second look determines. Static friction and the Stribeck shape are never among
+        By parameter, those that the cross-check determines. Static friction and the Stribeck shape are never among
         them. Default: none.
     delay : float
         By which the torque (with a sensor: the reading) was shifted [s]. Default 0.
     reason : str
-        Why there is no second look. Default: there is one.
+        Why there is no cross-check. Default: there is one.
     """
 
     values: Mapping[str, SecondValue] = field(default_factory=dict)
@@ -63,5 +63,5 @@ class CrossCheck:
 
     @property
     def disagrees(self) -> bool | None:
-        """Whether any value disagrees; None where there is no second look."""
+        """Whether any value disagrees; None where there is no cross-check."""
         return None if self.reason else bool(self.contradicted)

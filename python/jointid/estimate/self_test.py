@@ -145,12 +145,12 @@ class SelfTest(Result):
             return f"a trial could not be identified: {self.failed}"
         if self.passed:
             return (
-                f"all parameters are recovered in {self.trials} trials: this motion, with noise and misfit as "
+                f"all parameters are recovered in {self.trials} trials: this motion, with noise and residuals as "
                 "recorded, determines them if the joint is as modelled"
             )
         parts = [f"{name} ({self._worst(name)})" for name in self.lost]
         return (
-            f"these parameters are not recovered: {', '.join(parts)}: this motion, with noise and misfit as "
+            f"these parameters are not recovered: {', '.join(parts)}: this motion, with noise and residuals as "
             "recorded, does not determine them, even if the joint is as modelled"
         )
 

@@ -102,13 +102,13 @@ def quality(estimate: EstimateRecord) -> list[tuple[str, str]]:
             f"{estimate.condition:.3g}, weakest direction: {', '.join(estimate.weakest)}",
         ),
         ("correlation", strongest_correlation(estimate)),
-        *([] if estimate.cross_check is None else [("second look", second_look(estimate))]),
+        *([] if estimate.cross_check is None else [("cross-check", second_look(estimate))]),
         ("search", f"{estimate.message}; {estimate.status} in {estimate.seconds:.2f} s"),
     ]
 
 
 def second_look(estimate: EstimateRecord) -> str:
-    """The values of the second look, or why there are none, in a line."""
+    """The values of the cross-check, or why there are none, in a line."""
     check = estimate.cross_check
     if check is None or check.reason:
         return f"none: {check.reason}" if check else "none"

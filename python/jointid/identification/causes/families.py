@@ -25,8 +25,8 @@ _HALF = 0.2  # of a sample period: so near to half a period early, a torque is o
 _HELD = Action(
     "call", {"torque_hold": "zoh"}, text="if the torque is a command that is held between samples"
 )
-_EARLY = "the sampling times of torque and position, and the gear's play"
-_SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion by itself"),)
+_EARLY = "the sampling times of torque and position, and the backlash"
+_SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion separately"),)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,8 +66,7 @@ class Family:
         """What its code stands for."""
         return FindingType(
             code=self.name,
-            meaning=f"{self.meaning} explains the misfit in parts of the log that it was not fitted to. Info: no "
-            "parameter moves by more than 5 % or two errors",
+            meaning=f"{self.meaning} explains the residual, also on held-out data. Info: it is harmless",
             advice=self.remedy,
             picture="windows",
         )
@@ -122,7 +121,7 @@ def _against_slow_motion(fit: FittedBalance, _: Attributed) -> tuple[Action, ...
 
 OTHER_LAW = Family(
     name="other_law",
-    meaning="friction of another law",
+    meaning="friction of another model",
     remedy="use a model that has this friction",
     candidates=of.other_law,
     advice=_against_another_law,
@@ -168,7 +167,7 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         name="smooth_friction",
-        meaning="smoothly rising friction",
+        meaning="friction that rises smoothly with speed",
         remedy="use the model smooth_coulomb_viscous",
         candidates=low_speed.smooth_friction,
         advice=lambda fit, _: fit.compared_with(name=low_speed.smooth_law()[0]),
@@ -185,7 +184,7 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         name="stribeck_exponent",
-        meaning="another decay of friction with speed",
+        meaning="friction that decays differently with speed",
         remedy="use the model stribeck_general, which has a free exponent",
         candidates=low_speed.slow_motion,
         advice=_against_slow_motion,
@@ -193,7 +192,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="drift",
         meaning="drift of a coefficient",
-        remedy="record after warming up, or identify first and last part separately",
+        remedy="record after warming up, or identify the first and the last part separately",
         candidates=of.drift,
         advice=_always(
             Action("record", text="after warming up"),
@@ -204,7 +203,7 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         name="harmonic",
-        meaning="torque over the joint angle",
+        meaning="torque that depends on the angle",
         remedy="add harmonics of that order to the model",
         candidates=of.harmonic,
         advice=lambda fit, cause: _with_order(fit, "harmonics", cause),
@@ -212,7 +211,7 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         name="ripple",
-        meaning="torque over the motor angle",
+        meaning="torque that depends on the motor angle",
         remedy="add ripple of that order to the model",
         candidates=of.ripple,
         advice=lambda fit, cause: _with_order(fit, "ripple", cause),
@@ -239,7 +238,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="offset",
         meaning="constant torque that the model lacks",
-        remedy="give the joint a torque_offset",
+        remedy="add torque_offset to the joint",
         candidates=of.offset,
         advice=lambda fit, _: fit.with_offset(),
         size=sizes.constant,
@@ -255,28 +254,28 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         name="other_signal",
-        meaning="another signal that acts on the joint",
-        remedy="record with everything else at rest",
+        meaning="torque that follows another signal",
+        remedy="record while everything else is at rest",
         candidates=of.other_signal,
-        advice=_always(Action("record", text="with everything else at rest")),
+        advice=_always(Action("record", text="while everything else is at rest")),
     ),
     Family(
         name="other_run",
-        meaning="a recording with other values than the rest",
-        remedy="look for another unit, sign, zero or load in it; identify it alone",
+        meaning="a recording with different values",
+        remedy="compare its unit, sign, zero and load with the others; identify it alone",
         candidates=of.other_run,
         advice=_always(
             Action(
                 "inspect",
                 text="units, signs, zero position, load and temperature of that recording",
             ),
-            Action("inspect", text="the values of each recording, identified by itself"),
+            Action("inspect", text="the values of each recording, identified alone"),
         ),
     ),
     Family(
         name="disturbance",
         meaning="short disturbance",
-        remedy="leave that stretch of time out",
+        remedy="cut that time out of the recording",
         advice=_always(
             Action("record", text="without contact"),
             Action("inspect", text="what happened at that time"),

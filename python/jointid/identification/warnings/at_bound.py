@@ -62,7 +62,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         yield AT_BOUND.finding(
             f"{p.name} ended at its {side} bound {limit:.6g} {p.unit}".rstrip(),
             *advice,
-            details="the best value lies beyond it, or the data do not determine it; other values are affected",
+            details="the best value lies beyond the bound, or the data do not determine it; other values are affected",
             evidence=measured,
             parameters=(p.name,),
         )

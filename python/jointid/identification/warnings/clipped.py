@@ -17,13 +17,13 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 TORQUE_SATURATED = FindingType(
     code="torque_saturated",
-    meaning="the torque rests on its limit in more than 1 % of the samples, and reaches it more than once. "
-    "A commanded step is no limit",
+    meaning="the torque is at its limit in more than 1 % of the samples, and reaches it more than once. "
+    "A commanded step is not a limit",
     advice=f"record gentler motion, or record the torque that the drive applied{DESIGNED}",
 )
 SENSOR_CLIPPED = FindingType(
     code="sensor_clipped",
-    meaning="the sensor rests on its limit in more than 1 % of the samples, and reaches it more than once",
+    meaning="the sensor is at its limit in more than 1 % of the samples, and reaches it more than once",
     advice=f"widen the sensor's range, or load the link less{DESIGNED}",
 )
 _CLIPPED = 0.01  # share of the samples on a limit
@@ -99,7 +99,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             continue
         if name == "sensor":
             yield SENSOR_CLIPPED.finding(
-                f"the sensor rests on its limit in {percent(share)} of the samples",
+                f"the sensor is at its limit in {percent(share)} of the samples",
                 # A design cannot always keep the sensor's range, so it does not stand first.
                 Action("inspect", text="the sensor's range: widen it, or load the link less"),
                 other_motion(
@@ -107,7 +107,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
                     "motion with a smaller load on the link",
                     sensor_range=_sensed(evidence, signal),
                 ),
-                details="it then shows less than the torque",
+                details="the true torque is larger there",
                 evidence={"clipped": Measured(share)},
                 parameters=evidence.sensor_parameters,
             )
@@ -118,11 +118,11 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             missed = evidence.residuals.relative
             clipped = share > _MUCH and missed > _MISSED
             yield TORQUE_SATURATED.finding(
-                f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples",
+                f"{name} is at its limit of {limit:.4g} {unit} in {percent(share)} of the samples",
                 other_motion(evidence, "gentler motion", gentler=True),
                 Action("record", text="the torque that the drive applied"),
                 details=(f"the model misses {percent(missed)} of the torque; " if clipped else "")
-                + "if only the record was clipped and not the torque, every value is wrong",
+                + "if only the log was clipped and not the torque, every value is wrong",
                 evidence={
                     "clipped": Measured(share),
                     "limit": Measured(limit, unit),

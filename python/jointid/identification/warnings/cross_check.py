@@ -13,8 +13,8 @@ from jointid.identification.warnings.undetermined import listed
 CONTRADICTED = FindingType(
     code="cross_check",
     severity="blocking",
-    meaning="a plain filtered least squares on the recorded signals gives other values",
-    advice="find out which of the two is wrong: plot position, velocity and torque over time",
+    meaning="the cross-check, a plain least squares on the filtered signals, gives other values",
+    advice="plot position, velocity and torque over time, and find out which of the two is wrong",
 )
 
 _ROOM = 65  # characters of values in a title
@@ -32,7 +32,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         measured[f"{name}.second"] = Measured(other, p.unit)
     shown = listed(pairs, _ROOM)
     yield CONTRADICTED.finding(
-        f"a second look disagrees: {shown}",
+        f"the cross-check disagrees: {shown}",
         Action("inspect", text="position, velocity and torque over time"),
         details="a plain least squares on the recorded signals gives these values"
         + ("" if shown == ", ".join(pairs) else f"; in all: {', '.join(pairs)}"),

@@ -13,20 +13,20 @@ from jointid.identification.warnings.evidence import Evidence
 
 SIGNAL_LAG = FindingType(
     code="signal_lag",
-    meaning="torque, sensor or velocity lags or leads the position, and no shift removed that. A filter, a slow bus "
-    "or a backward difference causes it. Info: no parameter moves by more than 5 % or two standard errors",
-    advice="shift the signal by this delay, or remove the delay's cause",
+    meaning="torque, sensor or velocity lags or leads the position, and was not shifted. Causes: a filter, a slow bus, "
+    "a backward difference. Info: no parameter moves by more than 5 % or two standard errors",
+    advice="shift the signal by this delay, or remove the cause of the delay",
 )
 DELAY_REMOVED = FindingType(
     code="delay_removed",
     severity="info",
-    meaning="torque, sensor or velocity lagged or led the position, and was shifted before the identification. The "
-    "parameters named moved by more than 5 % or two standard errors",
-    advice="nothing; to keep the signal unchanged, shift it by 0",
+    meaning="torque, sensor or velocity lagged or led the position. It was shifted before the identification. The "
+    "shift moved the named parameters by more than 5 % or two standard errors",
+    advice="nothing; a shift of 0 keeps the signal unchanged",
 )
 # A torque does not come before its motion.
 _EARLY = "the position is late or coarse, the torque early, or the gear elastic"
-_WHERE = "the position's filter and resolution, both clocks, and the gear's play"
+_WHERE = "the position's filter and resolution, both clocks, and the backlash"
 _FILTERS = "the filters and clocks of position, velocity and torque"
 _UNSHIFTED = Action("inspect", text="the stated shift, and remove it")
 _COARSE = 0.005  # of a delay: a smaller error is not shown

@@ -96,7 +96,7 @@ class Evidence:
     causes : Causes or None
         Why the model does not fit; None where the residuals are noise.
     cross_check : CrossCheck
-        The second look.
+        The cross-check.
     torques : Torques
         How large the torque of each coefficient is.
     cause_of : callable

@@ -10,7 +10,7 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 FEW_WINDOWS = FindingType(
     code="few_windows",
-    meaning="fewer than eight windows for each free parameter make the standard errors uncertain",
+    meaning="fewer than eight windows per free parameter make the standard errors uncertain",
     advice=f"record longer, or use shorter windows{DESIGNED}",
 )
 _FEW = 8  # windows for each free parameter

@@ -11,7 +11,7 @@ from jointid.identification.warnings.inspection import Inspected
 GAPS = FindingType(
     code="gaps",
     severity="info",
-    meaning="the time stamps jump. No window crosses a gap, so values are not affected",
+    meaning="the time stamps jump: samples are missing. No window crosses a gap, so values are not affected",
     advice="find out why samples are missing",
 )
 

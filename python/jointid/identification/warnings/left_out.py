@@ -14,14 +14,15 @@ from jointid.identification.warnings.undetermined import listed
 LEFT_OUT = FindingType(
     code="left_out",
     severity="info",
-    meaning="a column with the name of a signal is not read: another unit, no numbers, or another column is read",
-    advice="name the column, its unit or its scale when loading; nothing, if the signal is not needed",
+    meaning="a column with the name of a signal was not read: its unit does not fit, it has no numbers, or another "
+    "column was read",
+    advice="name the column, its unit or its scale when loading. Nothing, if you do not need the signal",
 )
 INTERPOLATED = FindingType(
     code="interpolated",
     severity="info",
-    meaning="a signal has a lower rate than the others. It was interpolated linearly at their samples",
-    advice="record all signals with one period",
+    meaning="a signal has a lower sampling rate than the others. It was interpolated linearly",
+    advice="record all signals with one sampling rate",
 )
 _SHOWN = 6
 _ROOM = 45  # characters of names in a title
@@ -48,7 +49,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         shown = [f"{column} (every {period})" for column, period in interpolated]
         yield INTERPOLATED.finding(
             f"interpolated linearly: {listed(shown, _ROOM)}",
-            Action("record", text="all signals with one period"),
+            Action("record", text="all signals with one sampling rate"),
             details="" if len(shown) == 1 else ", ".join(shown),
         )
 

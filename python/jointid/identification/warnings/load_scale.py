@@ -13,8 +13,8 @@ from jointid.identification.warnings.evidence import Evidence
 LOAD_SCALE = FindingType(
     code="load_scale",
     severity="blocking",
-    meaning="load friction takes a share of the drive's torque, and neither inertia nor gravity is known. Any scale of "
-    "all values then fits as well",
+    meaning="load friction is a share of the drive's torque, and neither inertia nor gravity is known. All values "
+    "multiplied by one factor then fit equally well",
     advice="leave load friction out, or state the joint's inertia or its link",
 )
 

@@ -13,21 +13,21 @@ from jointid.identification.warnings.inspection import Inspected
 UNWRAPPED = FindingType(
     code="unwrapped",
     severity="info",
-    meaning="the angle starts again after a turn. The identification unwraps it",
+    meaning="the angle wraps after each revolution. The identification unwraps it",
     advice="log the angle without wraps",
 )
 HELD_ROWS = FindingType(
     code="held_rows",
     severity="info",
-    meaning="rows repeat the sample before, because the logger is faster than the bus. They are left out",
-    advice="log at the bus's own rate",
+    meaning="rows repeat the previous sample, because the logger is faster than the bus. They are left out",
+    advice="log at the rate of the bus",
 )
 HELD_TORQUE = FindingType(
     code="held_torque",
     severity="info",
-    meaning="the recording does not say how the torque varies between samples. The torque balance predicts better "
-    "if it is held, as a command is, so the identification assumes that",
-    advice="state it; `linear` if it is a measured torque that is not held",
+    meaning="the recording does not say how the torque varies between samples. The torque balance predicts better with "
+    "a torque that is held (zero-order hold), so the identification assumes that",
+    advice="state `torque_hold`: `zoh` for a command, `linear` for a measured torque",
 )
 
 
@@ -41,16 +41,16 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             )
         elif mend.code == HELD_TORQUE.code:
             yield HELD_TORQUE.finding(
-                "the torque is read as held between samples: the balance then predicts better",
+                "the torque is assumed to be held between samples: the balance then predicts better",
                 Action(
-                    "call", {"torque_hold": "zoh"}, text="so it is stated; linear if it is measured"
+                    "call", {"torque_hold": "zoh"}, text="to state it; linear if it is measured"
                 ),
                 evidence={"period": Measured(mend.size, "s")},
             )
         else:
             yield HELD_ROWS.finding(
-                f"{mend.count} rows repeat the sample before and are left out",
-                Action("record", text="at the bus's own rate"),
+                f"{mend.count} rows repeat the previous sample and are left out",
+                Action("record", text="at the rate of the bus"),
                 details=f"a sample lasts {mend.size:.3g} rows",
                 evidence={"rows": Measured(mend.count), "rows_per_sample": Measured(mend.size)},
             )

@@ -14,9 +14,9 @@ from jointid.recording.file_remarks import remarks
 MESSAGE_LOG = FindingType(
     code="message_log",
     severity="info",
-    meaning="the file was not read exactly as it stands: rows or messages are damaged, repeated, late or left out. Or "
-    "stamps, units or sides differ from the file",
-    advice="check the recorder; nothing, if you expect it",
+    meaning="the file was not read exactly as written: rows or messages are damaged, repeated, late or left out. Or "
+    "time stamps, units or sides differ from the file",
+    advice="check the recorder. Nothing, if you expect this",
 )
 _ROOM = 65  # characters of a title, beside the number of recordings
 

@@ -20,8 +20,8 @@ from jointid.problem.inner_products import inner
 
 MODEL_TOO_RICH = FindingType(
     code="model_too_rich",
-    meaning="the data do not determine the Stribeck model. Static friction is zero or not significant, rests on three "
-    "windows, or is extrapolated from faster motion, or its shape ended on a bound",
+    meaning="the data do not determine the Stribeck model. Static friction is zero or not significant, shows in only "
+    "three windows, or is extrapolated from faster motion. Or its shape ended on a bound",
     advice="use the model coulomb_viscous where no static friction shows, or record slow motion through zero speed"
     f"{DESIGNED}",
     picture="friction-map",

@@ -12,9 +12,9 @@ from jointid.recording.recording import Recording
 MOTOR_SIDE = FindingType(
     code="motor_side",
     severity="info",
-    meaning="no gear ratio is known, so all values are on the motor's side of the gear. Or motor torque or current is "
-    "used with a gear ratio of 1. Blocking: the joint has a gear ratio, and the log was read without it",
-    advice="give the gear ratio; nothing, if the motor's side is meant or the motor has no gear",
+    meaning="no gear ratio is known, so all values are on the motor side. Or motor torque or current is used with a "
+    "gear ratio of 1. Blocking: the joint has a gear ratio, but the log was read without it",
+    advice="state the gear ratio. Nothing, if you want motor-side values or the motor has no gear",
 )
 _CLOSE = 0.03  # of the gear ratio
 _RATIO = "motor angle per joint angle"
@@ -25,13 +25,13 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     ratio = 1.0 if evidence.joint is None else evidence.joint.gear_ratio
     if at_motor and ratio != 1.0:
         yield MOTOR_SIDE.finding(
-            f"the log was read without the gear ratio of {ratio:g}: the values are on the motor's side",
+            f"the log was read without the gear ratio of {ratio:g}: the values are on the motor side",
             Action("call", {"gear_ratio": ratio}, function="load"),
             severity="blocking",
         )
     elif at_motor:
         yield MOTOR_SIDE.finding(
-            "no gear ratio is known: the values are on the motor's side",
+            "no gear ratio is known: the values are on the motor side",
             Action("call", {"gear_ratio": ...}, _RATIO, "load"),
         )
     elif _without_gear(evidence, inspected.recording):

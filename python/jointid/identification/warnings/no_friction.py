@@ -16,9 +16,9 @@ from jointid.recording.header_words import AT_THE_LINK
 
 NO_FRICTION = FindingType(
     code="no_friction",
-    meaning="friction is less than 2 % of the torque. The torque was measured behind the friction, or the joint has "
-    "none, as in a simulation. Blocking below 5 %, if the torque's header names the joint or a sensor",
-    advice="give the motor's torque or current as torque, and this column as sensor. Nothing, if the joint has no "
+    meaning="friction is less than 2 % of the torque. The torque was measured at the link, or the joint has no "
+    "friction, as in a simulation. Blocking below 5 %, if the torque's header names the joint or a sensor",
+    advice="load the motor's torque or current as torque, and this column as sensor. Nothing, if the joint has no "
     "friction",
 )
 _EXPLAINED = 0.95  # of the variance: friction is missing, not lost in a misfit
@@ -28,7 +28,7 @@ _SMALL_WITHOUT_DRY = 0.1  # no drive has viscous friction alone: noise, or a dam
 _SURE = 3.0  # standard errors
 _BOUND = 2.0  # standard errors
 _LEVELS = ("coulomb", "static")
-_CAUSE = "a torque measured at the link holds no friction of the drive"
+_CAUSE = "a torque measured at the link contains no friction of the drive"
 _REMEDY = "where the torque is measured, and load the motor's torque or current"
 
 
@@ -90,7 +90,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if header:
         severity, details = "blocking", f"{_CAUSE}; the torque's header is {header!r}"
     yield NO_FRICTION.finding(
-        f"the torque holds no friction: at most {percent(share)} of it while the joint moves",
+        f"the torque contains no friction: at most {percent(share)} of it while the joint moves",
         Action("inspect", text=_REMEDY),
         *((_as_sensor(header),) if header else ()),
         details=details,

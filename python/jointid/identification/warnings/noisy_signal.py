@@ -13,8 +13,8 @@ from jointid.identification.warnings.undetermined import listed, scale_of
 
 NOISY_SIGNAL = FindingType(
     code="noisy_signal",
-    meaning="noise in the extra signals of own terms moves a parameter by more than 1.5 %. The coefficient of a noisy "
-    "signal is too small",
+    meaning="noise in the extra signals of own terms moves a parameter by more than 1.5 %. Noise makes the coefficient "
+    "of its signal too small",
     advice="record the signal with less noise, or filter it without delay. Fix the coefficient if it is known",
 )
 _MOVED = 0.015  # of the value
@@ -47,7 +47,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         f"{text}{listed(sizes, TITLE - len(text))}",
         Action("record", text=f"{listed(noisy, _NAMES)} with less noise"),
         details=f"standard deviation: {listed(deviations)}; the coefficient of a noisy signal is too small by about as "
-        "much; found by a simulated second recording",
+        "much; computed with a simulated second recording",
         evidence={f"{name}.moved": Measured(share) for name, share in moved.items()}
         | {f"{name}.noise": Measured(sigma) for name, sigma in noise.noise},
         parameters=tuple(moved),

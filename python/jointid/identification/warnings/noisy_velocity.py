@@ -16,10 +16,10 @@ from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="noise in the velocity moves a parameter by more than 2 % and half its standard error, or is large "
-    "against the velocity's change over every admissible window. The estimated inertia is then too small",
-    advice="record the position with a finer resolution, or record longer. Leave out a velocity column that is noisier "
-    "than the position's rate",
+    meaning="velocity noise moves a parameter by more than 2 % and by more than half its standard error. Or the noise "
+    "is large compared with the change of velocity over every possible window, and the inertia comes out too small",
+    advice="record the position with a finer resolution, or record longer. Leave the velocity column out if it is "
+    "noisier than the position's derivative",
 )
 _MOVED = 0.02  # of the value: two of them are what `undetermined` calls wide
 _OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
@@ -31,7 +31,7 @@ _FINER = Action("record", text="the position with a finer resolution, or for lon
 _DERIVED = Action(
     "call",
     {"columns": {"velocity": None}},
-    text="the position's rate is less noisy",
+    text="the position's derivative is less noisy",
     function="load",
 )
 
@@ -53,7 +53,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         about = "about that much" if share < HIDES else "far"
         causes.append(f"noise is {percent(share)} of the velocity's change over a window")
         details.append(f"inertia is {about} too small")
-        details.append("no admissible window has less than 1 % of noise")
+        details.append("windows of every length have more than 1 % of noise")
         measured["noise_share"] = Measured(share)
         inertia = evidence.parameters.get("inertia")
         if inertia is not None and inertia.vary and "inertia" not in named:
@@ -62,7 +62,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         sizes = [f"{name} by {_size(evidence, name, each)}" for name, each in moved.items()]
         text = "velocity noise moves "
         causes.append(f"{text}{listed(sizes, TITLE - len(text))}")
-        details += filter(None, (_resolution(evidence), "found by a simulated second recording"))
+        details += filter(
+            None, (_resolution(evidence), "computed with a simulated second recording")
+        )
         measured |= {f"{name}.moved": Measured(share) for name, share in moved.items()}
     # By the stamps of a busy computer the position's rate is wrong, however quiet it looks.
     stamped = all(_are_stamps_right(inspected) for inspected in evidence.inspections)

@@ -13,8 +13,8 @@ from jointid.identification.warnings.inspection import Inspected
 
 REPEATED_SAMPLES = FindingType(
     code="repeated_samples",
-    meaning="more than 3 % of the samples repeat the one before while the joint moves",
-    advice="record at the drive's own rate",
+    meaning="more than 3 % of the samples repeat the previous sample while the joint moves",
+    advice="record at the sampling rate of the drive",
 )
 REPEATED = 0.03  # share of the moving samples
 
@@ -27,9 +27,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             stale[name] = share
     if stale:
         yield REPEATED_SAMPLES.finding(
-            f"{percent(max(stale.values()))} of the {' and '.join(stale)} samples are copies of the one before",
-            Action("record", text="at the drive's own rate"),
-            details="the joint moves meanwhile; the logger was faster than the drive's bus",
+            f"{percent(max(stale.values()))} of the {' and '.join(stale)} samples repeat the previous one",
+            Action("record", text="at the sampling rate of the drive"),
+            details="the joint moves there; the logger was faster than the bus of the drive",
             evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
         )
 

@@ -18,7 +18,7 @@ STANDING = FindingType(
 HARDLY_MOVES = FindingType(
     code="hardly_moves",
     severity="blocking",
-    meaning="the whole motion is less than 50 steps of the encoder, or only noise. Other findings follow from that",
+    meaning="the whole motion is less than 50 encoder counts, or only noise. Other findings follow from that",
     advice="record a wider motion",
 )
 _MUCH = 0.35
@@ -44,7 +44,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         yield STANDING.finding(
             f"the joint stands still or sticks in {100.0 * share:.0f} % of the samples",
             other_motion(evidence, "more motion"),
-            details="these samples say nothing about friction and are left out",
+            details="these samples do not show friction and are left out",
             evidence={"standing": Measured(share)},
         )
 

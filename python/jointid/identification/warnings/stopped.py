@@ -10,7 +10,7 @@ from jointid.identification.warnings.evidence import Evidence
 STOPPED = FindingType(
     code="stopped",
     meaning="the search ended before it converged; better values may exist",
-    advice="search by separable least squares, or let the search run to its end",
+    advice="use the separable search, or let the search finish",
     picture="convergence",
 )
 

@@ -13,8 +13,8 @@ from jointid.identification.warnings.undetermined import listed, wide, with_part
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
     meaning="the residuals of neighbouring windows correlate by more than 0.5, or a parameter is uncertain, and no "
-    "known cause explains it. The model misses an effect. Info: every parameter is well determined",
-    advice="look at the residuals in the report; the errors include the correlation, but a bias may remain",
+    "known cause explains it. The model lacks an effect. Info: every parameter is well determined",
+    advice="look at the residuals in the report. Standard errors include the correlation; values may still be biased",
     picture="windows",
 )
 _CORRELATED = 0.5
@@ -37,7 +37,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         title = (
             f"{listed(uncertain, _ROOM)} uncertain, although well excited (r = {correlation:.2f})"
         )
-        makes = "the model misses an effect, or the windows are too long to show it"
+        makes = "the model lacks an effect, or the windows are too long to show it"
     # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
     yield STRUCTURED_RESIDUAL.finding(
         title,

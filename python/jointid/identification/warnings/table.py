@@ -1,35 +1,22 @@
-"""The table of all findings, docs/findings.md, written from the registry.
+"""The table of all findings in docs/findings.md, written from the registry.
 
-python -m jointid.identification.warnings.table > docs/findings.md
+python -m jointid.identification.warnings.table docs/findings.md
 """
 
+import re
 import sys
 from collections.abc import Iterable
+from pathlib import Path
 
 from jointid.estimate.types_of_findings import FindingType
 from jointid.identification.warnings.registry import finding_types
 
-_HEAD = """# Findings
-
-An estimate carries `estimate.findings`, values with a code, a severity, the parameters concerned, the evidence (named
-numbers with units), the cause, and advice that a program can read. `estimate.warnings` are those of severity "warning"
-or "blocking". No warning means that nothing suspicious was found, not that the joint is as modelled.
-
-Of several recordings a finding names those that it is about; what is found in several alike is said once.
-
-- **info**: worth knowing; values are not affected.
-- **warning**: values may be biased, or less certain than usual.
-- **blocking**: the values cannot be used before the cause is removed.
-
-This table is written from the checks in `python/jointid/identification/warnings`.
-
-| code | severity | meaning | what to do |
-|---|---|---|---|
-"""
+_HEAD = "| code | severity | meaning | what to do |\n|---|---|---|---|\n"
+_TABLE = re.compile(rf"^{re.escape(_HEAD)}(?:\|.*\n)*", re.MULTILINE)
 
 
-def findings_page() -> str:
-    """The page: a row a code, in the order in which findings are listed."""
+def findings_table() -> str:
+    """A row for each code, in the order in which findings are listed."""
     return _HEAD + table_rows(finding_types().values())
 
 
@@ -40,5 +27,16 @@ def table_rows(types: Iterable[FindingType]) -> str:
     )
 
 
+def in_place_of_the_table(page: str, text: str) -> str:
+    """Return the page of findings with another text instead of its table."""
+    changed, count = _TABLE.subn(lambda _: text, page)
+    if count != 1:
+        raise ValueError(f"the page has {count} tables of findings, not one")
+    return changed
+
+
 if __name__ == "__main__":
-    sys.stdout.write(findings_page())
+    path = Path(sys.argv[1])
+    path.write_text(
+        in_place_of_the_table(path.read_text(encoding="utf-8"), findings_table()), encoding="utf-8"
+    )

@@ -20,8 +20,9 @@ from jointid.recording.recording import Recording
 
 TIME_JITTER = FindingType(
     code="time_jitter",
-    meaning="time stamps disagree with the position by more than 2 % of a sample period",
-    advice="stamp samples where they are taken; evenly taken samples without copies need even time stamps",
+    meaning="the position shows that time stamps are off by more than 2 % of a sample period",
+    advice="take the time stamp where the sample is taken. If samples are evenly spaced and none is repeated, use even "
+    "time stamps",
 )
 _JITTER = 0.02  # sample periods
 
@@ -43,7 +44,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     yield TIME_JITTER.finding(
         f"time stamps are off by {1e6 * as_stamped:.3g} µs ({percent(as_stamped / period)} of the sample period)",
         Action("record", text=advice),
-        details=f"the position shows it; a busy computer stamps like that{seen}",
+        details=f"the position shows it; a busy computer causes such time stamps{seen}",
         evidence={
             "scatter": Measured(as_stamped, "s"),
             "scatter_about_even_times": Measured(as_uniform, "s"),

@@ -21,15 +21,16 @@ from jointid.recording.sides import READ_FROM
 WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
-    meaning="the inertia in the log differs from the known one by more than 5 %. Where a difference above 1 % "
-    "explains the misfit, it is a warning, and blocking beyond a factor of 1.5",
-    advice="correct gear ratio, torque constant, torque unit or inertia; free the inertia only if it is the wrong one",
+    meaning="the inertia in the log differs from the known inertia by more than 5 %. A difference above 1 % that "
+    "explains the residual is a warning, and blocking beyond a factor of 1.5",
+    advice="correct gear ratio, torque constant, torque unit or inertia. Identify the inertia only if its known value "
+    "is wrong",
 )
 
 UNSIGNED_TORQUE = FindingType(
     code="unsigned_torque",
     severity="blocking",
-    meaning="the torque is never negative though the joint moves both ways, and the model explains it as a magnitude",
+    meaning="the torque is never negative although the joint moves both ways, and the model explains it as a magnitude",
     advice="record the torque with its sign",
 )
 
@@ -44,7 +45,7 @@ _DEGREE = np.pi / 180.0
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if _is_unsigned(evidence):
         yield UNSIGNED_TORQUE.finding(
-            "the torque is never negative, though the joint moves both ways: its sign is missing",
+            "the torque is never negative, although the joint moves both ways: its sign is missing",
             Action(
                 "inspect",
                 text="the driver's signed value, or the sign of a servo's position error",
@@ -55,10 +56,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     correlation = _torque_with_velocity(evidence)
     if correlation is not None:
         yield REVERSED_SIGN.finding(
-            "the torque works against the motion: torque or position has the wrong sign",
+            "the torque acts against the motion: torque or position has the wrong sign",
             *_flip_the_torque(evidence),
             Action("inspect", text="the signs of torque and position, and flip the wrong one"),
-            details="friction takes power from the drive; here the drive would take power from the joint",
+            details="friction takes power from the drive; here the joint seems to drive the motor",
             evidence={"correlation_with_velocity": Measured(correlation)},
         )
         return
@@ -146,7 +147,7 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
         return
     seen = (
         f"the log shows an inertia of {ratio * given.value:.4g} {given.unit}, "
-        f"{ratio:.3g} times the given {given.value:.4g}"
+        f"{ratio:.3g} times the known {given.value:.4g}"
     )
     measured = {
         "inertia": Measured(ratio * given.value, given.unit),
@@ -171,7 +172,7 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
             "inspect",
             text="gear ratio, torque constant, torque unit and inertia; correct the wrong one",
         ),
-        details=f"{_gear_hint(evidence, ratio)}while it is wrong, every value is wrong",
+        details=f"{_gear_hint(evidence, ratio)}until that is corrected, every value is wrong",
         evidence=measured,
         parameters=("inertia", *scaled_with_torque(evidence)),
     )

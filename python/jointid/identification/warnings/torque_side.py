@@ -11,9 +11,9 @@ from jointid.identification.warnings.inspection import Inspected
 TORQUE_SIDE = FindingType(
     code="torque_side",
     severity="blocking",
-    meaning="position or velocity are stated to be the motor's, and nothing says whether the torque is the motor's or "
-    "the joint's: all values in units of torque may be wrong by the gear ratio",
-    advice="say on which side of the gear the torque is (`side`)",
+    meaning="position or velocity is on the motor side, and it is not stated on which side the torque is. All values "
+    "in units of torque may be wrong by the gear ratio",
+    advice="state on which side of the gear the torque is (`side`)",
 )
 
 
@@ -33,7 +33,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
                 "if it is measured or computed behind the gear",
                 "load",
             ),
-            details="the motion is stated to be the motor's, and the torque is taken as the joint's",
+            details="the motion is on the motor side; the torque is assumed to be on the joint side",
             evidence={"gear_ratio": Measured(abs(ratio))},
         )
 

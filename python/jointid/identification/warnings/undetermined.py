@@ -19,9 +19,9 @@ from jointid.identification.warnings.no_friction import without_friction
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="the 95 % interval is wider than ±4 % (a gain's: ±1 %), or other windows move the value. The log has too "
-    "little speed, slow motion, reversals, load, acceleration, travel or time. Or noise of the velocity hides the "
-    "inertia, or a gain of the other sign fits as well",
+    meaning="the 95 % interval is wider than ±4 % (a gain's: ±1 %), or the value changes with the length of the "
+    "windows. The log has too little speed, slow motion, reversals, load, acceleration, travel or time. Or velocity "
+    "noise hides the inertia, or a gain of the opposite sign fits as well",
     advice=f"record what is missing, or fix the parameter{DESIGNED}",
 )
 
@@ -259,9 +259,9 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
         share = evidence.residuals.noise_share
         # The noise adds its share to the variance that the inertia's slope is divided by.
         text = (
-            "noise of the velocity hides the inertia in windows of any length"
+            "velocity noise hides the inertia in windows of any length"
             if share > HIDES
-            else f"noise of the velocity makes the inertia about {percent(share)} too small in windows of any length"
+            else f"velocity noise makes the inertia about {percent(share)} too small in windows of any length"
         )
         short = "inertia unknown" if share > HIDES else f"inertia {percent(share)} too small"
         return [_Reason(short, text, {})]

@@ -13,8 +13,8 @@ IMPLAUSIBLE_UNITS = FindingType(
     code="implausible_units",
     severity="blocking",
     meaning="degrees seem to be read as radians: the motion is too fast or too wide, or velocity or inertia is off by "
-    "a factor near 57.3. Or the motor's angle is taken for the joint's. Or the time is not in seconds, or a current "
-    "above 100 A or a torque above 5 kN·m has no stated unit. Info: a wide motion in a stated unit",
+    "about 57.3. Or the motor's angle is read as the joint's. Or the time is not in seconds. Or a current above "
+    "100 A or a torque above 5 kN·m has no stated unit. Info: a wide motion in a stated unit",
     advice="state the unit of position, velocity, time, current or torque when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}

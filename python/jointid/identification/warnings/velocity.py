@@ -19,14 +19,14 @@ from jointid.recording.recording import Recording
 REVERSED_SIGN = FindingType(
     code="reversed_sign",
     severity="blocking",
-    meaning="the torque works against the motion, or the sign of velocity or sensor is reversed",
-    advice="flip the sign of the wrong column; for a motor-side torque, flip that of the gear ratio",
+    meaning="the torque acts against the motion, or velocity or sensor has the wrong sign",
+    advice="flip the sign of the wrong column; for a motor-side torque, flip the sign of the gear ratio",
 )
 VELOCITY_MISMATCH = FindingType(
     code="velocity_mismatch",
-    meaning="the velocity differs from the position's rate by more than 3 % (blocking: by more than 10 %)",
-    advice="correct rate, gear ratio or unit, or say on which side of the gear it is; leave the velocity column out "
-    "only if it is the wrong one",
+    meaning="the velocity differs from the position's derivative by more than 3 % (blocking: by more than 10 %)",
+    advice="correct sampling rate, gear ratio or unit, or state the side of the gear. Leave the velocity column out "
+    "only if nothing else is wrong",
 )
 
 MISMATCH = 0.03  # of the position's rate
@@ -46,7 +46,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     if found is None:
         return
     scale = {"scale": Measured(found.scale)}
-    rate = f"the position's rate is {found.scale:.4g} times the velocity"
+    rate = f"the position's derivative is {found.scale:.4g} times the velocity"
     ratio = known_ratio(evidence)
     suspected, advice = unit_by_factor(recording, found.scale, ratio)
     gear = other_side(ratio, found.scale)
@@ -62,7 +62,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         )
     elif found.scale < 0.0:
         yield REVERSED_SIGN.finding(
-            "the velocity has the opposite sign of the position's rate: one of the two is reversed",
+            "velocity and derivative of the position have opposite signs: one of them is wrong",
             *possible,
             Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
             evidence=scale,
