@@ -16,7 +16,7 @@ def behind_friction(draw: Draw) -> Plan:
         header = draw.variant(("tau_J", "joint_torque_Nm", "torque_sensor_Nm", "torque_Nm"))
         table["torque"] = table["link"]
         form = layout("time_s", "position_rad", "velocity_rad_s", header)
-        causes = r"behind|link side|at the link|holds no friction|torque sensor|joint's side|--column sensor"
+        causes = r"behind|link side|at the link|contains no friction|torque sensor|joint's side|--column sensor"
         return log_of(draw, [table], drawn, form=form, causes=causes, what=header)
 
     return one_run(draw, change)

@@ -166,7 +166,7 @@ def test_the_unit_of_a_motors_torque_is_named_by_the_known_inertia(
     np.savetxt(path, table, delimiter=",", header=header, comments="")
     line = ["identify", str(path), "--model", "coulomb_viscous", "--gear-ratio", "50"]
     assert main([*line, "--rotor-inertia", "0.0002"]) == 0
-    found = re.search(r"times the given 0.5\n  do: jointid (.*)", capsys.readouterr().out)
+    found = re.search(r"times the known 0.5\n  do: jointid (.*)", capsys.readouterr().out)
     assert found is not None
     assert "--unit motor_torque=mNm" in found[1]
     assert main(shlex.split(found[1].partition(" (")[0])) == 0

@@ -71,7 +71,7 @@ def test_a_joint_names_it() -> None:
     )
     (told,) = [each for each in found.warnings if each.code in BY_NAME]
     assert told.code == "other_law"
-    assert told.title.startswith("friction of another law (quadratic friction, 1.01 N·m·s²/rad²)")
+    assert told.title.startswith("friction of another model (quadratic friction, 1.01 N·m·s²/rad²)")
     moved = 1.0 + told.evidence["viscous.shift"].value
     viscous = found.parameters["viscous"].value
     assert viscous * moved == pytest.approx(plain_joint.VISCOUS, rel=0.02)
@@ -91,7 +91,7 @@ def test_a_robots_joint_names_it(tmp_path: Path) -> None:
     )
     told = [each for each in found.warnings if each.code in BY_NAME]
     assert [each.code for each in told] == ["other_law"]
-    assert told[0].title.startswith("elbow: friction of another law (quadratic friction, 0.99")
+    assert told[0].title.startswith("elbow: friction of another model (quadratic friction, 0.99")
 
 
 def test_a_servo_names_it(row: SimpleNamespace) -> None:

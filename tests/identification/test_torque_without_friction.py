@@ -45,7 +45,7 @@ def test_a_header_of_the_joint_names_the_cause(tmp_path: Path, header: str) -> N
     finding = found_in(estimate)
     assert finding is not None
     assert finding.severity == "blocking"
-    assert "a torque measured at the link holds no friction of the drive" in finding.cause
+    assert "a torque measured at the link contains no friction of the drive" in finding.cause
     assert repr(header) in finding.cause
     assert "load the motor's torque or current" in finding.advice[0].text
     assert finding.advice[1].arguments["columns"]["sensor"] == header

@@ -89,11 +89,12 @@ def _section(each: FindingType, case: Case, found: Finding, picture: str) -> str
         "",
     ]
     python = [str(action) for action in found.advice]
-    shell = [text for action in found.advice if (text := words_of_action(action, "identify"))]
+    shell = [words_of_action(action, "identify") for action in found.advice]
+    shell = [text for text in shell if text and text not in python]
     if python:
         lines += ["For this recording, in Python:", ""]
         lines += [f"- {_code(text)}" for text in python] + [""]
-    if shell and shell != python:
+    if shell:
         lines += ["On the command line:", "", *(f"- {_code(text)}" for text in shell), ""]
     return "\n".join(lines)
 

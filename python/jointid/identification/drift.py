@@ -103,7 +103,8 @@ def without_drift(
         shares={name: share for name, share in cause.shares.items() if name in moved},
     )
     removed = replace(
-        removed, effect=f"the value is that of the middle, which changed {removed.moves}"
+        removed,
+        effect=f"the values hold for the middle of the recording, which changed {removed.moves}",
     )
     return changed_problem, removed
 

@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.recording.recording import Recording
 
-WIDER = "a motion of at least some hundred steps of the encoder"
+WIDER = "a motion of at least some hundred encoder counts"
 _FEWEST = 50.0  # steps from the lowest position to the highest
 _WIDEST = (
     12.0  # standard deviations from the lowest value of white noise to the highest, of a million
@@ -82,8 +82,8 @@ def small_motion(recording: Recording) -> SmallMotion | None:
         travel=travel,
         step=step,
         unchanged=unchanged,
-        text=f"the joint hardly moves: {travel:.3g} {unit}, {travel / step:.0f} steps of its encoder",
-        details=f"a step is {step:.3g} {unit}; {100.0 * unchanged:.0f} % of the samples show no change of position",
+        text=f"the joint hardly moves: {travel:.3g} {unit}, {travel / step:.0f} encoder counts",
+        details=f"a count is {step:.3g} {unit}; {100.0 * unchanged:.0f} % of the samples show no change of position",
     )
 
 

@@ -23,7 +23,7 @@ from jointid.identification.causes.samples import Run, Samples, span_of
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-FILTERED = "velocity, which is not the position's rate"
+FILTERED = "velocity, which is not the position's derivative"
 LATE = ("torque", "sensor", "velocity", FILTERED)
 """Signals that may be late; a velocity behind a filter is late by no one time."""
 
