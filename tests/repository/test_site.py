@@ -181,12 +181,12 @@ def test_links_are_led_to_where_their_targets_are(tmp_path: Path) -> None:
     stage = Stage(tmp_path)
     text = (
         "[a](guide.md#errors) [b](../README.md) [c](../examples/README.md) [`spikes`](findings.md) `[d](x.md)` "
-        "[e](../examples/hardware/joint.toml) [f](pictures/thesis) [g](../notebooks/01_identify_a_joint.ipynb) "
+        "[e](../examples/hardware/joint.toml) [f](pictures/thesis) [g](../notebooks/01_own_log.ipynb) "
         "[`h`](contributors/house.md#who) [i](../SECURITY.md)"
     )
     assert stage.relinked(text, "docs/page.md", "deep/page.md") == (
         "[a](../guide.md#errors) [b](../index.md) [c](../examples.md) [`spikes`](../findings.md#spikes) `[d](x.md)` "
-        "[e](../repository/examples/hardware/joint.toml) f [g](../tutorials/01_identify_a_joint.ipynb) "
+        "[e](../repository/examples/hardware/joint.toml) f [g](../tutorials/01_own_log.ipynb) "
         "`h` i"
     )
     assert (tmp_path / "repository/examples/hardware/joint.toml").is_file()
@@ -238,7 +238,7 @@ def test_a_notebook_is_shown_as_it_was_run(tmp_path: Path) -> None:
     pytest.importorskip("myst_parser", reason=WITHOUT_SPHINX)
     from documentation.notebooks import markdown_of
 
-    path = ROOT / "notebooks" / "01_identify_a_joint.ipynb"
+    path = ROOT / "notebooks" / "01_own_log.ipynb"
     notebook: Any = json.loads(path.read_text(encoding="utf-8"))
     text = markdown_of(notebook, tmp_path / "pictures", path.name)
     shown = [each for cell in notebook["cells"] for each in cell.get("outputs", [])]
