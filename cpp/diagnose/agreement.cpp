@@ -141,6 +141,15 @@ double usual_miss(const Blocks& blocks, std::size_t kept, const base::Cancel* ca
       cancel);
 }
 
+/// Kept blocks in which the position changes.
+std::size_t moving(const Blocks& blocks) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    if (blocks.kept[i] != 0.0 && blocks.moved[i] != 0.0) ++count;
+  }
+  return count;
+}
+
 Blocks blocks_of(const Signal& time, const Signal& position, const Signal& velocity, double period,
                  const base::Cancel* cancel) {
   Blocks blocks;
@@ -182,7 +191,8 @@ std::optional<Agreement> velocity_agreement(const Signal& time, const Signal& po
     found = fit(blocks);
   }
   const double precision = static_cast<double>(count) * std::numeric_limits<double>::epsilon();
-  if (count < kFewest || found.condition() <= precision) return std::nullopt;
+  // In a joint that mostly stands, the motion itself is what the fit leaves out.
+  if (moving(blocks) < kFewest || found.condition() <= precision) return std::nullopt;
   const double variance = left / static_cast<double>(count - 2);
   return Agreement{found.scale, found.lag, std::sqrt(variance) / found.own};
 }

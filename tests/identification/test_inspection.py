@@ -217,6 +217,13 @@ def test_too_short_a_run_tells_nothing() -> None:
     assert agreement(np.sin(_WAVE)[few], np.cos(_WAVE)[few], TIME[few]) is None
 
 
+def test_a_joint_that_mostly_stands_shows_no_agreement() -> None:
+    """Its motion is rarer than what the fit leaves out: the scale of the rest would be 0."""
+    position = np.repeat(1e-5 * (np.arange(40) % 2), 100)
+    late = np.roll(np.gradient(position, TIME), 20)
+    assert agreement(position, late) is None
+
+
 @pytest.mark.parametrize(("steps", "fine"), [(29.0, False), (31.0, True)])
 def test_a_signal_is_fine_from_thirty_steps(steps: float, fine: bool) -> None:
     """The usual change over the smallest; half of the changes and a few more are the usual one."""
