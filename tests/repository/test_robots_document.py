@@ -65,6 +65,9 @@ def test_facts_of_the_steps_are_read(tmp_path: Path) -> None:
 
 
 def test_the_reference_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    urdf = tmp_path / "arm.urdf"
+    urdf.write_text(small_arm.URDF, encoding="utf-8")
+    small_arm.recording(urdf).save(tmp_path / "arm.csv")
     names = run_python_blocks(read(REFERENCE), tmp_path, monkeypatch)
     assert names["coulomb"].value == pytest.approx(4.0, rel=0.02)
     assert 'friction="' in (tmp_path / "arm_with_friction.urdf").read_text(encoding="utf-8")

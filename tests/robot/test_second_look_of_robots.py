@@ -69,7 +69,7 @@ def test_both_looks_agree_on_a_good_recording(path: Path, inertia: Any, static: 
     both = check.parameters["elbow.viscous"]
     assert both.agrees is True
     assert both.second == pytest.approx(1.5, rel=0.02)
-    assert "second look" in found.report(verbose=True)
+    assert "cross-check" in found.report(verbose=True)
     again = jid.RobotEstimate.from_json(found.to_json())
     assert again.cross_check == check
     assert found.verdict.level == "usable"

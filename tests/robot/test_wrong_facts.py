@@ -285,4 +285,4 @@ def test_no_component_without_information_is_printed(
     assert centres
     for each in centres:
         assert "y" not in each.evidence
-        assert "no motion shows y" in each.details or " y " not in each.details
+        assert "the motion does not show y" in each.details or " y " not in each.details

@@ -50,7 +50,7 @@ def test_a_duty_that_is_computed_is_held_too() -> None:
 def test_a_command_that_moves_evenly_is_not_taken_as_held() -> None:
     found = jid.identify_servo(bench_runs(TRUTH, seed=1), servo_joint())
     assert found.command_lag == 0.0
-    assert "nothing shows that it is held" in found.report(verbose=True)
+    assert "no sign that it is held" in found.report(verbose=True)
     # What could not be told apart is in the errors.
     assert "command" in found.parameters["torque_constant"].systematic
 
@@ -94,5 +94,5 @@ def test_half_a_row_of_lead_describes_a_duty_that_is_held() -> None:
     found = jid.identify_servo(run, joint, lead=0.005, draws=0)
     for name, value in {"torque_constant": 0.9, "inertia": 0.004, "viscous": 0.02}.items():
         assert found[name] == pytest.approx(value, rel=0.04), name
-    # What docs/servos.md says of it otherwise.
+    # Too large otherwise, as docs/servos.md says.
     assert jid.identify_servo(run, joint, draws=0)["inertia"] == pytest.approx(0.00537, rel=0.03)

@@ -66,7 +66,7 @@ def _sentence(name: str, share: Share) -> str:
         alike = f"; {others} would explain it as well: they move alike"
     if share.own_too:
         alike += f"; {joint_phrase(name)}'s own motion explains nearly as much"
-    verb = "explains" if share.certain else "explains perhaps"
+    verb = "explains" if share.certain else "perhaps explains"
     percent = max(1, round(100.0 * share.share))
     return (
         f"{joint_phrase(share.joint)}'s {share.by} {verb} {percent} % of {joint_phrase(name)}'s residual "

@@ -24,7 +24,7 @@ MEANING = {
     MOMENTUM: "coupled inertia",
     POSITION: "gravity",
     POSE: "inertia that changes with its position",
-    TORQUE: "what acts there",
+    TORQUE: "torque that acts there",
 }
 
 

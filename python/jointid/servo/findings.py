@@ -46,7 +46,7 @@ def _inseparable(estimate: ServoEstimate, unknowns: Unknowns) -> Iterator[Findin
         f"only the sum of back-EMF and {linear.meaning} is known, {total:.3g} {linear.unit}",
         Action("record", text="runs in which the torque is switched off while the load swings"),
         Action("inspect", text="the winding's resistance, and state it in the joint's drive"),
-        details="the motor is driven throughout, so both brake alike; k_t and R are not identifiable, only k_t / R; "
+        details="the motor is driven throughout, so both brake alike; only k_t / R is known, not k_t and R; "
         f"{percent(unknowns.share)} of the sum is taken as back-EMF, {_chosen(estimate)}",
         parameters=("back_emf", linear.name, *MOTOR),
         evidence={"sum": Measured(total, linear.unit)},
@@ -56,7 +56,7 @@ def _inseparable(estimate: ServoEstimate, unknowns: Unknowns) -> Iterator[Findin
 def _chosen(estimate: ServoEstimate) -> str:
     if estimate.joint.link is None:
         return "because no load swings freely"
-    return "because its largest difference of the free swing from other shares is the smallest"
+    return "because its free swing differs least from those of the other shares, in the worst case"
 
 
 def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
@@ -64,7 +64,7 @@ def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
         yield TYPES["no_known_load"].finding(
             "no load is known, so all values have an unknown factor",
             Action("inspect", text="mass and length of the load, and state the joint's link"),
-            details="nothing says how large the motor's torque is",
+            details="the scale of the motor's torque is unknown",
             parameters=tuple(estimate.parameters),
         )
 
@@ -88,7 +88,7 @@ def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
         )
         blocking = name in ("torque_per_voltage", "inertia")
         yield TYPES["at_bound"].finding(
-            f"{name.replace('_', ' ')} ended on its bound 0: the runs show none",
+            f"{name.replace('_', ' ')} ended at its bound 0: the runs show none",
             _OTHER_RUNS,
             details=upto,
             severity="warning" if blocking else "info",
@@ -119,7 +119,7 @@ def _vague(estimate: ServoEstimate) -> Iterator[Finding]:
 def _poor_fit(estimate: ServoEstimate) -> Iterator[Finding]:
     if estimate.relative_residual > _POOR:
         yield TYPES["poor_fit"].finding(
-            f"the model leaves {percent(estimate.relative_residual)} of the load's torque unexplained",
+            f"{percent(estimate.relative_residual)} of the load's torque stays unexplained",
             Action(
                 "inspect",
                 text="scale and sign of the duty, the position's unit, the load, and the link's angle",

@@ -170,7 +170,7 @@ def recorded(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
 def quality(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
     """How good the fit is and what it rests on, as label and text."""
     left = (
-        f"{1e3 * estimate.rms:.3g} mN·m left, "
+        f"residual {1e3 * estimate.rms:.3g} mN·m, "
         f"{100.0 * estimate.relative_residual:.1f} % of the load's torque"
     )
     return [
@@ -192,7 +192,7 @@ def _command(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
     if estimate.command_lag is None:
         return []
     if estimate.command_lag == 0.0:
-        text = "nothing shows that it is held between rows: it is taken as moving evenly"
+        text = "no sign that it is held between rows: interpolated linearly"
         return [("command", text)]
     late = f"{1e3 * estimate.command_lag:.1f} ms"
     text = f"held between rows: it acts {late} later than its row on average (found)"

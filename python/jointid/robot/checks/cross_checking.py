@@ -160,14 +160,14 @@ def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
     title, texts = "", []
     if apart:
         name, first = next(iter(apart.items()))
-        title = f"finds {name} {number(first.second or 0.0)}, not {number(first.value)}"
+        title = f"gives {name} {number(first.second or 0.0)}, not {number(first.value)}"
         shown = [
             f"{name} {number(c.second or 0.0)}, not {number(c.value)}" for name, c in apart.items()
         ]
         more = f" and {len(apart) - _SHOWN} more" if len(apart) > _SHOWN else ""
-        texts.append(f"it finds other values: {', '.join(shown[:_SHOWN])}{more}")
+        texts.append(f"it gives other values: {', '.join(shown[:_SHOWN])}{more}")
     advice: tuple[Action, ...] = (
-        Action("call", {"min_speed": slow}, text="where it is the friction at low speed"),
+        Action("call", {"min_speed": slow}, text="if friction at low speed is the cause"),
     )
     if worse:
         joint, (ours, second) = max(worse.items(), key=lambda each: each[1][0] / each[1][1])
@@ -175,14 +175,14 @@ def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
         texts.append(f"it {title}")
         advice = ()
     yield TYPES["cross_check"].finding(
-        f"the second look {title}",
+        f"the cross-check {title}",
         *advice,
         Action("inspect", text="the time stamps and the logger"),
         details="; ".join(
             (
-                "the second look is a plain filtered least squares of the signals as recorded",
+                "the cross-check is a plain filtered least squares on the signals as recorded",
                 *texts,
-                "the handling of time stamps, gaps, delays or slow motion is not right for this recording",
+                "the identification probably mishandles time stamps, gaps, delays or slow motion of this recording",
             )
         ),
         parameters=tuple(apart) if not worse else (),

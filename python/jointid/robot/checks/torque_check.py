@@ -96,10 +96,10 @@ def _several(
     names = [robot.names[joint] for joint in off]
     shown = ", ".join(f"{robot.names[joint]} {sure[joint].value:.3g}" for joint in off)
     return TYPES["different_factors"].finding(
-        f"the torques of {listed(names)} have factors of their own against the URDF",
+        f"the torques of {listed(names)} differ from the URDF, each by its own factor",
         _divided(robot, factors),
-        details=f"{shown}: one {one} was probably taken for all joints; with these factors the "
-        f"URDF leaves {percent(float(np.sqrt(left / len(sure))))} of the torques, without "
+        details=f"{shown}: one {one} was probably used for all joints; with these factors "
+        f"{percent(float(np.sqrt(left / len(sure))))} of the torques stays unexplained, without "
         f"{percent(float(np.sqrt(before / len(sure))))}",
         evidence={robot.names[joint]: Measured(sure[joint].value) for joint in off},
     )
@@ -209,7 +209,7 @@ def _unsigned(
             text="the driver's signed value (of a servo that has none, the sign of its position error)",
         ),
         details="the joints move both ways, and the magnitude fits a torque that changes its sign"
-        + (f"; it is so for {', '.join(names)}" if len(names) > 1 else ""),
+        + (f"; joints: {', '.join(names)}" if len(names) > 1 else ""),
         parameters=()
         if len(folded) == robot.n
         else tuple(f"{name}.{CONSTANT.name}" for name in names),
@@ -238,7 +238,7 @@ def _divided(robot: Robot, factors: Sequence[float]) -> Action:
     return Action(
         "call",
         facts_of_scales(robot.drive, _scales(robot, factors), robot.torque_scales),
-        text="so that they weigh what the URDF says, until the factors are known",
+        text="so that the torques fit the URDF, until the factors are known",
         function="Robot.from_urdf",
     )
 
@@ -247,7 +247,7 @@ def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Fin
     """The torques, multiplied by one factor or reversed, are those of the URDF's links."""
     if 1.0 / _FAR < abs(common) < _FAR:
         return TYPES["reversed_torques"].finding(
-            "all torques have the opposite sign of what the URDF's links weigh",
+            "all torques have the opposite sign to the weight of the URDF's links",
             Action(
                 "call",
                 {"torque_scales": _scales(robot, [-1.0] * robot.n)},
@@ -263,12 +263,12 @@ def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Fin
     what = (
         "the gains are probably not the robot's, or the masses of the URDF are not"
         if robot.drive is not None
-        else "they are probably currents, or of the motor's side of a gear"
+        else "they are probably currents or motor-side torques"
         if size < 1.0
         else "they are probably in another unit, or the masses of the URDF are not the robot's"
     )
     return TYPES["scaled_torques"].finding(
-        f"all torques are about {times} than the URDF's links weigh{sign}",
+        f"all torques are about {times} than the weight of the URDF's links{sign}",
         _divided(robot, [sure.get(joint, common) for joint in range(robot.n)]),
         details=f"{what}; with one factor for each joint the URDF explains all but {left} of them",
         evidence={
@@ -286,9 +286,9 @@ def _reversed(robot: Robot, torques_too: bool) -> Finding:
         found["torque_scales"] = [-each for each in robot.torque_scales or (1.0,) * robot.n]
     with_torques = " and torques" if torques_too else ""
     return TYPES["reversed_positions"].finding(
-        f"all positions{with_torques} have the opposite sign of the URDF's axes",
+        f"all positions{with_torques} have the opposite sign to the URDF's axes",
         Action("call", found, function="Robot.from_urdf"),
-        details="only with the other sign do the links weigh what was measured",
+        details="the measured torques fit the weight of the links only with the opposite sign",
     )
 
 

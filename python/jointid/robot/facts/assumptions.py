@@ -38,7 +38,7 @@ def assumption_findings(
     yield from _left_out(recordings)
     yield from _locked(recordings, robot)
     if not np.any(robot.tree.gravity):
-        yield TYPES["no_gravity"].finding("no gravity acts on this robot, as given")
+        yield TYPES["no_gravity"].finding("no gravity acts on this robot, as the facts say")
     yield from _units(recordings, robot, attempt)
 
 

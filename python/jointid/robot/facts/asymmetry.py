@@ -47,6 +47,6 @@ def asymmetry_findings(attempt: Attempt) -> Iterator[Finding]:
                     "call", {"model": modelled(AUTO, asymmetric=True)}, function="identify_robot"
                 ),
                 details=f"the difference is {size}; it explains {percent(explained)} of the joint's squared residual "
-                "in motion that was held out",
+                "in held-out motion",
                 evidence={"difference": Measured(value, unit), "explained": Measured(explained)},
             )

@@ -229,7 +229,7 @@ def _summary(
         found.append(
             TYPES["consequences"].finding(
                 f"{len(gone)} more warnings follow from {facts} ({unexplained})",
-                details=f"{', '.join(codes)}: gone when {facts} {'is' if len(causes) == 1 else 'are'} corrected",
+                details=f"{', '.join(codes)}: gone once {facts} {'is' if len(causes) == 1 else 'are'} corrected",
                 parameters=tuple(name for each in gone for name in each.parameters),
                 evidence=evidence,
             )
@@ -238,7 +238,7 @@ def _summary(
     if poor:
         found.append(
             TYPES["more_wrong_facts"].finding(
-                f"more is wrong than {facts}: {listed(poor)} would still fit badly",
+                f"{facts} do{'es' * (len(causes) == 1)} not explain everything: {listed(poor)} would still fit badly",
                 Action("inspect", text=f"the given facts of {listed(poor)}"),
                 evidence=evidence,
             )

@@ -37,15 +37,15 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
         if angle
     ]
     return TYPES["turned_zero"].finding(
-        titled("joints have another zero than in the URDF", listed(turned)),
+        titled("log and URDF count joints from different zeros", listed(turned)),
         Action(
             "call",
             {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
             text="if this is right",
             function="Robot.from_urdf",
         ),
-        details=f"the offsets are {', '.join(turned)} and are taken into account; the URDF's inertias leave "
-        f"{percent(zeros.before)} of the torque unexplained without them, {percent(zeros.after)} with them",
+        details=f"the offsets {', '.join(turned)} are applied; with the URDF's inertias {percent(zeros.after)} of the "
+        f"torque stays unexplained with them, {percent(zeros.before)} without",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
@@ -60,8 +60,8 @@ def stated_zeros(zeros: Zeros, robot: Robot) -> Finding:
     return TYPES[ZERO].finding(
         titled("stated zeros are off", listed(turned)),
         _call({"zero_offsets": [round(each, 6) for each in robot.zero_offsets or ()]}),
-        details=f"{', '.join(turned)}; the URDF's inertias leave {percent(zeros.before)} of the torque unexplained as "
-        f"stated, {percent(zeros.after)} with the other zeros",
+        details=f"{', '.join(turned)}; with the URDF's inertias {percent(zeros.before)} of the torque stays "
+        f"unexplained as stated, {percent(zeros.after)} with the corrected zeros",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
@@ -85,7 +85,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
             "its torque has the right one; ",
         ),
         "wrong_torque_sign": (f"the torque of {first} probably has the wrong sign", ""),
-        "wrong_coupling": (coupling, f"another coupling was given{_or(wrong)}; "),
+        "wrong_coupling": (coupling, f"the facts state another coupling{_or(wrong)}; "),
     }
     title, details = texts[wrong.kind]
     advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
@@ -105,7 +105,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
     return TYPES[wrong.kind].finding(
         titled(title, f"{before} unexplained, corrected {after}"),
         *advice,
-        details=f"{details}{before} of the torque of {shown} stays unexplained as it is, {after} when it is corrected",
+        details=f"{details}{before} of the torque of {shown} stays unexplained, {after} when corrected",
         evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
     )
 
@@ -116,9 +116,7 @@ def named_error(error: SmallError, names: Sequence[str]) -> Finding:
         error, "" if error.joint is None else names[error.joint]
     )
     others = [f"or {_NOUNS[kind].format(names[joint or 0])}" for kind, joint in error.others]
-    held_out = (
-        f"that explains {percent(error.share)} of the squared residual in motion that was held out"
-    )
+    held_out = f"this explains {percent(error.share)} of the squared residual in held-out motion"
     return TYPES[error.kind].finding(
         title,
         *advice,
@@ -148,7 +146,7 @@ def _tilted(error: SmallError, _: str) -> _Worded:
     spread = float(np.rad2deg(np.linalg.norm(error.errors)))
     return (
         f"the base is tilted by {_with_error(degrees, spread)} degrees",
-        "gravity is not where the facts say",
+        "the direction of gravity differs from the facts",
         {"tilt": Measured(degrees, "deg"), "tilt_error": Measured(spread, "deg")},
         (_call({"gravity": [round(float(each), 3) for each in gravity]}),),
     )
@@ -161,7 +159,7 @@ def _moved(error: SmallError, name: str) -> _Worded:
     degrees, of_degrees = np.rad2deg(value), np.rad2deg(spread)
     return (
         f"the zero of {name} is off by {_with_error(degrees, of_degrees)} degrees",
-        "the URDF's angle is the recorded one plus that",
+        "the URDF's angle is the recorded angle plus this offset",
         {"offset": Measured(value, "rad"), "offset_error": Measured(spread, "rad")},
         (_call({"zero_offsets": [round(each, 5) for each in offsets]}),),
     )
@@ -174,7 +172,7 @@ def _torque(error: SmallError, name: str) -> _Worded:
     what = "its torque constant or gear ratio is" if drive is None else "its gains are"
     return (
         f"the torque of {name} is {_with_error(100.0 * abs(value), 100.0 * spread)} % too {_side(value)}",
-        f"the links' weight and the other joints show it; {what} probably wrong",
+        f"compared with the links' weight and the other joints; {what} probably wrong",
         {"scale": Measured(1.0 + value), "scale_error": Measured(spread)},
         (_call(scales),),
     )
@@ -198,8 +196,8 @@ def _centre(error: SmallError, name: str) -> _Worded:
     free = [axis for axis in "xyz" if axis not in seen]
     return (
         f"the centre of mass of the link that {name} moves is off by {shown} mm",
-        "in the link's frame, from where the URDF has it"
-        + (f"; no motion shows {' and '.join(free)}" if free else ""),
+        "in the link's frame, relative to the URDF"
+        + (f"; the motion does not show {' and '.join(free)}" if free else ""),
         {axis: Measured(float(offset[place]) * 1e-3, "m") for axis, place in seen.items()},
         _freed(),
     )
@@ -212,7 +210,7 @@ def _carried(error: SmallError, name: str) -> _Worded:
     place = ", ".join(f"{axis} {centre[number]:.2f}" for axis, number in seen.items())
     return (
         f"the link that {name} moves carries {_with_error(mass, spread)} kg that is not in the URDF",
-        f"at {place} m in the link's frame" if seen else "no motion shows where",
+        f"at {place} m in the link's frame" if seen else "the motion does not show where",
         {"mass": Measured(mass, "kg"), "mass_error": Measured(spread, "kg")},
         _freed(),
     )

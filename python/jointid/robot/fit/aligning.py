@@ -116,7 +116,7 @@ def _lag_finding(lag: TorqueLag, names: Sequence[str]) -> Finding:
     every = ", ".join(f"{each} {text}" for each, text in sizes.items())
     return TYPES["torque_filtered"].finding(
         f"the torque of {name} passed a low-pass filter of {size}{more}",
-        details=f"time constants of first order: {every}; they explain more in motion that was held out than a delay, "
+        details=f"first-order time constants: {every}; they explain held-out motion better than a delay does, "
         "and were undone before the identification",
         evidence={
             f"{each}.time_constant": Measured(float(value), "s")

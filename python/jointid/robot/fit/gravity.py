@@ -66,7 +66,7 @@ def gravity_findings(given: Robot, attempt: Attempt) -> Iterator[Finding]:
     hidden = [axis for number, axis in enumerate(_AXES) if number not in seen]
     if not np.any(pull[seen]):
         yield TYPES["gravity_found"].finding(
-            "this motion does not show where gravity is",
+            "this motion does not show the direction of gravity",
             Action("call", {"gravity": ...}, function="Robot.from_urdf"),
             severity="warning",
         )
@@ -78,7 +78,7 @@ def gravity_findings(given: Robot, attempt: Attempt) -> Iterator[Finding]:
     also = f"; the motion does not show it along {' and '.join(hidden)}" if hidden else ""
     yield TYPES["gravity_found"].finding(
         f"gravity is ({vector}) m/s² in the base's frame, to ± {np.degrees(_NORMAL * error):.2g}°",
-        details=f"its direction was identified, and its size is given{also}",
+        details=f"the direction is identified; the size is that of the facts{also}",
         evidence={"error": Measured(error, "rad")}
         | {_AXES[k]: Measured(float(pull[k]), "m/s²") for k in seen},
     )

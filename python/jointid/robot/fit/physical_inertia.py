@@ -58,9 +58,9 @@ def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
         return
     distance = two_digits(estimate.impossible_by)
     yield TYPES["impossible_inertia"].finding(
-        f"no bodies can have these base parameters, by {distance} standard errors",
-        details="that is the distance to the nearest parameters that bodies can have; friction and the torque of "
-        "motion may be right, single inertial parameters are not",
+        f"the base parameters are not physically consistent, by {distance} standard errors",
+        details="no bodies can have them; the distance is to the nearest parameters that bodies can have; friction "
+        "and the torque of motion may still be right",
         severity="info",
         evidence={"distance": Measured(estimate.impossible_by)},
     )

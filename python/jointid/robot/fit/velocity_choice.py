@@ -112,7 +112,7 @@ def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]
     names = [robot.names[joint] for joint in joints]
     if choice.derived is None or choice.recorded is None:
         yield TYPES["recorded_velocity"].finding(
-            "the recorded velocity is used: that of the positions shows no motion above its noise",
+            "the recorded velocity is used: noise hides all motion in the derived velocity",
             Action("inspect", text="the time stamps and the positions' resolution"),
             severity="warning",
         )
@@ -124,7 +124,7 @@ def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]
     yield TYPES["recorded_velocity"].finding(
         f"the recorded velocity of {listed(names)} is used: it explains the torque better",
         Action("inspect", text="the time stamps and the positions' resolution"),
-        details="of held-out torque it leaves, instead of the velocity of the positions: "
+        details="unexplained held-out torque, with the recorded instead of the derived velocity: "
         + ", ".join(shares),
         evidence={
             f"{name}.{source}": Measured(float(values[joint]))

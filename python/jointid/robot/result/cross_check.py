@@ -1,4 +1,4 @@
-"""What the second look says of an identification: both values, and whether they agree."""
+"""The cross-check of an identification: the values of two fits, and whether they agree."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Compared:
-    """One parameter in both looks.
+    """One parameter, from both fits.
 
     Attributes
     ----------
     value, stderr : float
         Of the identification.
     second, second_stderr : float or None
-        Of the second look.
+        Of the cross-check.
     spread : float or None
-        How far the second look's other filters and rows are from its value.
+        How far the value moves with other filters and rows of the cross-check.
     agrees : bool or None
-        None: the second look says nothing.
+        None: the cross-check does not determine the value.
     reason : str
-        Why it says nothing.
+        Why it does not determine the value.
     """
 
     value: float
@@ -35,20 +35,20 @@ class Compared:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrossCheck:
-    """The second look at a robot's identification.
+    """The cross-check of a robot's identification: an independent plain least squares.
 
     Attributes
     ----------
     parameters : mapping of str to Compared
         By the names of `RobotEstimate.parameters`.
     residuals : mapping of str to (float, float)
-        Joint → residual over torque in the second look's rows: with the identified values, and with its own.
+        Joint → residual over torque in the rows of the cross-check: with the identified values, and with its own.
     agrees : bool or None
         None: nothing was compared.
     reason : str
-        Why there is no second look.
+        Why there is no cross-check.
     explained : bool
-        Whether both agree once the wrong facts that are named are corrected, or with the models that are advised.
+        Whether both fits agree once the named facts are corrected, or with the advised models.
     """
 
     parameters: Mapping[str, Compared] = field(default_factory=dict)
@@ -63,8 +63,8 @@ class CrossCheck:
         compared = sum(each.agrees is not None for each in self.parameters.values())
         apart = [name for name, each in self.parameters.items() if each.agrees is False]
         if not self.agrees:
-            what = f"disagrees: {', '.join(apart)}" if apart else "explains far more"
-            also = "; what the findings name explains it" if self.explained else ""
+            what = f"disagrees: {', '.join(apart)}" if apart else "explains much more"
+            also = "; the findings explain why" if self.explained else ""
             return f"a plain filtered least squares {what}{also}"
         return (
             f"a plain filtered least squares agrees ({compared} of {len(self.parameters)} values)"

@@ -16,103 +16,102 @@ TYPES = {
         FindingType(
             code="scaled_torques",
             severity="blocking",
-            meaning="all torques differ from the weight of the URDF's links by nearly the same factor, above 1.6: "
-            "they are currents, or of the motor's side of a gear. Below a factor of 2.5, named only if no "
+            meaning="all torques differ from the weight of the URDF's links by about the same factor, above 1.6. "
+            "They are probably currents or motor-side torques. A factor below 2.5 is reported only if no "
             "change of a single link explains it nearly as well",
             advice="state the unit, the gear ratios, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="different_factors",
             severity="blocking",
-            meaning="the torques of several joints differ from the weight of the URDF's links, each by another factor: "
-            "one gear ratio, torque constant or gain was taken for all joints. Named only if no change of a single "
-            "link explains it nearly as well",
+            meaning="the torques of several joints differ from the weight of the URDF's links, each by its own "
+            "factor. Probably one gear ratio, torque constant or gain was used for all joints. Reported "
+            "only if no change of a single link explains it nearly as well",
             advice="state `gear_ratios`, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="joint_order",
             severity="blocking",
-            meaning="the columns of three or more joints, of their torques, or of a drive's wanted positions, are in "
-            "another order than the robot's",
+            meaning="three or more joints are in a different order in the log than in the robot: all their "
+            "columns, only the torques, or the wanted positions of a drive",
             advice=_COLUMNS,
         ),
         FindingType(
             code="reversed_torques",
             severity="blocking",
-            meaning="all torques have the opposite sign of what the URDF's links weigh",
+            meaning="all torques have the opposite sign to the weight of the URDF's links",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="reversed_positions",
             severity="blocking",
-            meaning="all positions have the opposite sign of the URDF's axes, with or without the torques. The motion "
-            "of an arm that is its own mirror image does not show it",
+            meaning="all positions, with or without the torques, have the opposite sign to the URDF's axes. An "
+            "arm that is its own mirror image does not show this",
             advice="state `directions`",
         ),
         FindingType(
             code="unsigned_torque",
             severity="blocking",
-            meaning="a torque is never negative although the joint moves both ways; its magnitude fits the URDF, its "
-            "value does not",
+            meaning="a torque is never negative although the joint moves both ways. Its magnitude fits the URDF; "
+            "its value does not",
             advice="log the driver's signed value",
         ),
         FindingType(
             code="implausible_unit",
-            meaning="a position or velocity is probably in degrees: the two differ by 57 times; blocking where most "
-            "joints move over twice the URDF's range, or where the links weigh what was measured in degrees only",
+            meaning="a position or velocity is probably in degrees: the two differ by a factor of 57. Blocking "
+            "if most joints move over twice the URDF's range, or if the measured torques fit the links "
+            "only in degrees",
             advice="state the unit of the signal",
         ),
         FindingType(
             code="cross_check",
             severity="blocking",
-            meaning="the second look has other values, or explains far more of the torque",
+            meaning="an independent second fit gives other values, or explains much more of the torque",
             advice="check the time stamps and the logger, or leave slow motion out",
         ),
         FindingType(
             code="swapped_joints",
             severity="blocking",
-            meaning="the columns of two joints are probably exchanged. It is looked for where a joint's balance "
-            "leaves more than 5 %, or where friction would be negative",
+            meaning="the columns of two joints are probably exchanged. Checked if a joint's residual is above 5 "
+            "%, or if its friction would be negative",
             advice=_COLUMNS,
         ),
         FindingType(
             code="swapped_torques",
             severity="blocking",
-            meaning="the torque columns of two joints are probably exchanged; looked for where `swapped_joints` is",
+            meaning="the torque columns of two joints are probably exchanged. Checked like `swapped_joints`",
             advice=_COLUMNS,
         ),
         FindingType(
             code="wrong_sign",
             severity="blocking",
-            meaning="all signals of a joint have the wrong sign; looked for where `swapped_joints` is. The mirror "
-            "image of an arm that moves in one plane fits as well: both joints that may turn the other way "
-            "are then named",
+            meaning="all signals of a joint have the wrong sign. Checked like `swapped_joints`. If the arm moves "
+            "in one plane, its mirror image fits as well; both possible joints are then named",
             advice="state `directions`",
         ),
         FindingType(
             code="wrong_torque_sign",
             severity="blocking",
-            meaning="the torque of a joint has the wrong sign; looked for where `swapped_joints` is",
+            meaning="the torque of a joint has the wrong sign. Checked like `swapped_joints`",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="wrong_motion_sign",
             severity="blocking",
-            meaning="the position of a joint has the wrong sign, its torque the right one; looked for where "
-            "`swapped_joints` is",
+            meaning="the position of a joint has the wrong sign; its torque has the right sign. Checked like "
+            "`swapped_joints`",
             advice="state `directions` and `torque_scales`",
         ),
         FindingType(
             code="wrong_coupling",
-            meaning="a coupling of motors is missing or has another factor; looked for where `swapped_joints` is. "
-            "Neighbouring joints with factors 0 and ±1, and exchanged rows and columns, are tried with free "
-            "inertias. A factor that makes friction negative counts only where the balance is much better "
-            "with it",
+            meaning="a motor coupling is missing or has a wrong factor. Checked like `swapped_joints`, with free "
+            "inertias: factors 0 and ±1 of neighbouring joints, and exchanged rows and columns. A factor "
+            "that makes friction negative counts only if the fit is much better with it",
             advice="state `couplings`",
         ),
         FindingType(
             code="tilted_base",
-            meaning="gravity is not where the facts say; the tilt is given with its error",
+            meaning="the direction of gravity differs from the facts; the tilt is given with its error",
             advice="state `gravity`",
         ),
         FindingType(
@@ -122,100 +121,104 @@ TYPES = {
         ),
         FindingType(
             code="wrong_torque_scale",
-            meaning="the torque of one joint is too high or too low compared with the links' weight and the other "
-            'joints, as a wrong torque constant makes it. With `inertia="free"` only joints that carry each other show '
-            "it, so nothing is said of the first joint. All torques too high by a small factor look like heavier links",
+            meaning="the torque of one joint is too high or too low, compared with the weight of the links and "
+            'the other joints. A wrong torque constant causes this. With `inertia="free"` only joints '
+            "that carry each other show it, so the first joint is not checked. A small factor on all "
+            "torques looks like heavier links",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="payload",
-            meaning='the last link carries a body that the URDF does not know; looked for unless `inertia="free"`',
-            advice='put it in the URDF, or identify with `inertia="free"`',
+            meaning='the last link carries a body that is not in the URDF. Not checked with `inertia="free"`',
+            advice='add it to the URDF, or identify with `inertia="free"`',
         ),
         FindingType(
             code="wrong_centre",
-            meaning="the centre of mass of a link is not where the URDF has it; looked for unless "
-            "`inertia=\"free\"`. A centre along the next axis may be that link's or the next one's: both are named",
+            meaning="the centre of mass of a link is not where the URDF has it. Not checked with "
+            '`inertia="free"`. A shift along the next joint\'s axis may belong to either link: both are '
+            "named",
             advice='correct the URDF, or identify with `inertia="free"`',
         ),
         FindingType(
             code="wrong_inertia",
-            meaning='a link is heavier or lighter than in the URDF; looked for unless `inertia="free"`',
+            meaning='a link is heavier or lighter than in the URDF. Not checked with `inertia="free"`',
             advice='correct the URDF, or identify with `inertia="scaled"`',
         ),
         FindingType(
             code="more_wrong_facts",
-            meaning="joints fit badly even with the named facts corrected: more is wrong than was found",
-            advice="correct what is named, then identify again",
+            meaning="joints fit badly even with the named facts corrected: something more is wrong",
+            advice="correct the named facts, then identify again",
         ),
         FindingType(
             code="several_wrong_facts",
             severity="info",
-            meaning="several facts are wrong. Up to three are found, one after the other; the call corrects them all",
+            meaning="several facts are wrong. Up to three are found, one after the other; the printed call "
+            "corrects them all",
             advice="state all of them",
         ),
         FindingType(
             code="consequences",
             severity="info",
-            meaning="warnings that are gone once the named facts are corrected; they are not listed one by one",
+            meaning="warnings that disappear when the named facts are corrected; they are not listed one by one",
             advice="nothing",
         ),
         FindingType(
             code="turned_zero",
-            meaning="the log counts joints from another zero than the URDF, by a multiple of 90 degrees. The URDF's "
-            "inertias fit at least twice as well with it, and it is taken into account. Gravity does not "
-            "show the zero of a joint with a vertical axis",
+            meaning="the log and the URDF count joints from different zeros, a multiple of 90 degrees apart. The "
+            "URDF's inertias fit at least twice as well with these offsets, so they are applied. Gravity "
+            "does not show the zero of a joint with a vertical axis",
             advice="state `zero_offsets`",
         ),
         FindingType(
             code="signal_lag",
-            meaning="the torque is late or early against the position, and was not shifted; of a robot with a drive, "
-            "what its wanted positions make of it",
+            meaning="the torque is late or early relative to the position, and was not shifted. With a drive: "
+            "the torque that its wanted positions cause",
             advice="state `shift`, or check filters and clocks",
         ),
         FindingType(
             code="delay_removed",
             severity="info",
-            meaning="the torque was late or early against the position, and shifted back before the identification; "
-            "of a robot with a drive, how long after its row a wanted position acts",
+            meaning="the torque was late or early relative to the position, and was shifted before the "
+            "identification. With a drive: the delay from a row to the effect of its wanted position",
             advice="nothing, or state `shift`",
         ),
         FindingType(
             code="recorded_velocity",
             severity="info",
-            meaning="the recorded velocity of a joint is used, not that of its positions: with it the balance predicts "
-            "held-out torque better, by three standard errors and a tenth of the squared residual. A warning where "
-            "noise of the other one hides all motion, so that nothing is compared",
+            meaning="the recorded velocity of a joint is used, not the one derived from its positions. It "
+            "predicts held-out torque better, by three standard errors and a tenth of the squared "
+            "residual. Warning if noise hides all motion in the derived velocity, so that the two cannot "
+            "be compared",
             advice="nothing, or check the time stamps and the positions' resolution",
         ),
         FindingType(
             code="gravity_found",
             severity="info",
-            meaning='the direction of gravity in the base\'s frame, of a robot with `gravity = "free"`',
+            meaning='the direction of gravity in the base\'s frame, identified because of `gravity = "free"`',
             advice="nothing, or state `gravity`",
         ),
         FindingType(
             code="torque_filtered",
             severity="info",
-            meaning="a low-pass filter of first order on the torque explains held-out motion better than a delay, and "
-            "was undone before the identification",
+            meaning="a first-order low-pass filter on the torque explains held-out motion better than a delay "
+            "does; it was undone before the identification",
             advice="nothing, or state `shift` with `torque_filter`",
         ),
         FindingType(
             code="unexamined_causes",
-            meaning="the rest of the torque is not noise: neighbouring windows are alike, and no known cause explains "
-            "most of it. The finding lists causes that are not examined for a robot, and makes the verdict "
-            '"usable with care". Info: the named facts explain it',
-            advice="identify the joint by itself, which examines these causes",
+            meaning="the residual of a joint is not noise: neighbouring windows are alike, and no known cause "
+            "explains most of it. The finding lists the causes that are not examined for a robot. The "
+            'verdict becomes "usable with care". Info if the named facts explain it',
+            advice="identify the joint alone, which examines these causes",
         ),
         FindingType(
             code="asymmetric_friction",
-            meaning="viscous friction differs between the directions; looked for where nothing else is wrong",
+            meaning="viscous friction differs between the directions. Checked only if nothing else is wrong",
             advice='identify with `model="auto:asymmetric"`',
         ),
         FindingType(
             code="poor_fit",
-            meaning="the balance of a joint leaves more than 15 % of its torque unexplained",
+            meaning="more than 15 % of a joint's torque stays unexplained",
             advice='identify with `inertia="free"`; check units, signs and gear ratio of the joint',
         ),
         FindingType(
@@ -225,14 +228,14 @@ TYPES = {
         ),
         FindingType(
             code="at_bound",
-            meaning="friction would be negative and is held at 0. Info: it is at most a tenth of the joint's "
+            meaning="friction would be negative and is held at 0. Info if it is at most a tenth of the joint's "
             "friction",
             advice="check the model and the given facts",
         ),
         FindingType(
             code="standing",
-            meaning="joints stand still, stick or are too slow; these parts are left out. A warning above 35 % of "
-            "the time",
+            meaning="joints stand still, stick or are too slow; these parts are left out. Info up to 35 % of the "
+            "time",
             advice="record more motion",
         ),
         FindingType(
@@ -242,8 +245,8 @@ TYPES = {
         ),
         FindingType(
             code="impossible_inertia",
-            meaning="no bodies can have these inertial parameters; for information with "
-            '`inertia="free"`, which says by how many standard errors',
+            meaning='no bodies can have these inertial parameters. Info with `inertia="free"`, with the distance '
+            "in standard errors",
             advice='identify with `inertia="free"`',
         ),
         FindingType(
@@ -255,7 +258,7 @@ TYPES = {
         FindingType(
             code="merged_inertia",
             severity="info",
-            meaning="no motion separates a rotor's inertia or a link's scale from other inertias",
+            meaning="the motion does not separate a rotor's inertia or a link's scale from other inertias",
             advice="nothing, or state `rotor_inertias`",
         ),
         FindingType(
@@ -267,13 +270,14 @@ TYPES = {
         FindingType(
             code="joints_left_out",
             severity="info",
-            meaning="joints of the log are on another clock than those with torques, as a gripper's, and are not read",
+            meaning="joints of the log, such as a gripper's, have another clock than the joints with torques; "
+            "they are not read",
             advice="nothing, or name the joints with `joints`",
         ),
         FindingType(
             code="no_gravity",
             severity="info",
-            meaning="no gravity acts on the robot, as given",
+            meaning="no gravity acts on the robot, as the facts say",
             advice="nothing, or state `gravity`",
         ),
     )

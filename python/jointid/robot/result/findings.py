@@ -25,7 +25,7 @@ _VAGUE = 0.25  # a standard error, of the value
 _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth an inspection of the given facts
-_LEFT_OUT = "such motion says nothing about friction and is left out"
+_LEFT_OUT = "this motion says nothing about friction and is left out"
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
@@ -133,7 +133,7 @@ def _of_joint(
     if residual > _POOR:
         freed = Action("call", {"inertia": FREE}, function="identify_robot")
         yield TYPES["poor_fit"].finding(
-            f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
+            f"{percent(residual)} of the torque of {joint.name} stays unexplained",
             *(() if estimate.inertia == FREE else (freed,)),
             _looked_at(joint),
             parameters=_all_of(joint),
@@ -166,9 +166,9 @@ def _of_inertia(estimate: RobotEstimateRecord, columns: InertiaColumns) -> Itera
         )
     if estimate.consistent is False:
         yield TYPES["impossible_inertia"].finding(
-            "no bodies can have the inertial parameters of some links",
+            "the inertial parameters of some links are not physically consistent",
             Action("call", {"inertia": FREE}, function="identify_robot"),
-            details="friction and the torque of motion may be right, single inertial parameters are not",
+            details="no bodies can have them; friction and the torque of motion may still be right",
         )
     for joint in estimate.joints.values():
         scale = joint.parameters.get("inertia_scale")

@@ -60,7 +60,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     draws : RobotDraws or None
         What `bootstrap` needs; None where the estimate was read from a file.
     cross_check : CrossCheck or None
-        The second look: a plain filtered least squares of the signals as they were recorded, and whether it agrees.
+        An independent plain filtered least squares on the signals as recorded, and whether it agrees.
         None of an estimate that was saved without it.
     """
 

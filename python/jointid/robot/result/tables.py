@@ -68,11 +68,11 @@ def quality(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
         "free": f"identified: {len(estimate.base_parameters)} base parameters",
     }[estimate.inertia]
     if estimate.inertia == "free" and estimate.consistent:
-        inertia += ", which bodies can have"
+        inertia += ", physically consistent"
         if estimate.impossible_by:
             inertia += f" within {two_digits(estimate.impossible_by)} standard errors"
     elif estimate.consistent is False:
-        inertia += ", which no bodies can have"
+        inertia += ", not physically consistent"
     windows = sum(joint.residuals.windows for joint in estimate.joints.values())
     duration = 1e3 * float(estimate.settings.get("window_duration", 0.0))
     return [
@@ -83,7 +83,7 @@ def quality(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
             f"relative residual {100.0 * estimate.relative_residual:.2f} % of all joints' torque",
         ),
         ("windows", f"{windows} of {duration:.4g} ms, all joints"),
-        *([] if estimate.cross_check is None else [("second look", str(estimate.cross_check))]),
+        *([] if estimate.cross_check is None else [("cross-check", str(estimate.cross_check))]),
         ("condition", f"{estimate.condition:.3g}"),
         ("time", f"{estimate.seconds:.2f} s"),
     ]
@@ -97,7 +97,7 @@ def _turning(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
         shares = [f"{row[joint]:.4g} {robot.names[joint]}" for joint in map(int, row.nonzero()[0])]
         found.append(("coupling", f"motor {robot.names[motor]} turns with {' + '.join(shares)}"))
     shift = estimate.settings.get("shift", {})
-    for key, what in (("torque", "delay taken away"), (FILTER, "low-pass filter undone")):
+    for key, what in (("torque", "delay removed"), (FILTER, "low-pass filter undone")):
         given = shift.get(key)
         if given:
             each = given.items() if isinstance(given, Mapping) else [("all joints", given)]
