@@ -44,17 +44,17 @@ class Share:
         "speed" (its rate and direction: friction), "acceleration" (its momentum: inertia), "position"
         (gravity) or "torque".
     share : float
-        Of the residual's sum of squares beyond what the joint's own motion explains, out of sample, after the
-        shares before this one.
+        Of the residual's sum of squares that neither the joint's own motion nor earlier shares explain, on held-out
+        data.
     scale : float
-        Length of the sums of windows at which it shows most [s].
+        Length of the sums of windows with the largest share [s].
     alike : tuple of str
         Other joints that explain nearly as much, because they move alike.
     own_too : bool
         Whether the joint's own motion, beyond the model, explains much of it as well.
     certain : bool
-        Whether it stands out by itself. A share that does not is reported only where the other joint's residual
-        owes a certain one to this joint: what couples two joints acts on both.
+        Whether it is significant alone. Otherwise it is reported only because the other joint's residual has a certain
+        share of this joint: a coupling acts on both.
     """
 
     joint: str

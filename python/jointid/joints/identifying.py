@@ -36,11 +36,10 @@ def identify_joints(
     callback: Callable[[str, int, int], None] | None = None,
     **options: Unpack[IdentifyOptions],
 ) -> JointEstimates:
-    """Identify several joints from one recording, each for itself, and say what they owe to each other.
+    """Identify several joints from one recording, each alone, and find couplings between them.
 
-    No joint's estimate depends on the others, or on how many threads there are. What a joint's model leaves
-    unexplained is then held against the motion of all other joints of the recording, out of sample. The options of
-    `identify` hold for each joint.
+    The estimate of a joint does not depend on the others, or on the number of threads. Its residual is then compared
+    with the motion of all other joints on held-out data. The options of `identify` apply to each joint.
 
     Parameters
     ----------
@@ -48,24 +47,24 @@ def identify_joints(
     joints : iterable of str or int, optional
         Names or numbers of the joints to identify. Default, and "all": all.
     joint : Joint or mapping of str to Joint, optional
-        What is known of the joints: one for all, or by name. A gear ratio other than 1 is used where the recording
-        has none. Default: nothing.
+        Known values of the joints: one for all, or by name. A gear ratio other than 1 is used if the recording has
+        none. Default: nothing is known.
     couplings : bool
-        Whether the residuals are held against the other joints' motion. Default True.
+        Whether residuals are compared with the other joints' motion. Default True.
     callback : callable, optional
-        Called before each joint with its name, its number from 0, and how many there are.
+        Called before each joint with its name, its number from 0, and the number of joints.
     **options
 
     Returns
     -------
     JointEstimates
-        One result a joint. A joint whose recording cannot be used has the status "failed" and its reason; the
-        others are not lost.
+        One result per joint. If a recording cannot be used, its joint has the status "failed" and the reason; the
+        others stay.
 
     Raises
     ------
     InputError
-        No such joint, an option that no joint can have, or gear ratios that contradict each other.
+        A joint does not exist, an option is invalid, or gear ratios contradict each other.
     KeyboardInterrupt
         Ctrl-C; it is raised within 0.1 s.
 

@@ -18,7 +18,7 @@ IDENTIFIED, FAILED = "identified", "failed"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointResult:
-    """What became of one joint.
+    """The result of one joint.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class JointResult:
     side : str
         Side of the gear that the values are on: "joint", or "motor" without a known gear ratio.
     others : tuple of Share
-        What the other joints explain of its residual, in the order in which they were found.
+        Shares of its residual that other joints explain, in the order in which they were found.
     """
 
     name: str

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class JointEstimates(JointEstimatesRecord, KeptResult):
-    """Several joints identified from one recording, each for itself; a mapping from names to estimates.
+    """Several joints identified from one recording, each alone; a mapping from names to estimates.
 
     A joint that failed is not in the mapping; `results` has it with its reason.
 

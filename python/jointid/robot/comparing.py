@@ -45,13 +45,13 @@ def compare_robot_models(
     folds: int = 5,
     **options: Unpack[RobotFitOptions],
 ) -> RobotComparison:
-    """Compare what is identified of a robot by how well it predicts torque that it was not fitted to.
+    """Compare inertias and friction models of a robot by their prediction of held-out torque.
 
-    One recording is cut into contiguous blocks; of several, each is one block. Every inertia with every friction model
-    is fitted to all blocks but one and predicts the torque of that block, for each block in turn. The winner is the
-    candidate with the fewest parameters that is not worse than the best by more than one standard error of their
-    difference, block by block. With its inertia, each joint's model is chosen by the same rule from the joint's own
-    torque. The options are the same for all candidates; delays and zeros that are found come from all recordings.
+    One recording is cut into contiguous blocks; several recordings are one block each. Every inertia with every
+    friction model is fitted to all blocks except one and predicts the torque of that block, for each block in turn. The
+    winner is the candidate with the fewest parameters that is at most one standard error worse than the best, by
+    their difference per block. With its inertia, each joint's model is chosen by the same rule from the joint's own
+    torque. Options are the same for all candidates; delays and zeros are identified from all recordings.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def compare_robot_models(
     Raises
     ------
     InputError
-        As `identify`; or candidates or folds that cannot be.
+        As `identify`, or invalid candidates or folds.
 
     Examples
     --------

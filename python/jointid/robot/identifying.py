@@ -37,10 +37,10 @@ def identify_robot(
 ) -> RobotEstimate:
     """Identify the friction of a robot's joints from recordings of all of them, without accelerations.
 
-    The torque of each joint is integrated over windows. So is what moves the links and holds them against gravity:
-    the change of the joints' momenta, and the forces of motion and gravity, which need positions and velocities only.
-    The rest is friction. All joints are solved at once, each weighted by its own residual. Velocities are
-    derived from the positions, or a joint's is taken from the recording where the balance is better with it.
+    The torque of each joint is integrated over windows. The change of momentum and the forces of motion and gravity
+    of the links are subtracted; they need positions and velocities only. The rest is friction. All joints are solved
+    together, each weighted by its own residual. Velocities are derived from positions; the recorded velocity of a joint
+    is used if the fit is better with it.
 
     Parameters
     ----------
@@ -48,8 +48,8 @@ def identify_robot(
         With positions and torques, of the joints or of the motors.
     robot : Robot
     inertia : {"urdf", "scaled", "free"}
-        Whether the links' inertias are those of the URDF, scaled link by link, or identified: as base parameters,
-        the combinations that motion shows. Default ``"urdf"``.
+        Inertias of the links: the URDF's, the URDF's scaled link by link, or identified as base parameters, the
+        combinations that motion shows. Default ``"urdf"``.
     **options
 
     Returns
@@ -59,7 +59,7 @@ def identify_robot(
     Raises
     ------
     InputError
-        A recording lacks a signal or a joint, or an option has no such value.
+        A recording lacks a signal or a joint, or an option has an invalid value.
 
     Notes
     -----

@@ -16,16 +16,15 @@ class RobotFitOptions(MaskOptions, total=False):
         float | None,
         Option(
             kind="float or int, optional",
-            help="Duration of the windows [s]; a whole number is how many. Default: what the velocities' noise asks "
-            "for, at most 0.1 s; of recordings longer than some minutes towards 0.1 s, because there are enough of "
-            "them.",
+            help="Duration of the windows [s]; a whole number is their count. Default: by the noise of the "
+            "velocities, at most 0.1 s; closer to 0.1 s for recordings longer than some minutes.",
         ),
     ]
     min_speed: Annotated[
         float | Sequence[float] | Mapping[str, float] | None,
         Option(
             kind="float, sequence or mapping of float, optional",
-            help="Speed below which a joint's balance is left out [rad/s or m/s]; one for all, one a joint, or by "
+            help="Slower motion of a joint is left out [rad/s or m/s]; one for all, one per joint, or by "
             "name. Default 0.",
         ),
     ]
@@ -33,12 +32,12 @@ class RobotFitOptions(MaskOptions, total=False):
         Shift | None,
         Option(
             kind="mapping, optional",
-            help='Delay of the "torque" against the position [s], to be taken away; positive: the torque is late. One '
+            help='Delay of the "torque" against the position [s], to be removed; positive: the torque is late. One '
             "for all joints, a sequence with one for each, or a mapping by joints' names, e.g. "
-            '``{"torque": 0.001}``; "torque_filter" is the time constant of a low-pass filter that it passed [s]. An '
-            "empty mapping shifts nothing. Default: found. One delay for all joints, another for a joint that clearly "
-            "differs, or a filter if that explains more. A torque that is early by more than one sample is not "
-            "shifted. The findings report it.",
+            '``{"torque": 0.001}``; "torque_filter" is the time constant of its low-pass filter [s]. An '
+            "empty mapping shifts nothing. Default: identified: one delay for all joints, another for a joint that "
+            "clearly differs, or a filter if it explains more. A torque that is early by more than one sample is "
+            "reported and not shifted.",
         ),
     ]
 
@@ -51,12 +50,12 @@ class RobotOptions(RobotFitOptions, total=False):
         Option(
             kind="Model, str or mapping, optional",
             help='Friction of the joints: "coulomb_viscous", "stribeck", "smooth_coulomb_viscous" (Coulomb friction '
-            'rises with the speed), or "auto": each joint has static friction if '
-            "that predicts its held-out torque better. With ``:asymmetric`` behind it, or as "
-            '``Model(asymmetric=True)``, friction differs between the directions: "viscous" is then the mean, and '
-            '"viscous_difference" half of what is more in the positive direction; half the difference of Coulomb '
-            'friction is in "torque_offset". With ``:load_friction`` it grows with the torque of the links, too. A '
-            "mapping from joints' names to models says it for some of them. "
-            'Default: the robot\'s models, else "auto".',
+            'rises with the speed), or "auto": a joint has static friction if '
+            "this predicts its held-out torque better. With ``:asymmetric`` after the name, or "
+            '``Model(asymmetric=True)``, friction differs between the directions: "viscous" is the mean, '
+            '"viscous_difference" half the difference (positive − negative). Half the difference of Coulomb '
+            'friction is in "torque_offset". With ``:load_friction`` it also grows with the torque of the links. A '
+            "mapping from joint names to models sets some of them. "
+            'Default: the robot\'s models, otherwise "auto".',
         ),
     ]

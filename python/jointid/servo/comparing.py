@@ -38,13 +38,13 @@ def compare_servo_models(
     Parameters
     ----------
     recordings : sequence of Recording
-        As for `identify`; several.
+        Several, as for `identify`.
     joint : Joint
     models : sequence of Model or str, optional
         Default: `MODELS`, with and without friction of the load.
     groups : sequence, optional
-        A label for each run: runs of one label are held out together. Default: by the position loop's gain where
-        there are several, else each run for itself.
+        A label per run; runs with the same label are held out together. Default: by the position loop's gain if there
+        are several, otherwise each run alone.
     threads : int
         Of the rollouts; 0 (default): all.
     **options

@@ -24,29 +24,29 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
     Attributes
     ----------
     joint : Joint
-        As given.
+        As passed to `identify`.
     parameters : mapping of str to ParameterEstimate
         "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), the coefficients of the friction model ("viscous",
         "coulomb"), "load_friction" (dry friction per torque through the gear: load plus motor), "inertia" (of the
-        drive, at the output), and what follows: "torque_constant" (k_t at the output) and "resistance".
+        drive, at the output), and the derived "torque_constant" (k_t at the output) and "resistance".
     findings : tuple of Finding
     model : str
         Name of the friction model.
     values : ndarray, shape (n,)
-        The parameters up to the inertia; 0 for friction of the load that the model does not have.
+        The parameters up to the inertia; 0 for load friction if the model has none.
     draws : ndarray, shape (draws, n)
-        The same of runs drawn anew.
+        The same, of resampled runs.
     load_friction : bool
         Whether the model has friction of the load.
     separable : bool
-        Whether windows with and without drive divide back-EMF from viscous friction.
+        Whether windows with and without drive separate back-EMF from viscous friction.
     lead : float
         Time by which a row's position is older than its duty [s].
     lead_found : bool
         Whether the lead was estimated.
     command_lag : float or None
-        How much later than its row the command acts on average [s]: half a row if it is held from row to row, 0 if it
-        moves evenly. None where the position loop is not known.
+        Mean delay from a row to its command [s]: half a row if the command is held from row to row, 0 if it moves
+        linearly. None if the position loop is not known.
     windows : int
         Windows used.
     window, slowest : float
@@ -56,7 +56,7 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
     moving : tuple of float
         Share of each run that is used.
     rms : float
-        Root mean square of what the model leaves, as a mean over a window [N·m].
+        Root mean square of the residual, as a mean over a window [N·m].
     relative_residual : float
         The same as a share of the load's torque.
     seconds : float

@@ -47,17 +47,17 @@ def identify_servo(
 ) -> ServoEstimate:
     """Identify a servo that logs a duty instead of a torque: motor, friction and inertia, from all runs at once.
 
-    The torque balance is integrated over windows, so no acceleration is needed, and velocity is the slope of the
-    position: the logged one of a servo lags. All is linear in k_t/R, k_t²/R, inertia and friction.
+    The torque balance is integrated over windows, so no acceleration is needed. Velocity is the slope of the position,
+    because the logged velocity of a servo lags. The balance is linear in k_t/R, k_t²/R, inertia and friction.
 
     Parameters
     ----------
     recordings : Recording or sequence of Recording
         With a signal "duty" in `extra`, or a `reference` and a known position loop; see `VoltageDrive`. Back-EMF and
-        viscous friction are divided by stretches in which the motor turns freely: a signal "driven" with zeros.
+        viscous friction are separated by motion in which the motor turns freely: a signal "driven" with zeros.
     joint : Joint
-        With `voltage`, and with the known load as its `link`. A given `inertia`, `torque_constant` or resistance, and
-        parameters with ``vary=False``, are facts.
+        With `voltage`, and with the known load as its `link`. If `inertia`, `torque_constant`, resistance or parameters
+        with ``vary=False`` are set, they are facts and are not identified.
     **options
 
     Returns

@@ -28,7 +28,7 @@ class ServoFitOptions(TypedDict, total=False):
         Option(
             kind="float, optional",
             help="Time by which a row's position is older than its duty [s], because a bus reads them one after the "
-            "other. Default: estimated where the position loop is known and the duty logged, otherwise 0.",
+            "other. Default: estimated if the position loop is known and the duty is logged, otherwise 0.",
         ),
     ]
 
@@ -41,15 +41,15 @@ class ServoOptions(ServoFitOptions, total=False):
         Option(
             kind="Model, str or mapping, optional",
             help='One without shape parameters such as "coulomb_viscous", with or without `load_friction`. Default: '
-            "the joint's; with friction of the load where neither says.",
+            "the joint's, otherwise with friction of the load.",
         ),
     ]
     draws: Annotated[
         int,
         Option(
             kind="int",
-            help="Sets of runs that are drawn for errors and intervals. Default 200; 0: none.",
+            help="Number of resampled sets of runs for errors and intervals. Default 200; 0: none.",
             default=200,
         ),
     ]
-    seed: Annotated[int, Option(kind="int", help="Of the drawing. Default 0.", default=0)]
+    seed: Annotated[int, Option(kind="int", help="Of the resampling. Default 0.", default=0)]

@@ -35,9 +35,8 @@ def rollout(
 ) -> Rollout:
     """Simulate a servo's closed loop along logs, from their initial states, and compare the positions.
 
-    Only the wanted position, the supply and when the motor is driven are taken from the log; where the position loop
-    is not known, the logged duty instead of the wanted position. Dry friction is set-valued: a servo that sticks
-    stands still.
+    Only the wanted position, the supply and the signal "driven" are taken from the log; without a known position loop,
+    the logged duty replaces the wanted position. Dry friction is set-valued: a servo that sticks stands still.
 
     Parameters
     ----------
@@ -48,7 +47,7 @@ def rollout(
     step : float
         Longest integration step [s]. Default 1 ms.
     threads : int
-        0 (default): all. The results do not depend on it, to the last bit.
+        0 (default): all. Results do not depend on it.
 
     Returns
     -------
@@ -57,7 +56,7 @@ def rollout(
     Raises
     ------
     InputError
-        A value or a signal is missing, or a motion that leaves all bounds.
+        A value or a signal is missing, or the motion diverges.
 
     Examples
     --------

@@ -80,20 +80,20 @@ def compare(
     score: Literal["windows", "rollout"] | None = None,
     **of_other_subjects: Any,
 ) -> Any:
-    """Compare friction models by how well they predict what they were not fitted to.
+    """Compare friction models by their prediction of held-out data.
 
-    One recording is cut into contiguous blocks; of several recordings, each is one block. Every model is fitted to all
-    blocks but one and predicts that block, for each block in turn. The winner is the model with the fewest parameters
-    whose score is within one standard error of the best score (the one-standard-error rule of Breiman et al., 1984).
+    One recording is cut into contiguous blocks; several recordings are one block each. Every model is fitted to all
+    blocks except one and predicts that block, for each block in turn. The winner is the model with the fewest
+    parameters and a score within one standard error of the best (one-standard-error rule, Breiman et al., 1984).
 
-    - Of a joint, the balance of held-out windows decides. A model that the data do not support cannot win: its
-      estimate from all data has the warning `model_too_rich`, or a parameter on a bound.
-    - Of a servo, the closed loop of held-out runs decides, simulated: the smallest median error wins. A servo is what
-      it is in `identify`.
-    - Of a robot, the held-out torque of all joints decides. Candidates are the inertias of the links with each model.
+    - Joint: the residual of held-out windows decides. A model that the data do not support cannot win: its estimate
+      from all data has the warning `model_too_rich`, or a parameter on a bound.
+    - Servo: the simulated closed loop of held-out runs decides; the smallest median error wins. `identify` defines
+      which joints are servos.
+    - Robot: the held-out torque of all joints decides. Candidates are all inertias of the links with each model.
 
-    Options are the same for all models. Delays that are chosen are chosen from all data; windows are by default the
-    shortest of the models' defaults.
+    Options are the same for all models. Delays are chosen from all data. The default of windows is the shortest of
+    the models' defaults.
 
     Parameters
     ----------
@@ -101,13 +101,12 @@ def compare(
     subject : Joint or Robot, optional
         As in `identify`, except that the model's name and `asymmetric` are not used.
     score : {"windows", "rollout"}, optional
-        Of a joint with `voltage`: "windows" compares by its torque, "rollout" by its closed loop. Default: the torque
-        where `identify` uses it.
+        For a joint with `voltage`: "windows" compares by its torque, "rollout" by its closed loop. Default: the torque
+        if `identify` uses it.
     models : sequence of Model, str or mapping, optional
-        Models or their texts, such as "coulomb_viscous:asymmetric". Default of a joint: all with the gravity that
-        `identify` would choose, without those that cannot be used with these data; they are listed in
-        `settings["left_out"]`. Of a servo: with and without friction of the load. Of a robot: "coulomb_viscous" and
-        "stribeck".
+        Models or their texts, such as "coulomb_viscous:asymmetric". Default for a joint: all that these data allow,
+        with the gravity that `identify` would choose; `settings["left_out"]` lists the others. For a servo: with and
+        without friction of the load. For a robot: "coulomb_viscous" and "stribeck".
     folds : int
         Joint and robot: number of blocks of one recording, or largest number of groups of several. Default 5.
     **options
@@ -117,10 +116,10 @@ def compare(
     Other Parameters
     ----------------
     groups : sequence, optional
-        Servo: a label for each run; runs of one label are held out together. Default: by the position loop's gain
-        where there are several, otherwise each run for itself.
+        Servo: a label per run; runs with the same label are held out together. Default: by the position loop's gain
+        if there are several, otherwise each run alone.
     threads : int
-        Servo: of the rollouts; 0 (default): all.
+        Servo: number of threads for the rollouts; 0 (default): all.
     **servo
     inertia : sequence of str
         Robot: any of "urdf", "scaled" and "free" (all by default).
@@ -133,7 +132,7 @@ def compare(
     Raises
     ------
     InputError
-        Input that cannot be used, or an option that this subject does not have: the error names it and the reason.
+        Input that cannot be used, or an option that this subject does not have; the error gives the reason.
     KeyboardInterrupt
         Ctrl-C.
 

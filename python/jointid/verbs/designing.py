@@ -25,54 +25,55 @@ def design(
 ) -> Design:
     """Return the motion from which a joint is identified best, within limits.
 
-    Motions are sums of sines that start and end at rest. Each is judged by the information in a
-    noise-free simulation with the controller that will drive it, for several joints that the prior
-    allows; a genetic algorithm searches; the best are rehearsed: simulated with noise, and identified.
+    Motions are sums of sines that start and end at rest. A genetic algorithm searches them. The score of a motion is
+    the information in a noise-free simulation with the controller that will drive it, for several joints within the
+    prior. The best motions are simulated with noise, and identified.
 
-    After an estimate it is the motion that adds most to what the estimate tells: the information of its recordings
-    counts, joints are drawn from its intervals, and the controller believes its values. Identify both recordings
-    together then: ``identify([first, second], joint)``.
+    After an estimate, the motion is the one that adds most information to its recordings. Joints are drawn from its
+    intervals, and the controller uses its values. Then identify both recordings together:
+    ``identify([first, second], joint)``.
 
     Parameters
     ----------
     subject : Joint or Estimate
-        The free parameters of its model are what the motion is for.
+        The motion is designed for the free parameters of its model.
     limits : MotionLimits or mapping, optional
         Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
-        the sensor [N·m] that the joint itself keeps, whichever of the prior it is. Default: the joint's.
+        the sensor [N·m]; every joint of the prior keeps them. Default: the joint's.
     duration : float
         [s]. Default 12.
     controller : controller, optional
-        That will drive the joint. Default: an adaptive-robust law that believes the nominal joint and
-        does not feed the torque sensor back.
+        The controller that will drive the joint. Default: an adaptive-robust law with the values of the nominal
+        joint and without feedback of the torque sensor.
     sensors : Sensors, optional
         Default: noise of 0.3 % of the torque limit at the torque sensor; without one, an encoder of 8000
-        counts per motor revolution. Of an estimate: with the noise that the residuals show.
+        counts per motor revolution. After an estimate: with the noise of its residuals.
     parameters : sequence of str, optional
-        What the motion is for. Default: all free parameters.
+        Parameters to design for. Default: all free parameters.
     criterion : {"worst", "determinant"}
-        What is made small: the largest relative error, or the product of all. Default "worst". A value
-        near 0 counts as a tenth of its range.
+        Minimize the largest relative error, or the product of all. Default "worst". A value near 0 counts as a
+        tenth of its range.
     prior : mapping of str to (low, high), or sequence of mappings, optional
         Ranges of the free parameters, or values of joints of which the first is the nominal one.
-        Default: the joint's bounds; 30 % around a value without bounds. Of an estimate: drawn from its intervals.
+        Default: the joint's bounds; 30 % around a value without bounds. After an estimate: drawn from its intervals.
     search : DesignSearch, optional
     control_period : float
         Of the controller [s]. Default 0.001.
     known : Known, optional
-        Joint: information about parameters from recordings that are there.
+        Joint: information about parameters from existing recordings.
     callback : callable, optional
         Called with a `DesignProgress` now and then; True ends the search early.
 
     Other Parameters
     ----------------
     joint : Joint, optional
-        Estimate: facts that the joint of the identification lacked, e.g. a link.
+        Estimate: facts that the identified joint lacks, such as a link.
 
     Returns
     -------
     Design
-        After an estimate, errors are those expected of both recordings together; `before` is that of the estimate.
+        After an estimate, errors are those expected from both recordings together; `before` has the errors of the
+        estimate.
 
     Raises
     ------

@@ -75,33 +75,33 @@ def identify(recordings: Any, subject: Any = None, **of_other_subjects: Any) -> 
     identified depends on the subject:
 
     - A joint, from one recording or several.
-    - A servo, which is a joint with `voltage`, from runs without a torque. Where each recording has a torque, a motor
-      torque, or a current with the joint's `torque_constant`, the balance of that torque is identified as of any
-      joint; ``jid.load(..., columns={"torque": None})`` leaves such a signal out.
-    - Several joints, from one recording of all of them: each for itself, held against the motion of the others.
-    - A robot, from one recording of all joints or several: all at once, with the inertia of the links.
+    - A servo, a joint with `voltage`, from runs without a torque. If each recording has a torque, a motor torque, or a
+      current with the joint's `torque_constant`, it is identified as any other joint;
+      ``jid.load(..., columns={"torque": None})`` leaves such a signal out.
+    - Several joints, from one recording: each alone; then its residual is compared with the motion of the others.
+    - A robot, from one or several recordings of all joints: all together, with the inertia of the links.
 
     Parameters
     ----------
     recordings : Recording, RobotRecording, or sequence of these
-        Several share all parameters but those of `per_recording`.
+        Several recordings share all parameters except those of `per_recording`.
     subject : Joint, mapping of str to Joint, or Robot, optional
-        Known values, bounds and the model. Of several joints one for all, or by name. Default: without one, inertia,
-        friction and an offset are identified with bounds from the data, and the sensor if the recording has one.
+        Known values, bounds and the model. For several joints: one for all, or by name. Default: inertia, friction and
+        an offset are identified with bounds from the data, and the sensor if the recording has one.
     **options
 
     Other Parameters
     ----------------
     joints : iterable of str or int, optional
-        Several joints: names or numbers of those to identify. Default, and "all": all.
+        Several joints: names or numbers of the joints to identify. Default, and "all": all.
     couplings : bool
-        Several joints: whether the residuals are held against the other joints' motion. Default True.
+        Several joints: whether residuals are compared with the other joints' motion. Default True.
     callback : callable, optional
-        Several joints: called before each with its name, its number from 0, and how many there are.
+        Several joints: called before each with its name, its number from 0, and the number of joints.
     **servo
     inertia : {"urdf", "scaled", "free"}
-        Robot: whether the links' inertias are those of the URDF, scaled link by link, or identified: as base
-        parameters, the combinations that motion shows. Default ``"urdf"``.
+        Robot: inertias of the links: the URDF's, the URDF's scaled link by link, or identified as base parameters, the
+        combinations that motion shows. Default ``"urdf"``.
     **robot
 
     Returns
@@ -111,7 +111,7 @@ def identify(recordings: Any, subject: Any = None, **of_other_subjects: Any) -> 
     Raises
     ------
     InputError
-        Input that cannot be used, or an option that this subject does not have: the error names it and the reason.
+        Input that cannot be used, or an option that this subject does not have; the error gives the reason.
     KeyboardInterrupt
         Ctrl-C; it is raised within 0.1 s.
 

@@ -117,15 +117,15 @@ def load(
 
 @shows(loading.load, others={"joints": None, "by": None})
 def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
-    """Return what a file holds: a recording, that of several joints, or several runs.
+    """Return the recording in a file: of one joint, of several joints, or several runs.
 
     Headers are a signal's name with its unit, in upper or lower case: ``position_rad``,
     ``velocity [deg/s]``, ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q),
     velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
     sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
     goal_position), link_position, temperature, motor_torque and current (motor_current), also with words around
-    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. What
-    was commanded is never taken for what was measured. A signal without a unit is assumed to be in SI units and
+    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. A
+    command is never read as a measurement. A signal without a unit is assumed to be in SI units and
     listed in ``metadata["assumed_units"]``; stamps whose size or steps show another unit are read in it
     (``metadata["recognised_units"]``). A column that has a signal's name and is not needed, but cannot be read,
     is left out: ``metadata["left_out"]`` says why. `docs/logs.md` has the rules.
@@ -134,7 +134,7 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     ----------
     path : path-like, open file, or list of these
         A file's name, or a file or buffer that is open for reading (``io.StringIO``, ``io.BytesIO``), whose first
-        bytes then tell the format if it has no name.
+        bytes then show the format if it has no name.
         A text file (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or a ``.npz`` file, from any
         program or from `Recording.save`; a
         MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
@@ -146,15 +146,15 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
         decimal commas are read as well. Exports of TwinCAT Scope are read, too. Several files, and a folder of them,
         are several runs.
     subject : Joint or Robot, optional
-        What the recording is of. The gear ratio of a joint is used for columns of the motor; of a servo, the columns
-        that its `voltage` names are kept as `extra`; of a robot, all joints are read. Default: not known.
+        The joint or robot of the recording. A joint's gear ratio converts columns of the motor; for a servo, the
+        columns that its `voltage` names are kept as `extra`; for a robot, all joints are read. Default: not known.
     joint : str or int, optional
-        Of a file with several joints the one to read, by its number or name as the headers have it:
+        The joint to read from a file with several, by its number or name in the headers:
         ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,
         ``elbow_position``. Columns without a joint, such as time, belong to all. `docs/several_joints.md` has the
         rules. Default: the only one.
     joints : sequence of str or int, or "all", optional
-        Of a file with several joints those to read, on one clock: a `RobotRecording`. Default: one joint.
+        The joints to read from a file with several, on one clock: a `RobotRecording`. Default: one joint.
     by : str or int, optional
         Header or 0-based number of the column that numbers the runs of a file: rows with the same value are one run,
         named ``"NAME BY=VALUE"``. Default: the file holds one run.
@@ -176,49 +176,47 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
         is converted to SI; without one, values stay as they are. Every cell must be a finite
         number. Default: none, but those of a saved recording.
     gear_ratio : float, or sequence of float, optional
-        Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
-        (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Of several joints one for
-        each. Default: that of the subject; without one, positions of the motor stay what they are, and
+        Motor angle per joint angle, negative if they turn in opposite directions. Columns of the motor
+        (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. For several joints, one
+        per joint. Default: that of the subject; without one, columns of the motor are not converted, and
         ``metadata["side"]`` is "motor".
     side : mapping of str to str, optional
-        Signal → "motor" or "joint", where a position, velocity, reference or torque is on another side of the gear
-        than its header says: ``{"velocity": "motor"}`` beside the joint's position, with `gear_ratio`.
+        Signal → "motor" or "joint", if a position, velocity, reference or torque is on the other side of the gear
+        than its header says: ``{"velocity": "motor"}`` with the joint's position and `gear_ratio`.
         Default: by the headers of a file that names its joints, otherwise the joint's.
     sample_period : float, optional
-        Time between rows [s], for rows that were taken at an even rate; stamps of the file are not read then.
+        Time between rows [s], for a constant rate; the time stamps of the file are then ignored.
         Default: by the file's time column.
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
-        Default: from the units, ``"prismatic"`` for metres or newtons, else ``"revolute"``.
+        Default: from the units: ``"prismatic"`` for metres or newtons, otherwise ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
         How the torque varies between samples: held (zero-order hold) or linearly.
-        Default: as saved, else not known.
+        Default: as saved, otherwise not known.
     drop_copies : bool
-        Whether rows that repeat all measured signals of the row before are left out, as a logger makes
-        them that is faster than the drive's bus. A standstill of more than ten rows stays. Default
-        False.
+        Whether to leave out rows that repeat all measured signals of the previous row. A logger that is faster than
+        the drive's bus makes such rows. A standstill of more than ten rows stays. Default False.
     drop_invalid : bool
-        Whether rows are left out that have a value which is missing, no number, not finite or larger than any of a
-        joint (1e15): single damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and
-        longer stretches become gaps. Of several joints a row that is damaged in one is left out in all. Default False.
+        Whether to leave out single damaged rows, at most a tenth of all: a value is missing, not a number, not finite
+        or above 1e15. ``metadata["dropped_rows"]`` has their number; longer stretches become gaps. For several joints,
+        a row that is damaged in one is left out in all. Default False.
     name : str, optional
-        Default: as saved, else the file's name without its ending.
+        Default: as saved, otherwise the file's name without its ending.
     topic : str, optional
-        Of a file of messages: the topic that is the recording. Default: the only one with joints.
+        File of messages: the topic of the recording. Default: the only one with joints.
     group : str, optional
-        Of an HDF5 or MATLAB 7.3 file: the group (struct) whose datasets are the recording, as a path.
+        HDF5 or MATLAB 7.3 file: path of the group (struct) with the datasets of the recording.
         Default: the only one with such datasets.
     unpacked : int, optional
-        Bytes that a compressed file may hold when it is unpacked. Default: 64 MB or 50 times its size, whichever is
-        larger; a small file that holds more is refused. A number counts 8 bytes, however it is stored; of a packed
-        text, numbers may take 100 MB.
+        Largest size of a compressed file after unpacking, in bytes. Default: 64 MB or 50 times its size, whichever is
+        larger; larger files are refused. Each number counts 8 bytes; numbers of a packed text may take 100 MB.
 
     Returns
     -------
     Recording, RobotRecording, or tuple of these
-        A tuple where there are several files, a folder or `by`. A `RobotRecording` is on the side of the gear that the
-        headers show; at the joint if one joint has signals of both sides, which needs `gear_ratio`.
+        A tuple for several files, a folder or `by`. A `RobotRecording` is on the side of the gear that the headers
+        show; at the joint if one joint has signals of both sides, which needs `gear_ratio`.
 
     Raises
     ------

@@ -79,13 +79,13 @@ def simulate(
     """Simulate a joint that a controller moves along a trajectory, or a servo or a robot along its logs.
 
     Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command
-    is held over each control period. Same arguments, same bits.
+    is held over each control period. The same arguments give the same bits.
 
     With `recordings`, the closed loop of a servo is simulated from their initial states and compared with their
-    positions. Only the reference, the supply and when the motor is driven are taken from the log; where the position
-    loop is not known, the logged duty instead of the reference. A robot is moved by its logged torques, in stretches
-    that begin at the logged state; a robot with a `drive` by its loop and the wanted positions. Both are compared with
-    the URDF without friction, too.
+    positions. Only the reference, the supply and the signal "driven" are taken from the log; without a known position
+    loop, the logged duty replaces the reference. A robot follows its logged torques, in stretches that begin at the
+    logged state; a robot with a `drive` follows the wanted positions through its loop. Both are also compared with the
+    URDF without friction.
 
     Parameters
     ----------
@@ -94,9 +94,9 @@ def simulate(
         has a sensor and ``gravity="none"``, hangs behind the sensor; a link without inertia is a
         point mass. A servo has values of torque constant, resistance, inertia and friction.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
-        Not of a servo along its logs, as all that follows but `step` and `threads`.
+        Not for a servo along its logs; the same holds for all parameters below except `step` and `threads`.
     trajectory : Trajectory
-        For `OpenLoop` it is the torque.
+        For `OpenLoop`, the torque.
     duration : float, optional
         [s]. Default: the trajectory's.
     control_period : float
@@ -127,17 +127,17 @@ def simulate(
     step : float
         Servo, robot: longest integration step [s]. Default 1 ms.
     horizon : float, optional
-        Robot: length of a stretch [s]. Default: 0.5 of logged torques, since errors of an open loop grow without a
-        bound; all of a closed loop. Of each recording at most the first 20 s are simulated.
+        Robot: length of a stretch [s]. Default: 0.5 with logged torques, because errors of an open loop grow without
+        bound; the whole recording with a closed loop. At most the first 20 s of each recording are simulated.
     threads : int
-        Servo: 0 (default): all. The results do not depend on it, to the last bit.
+        Servo: number of threads; 0 (default): all. Results do not depend on it.
 
     Returns
     -------
     SimulatedRecording or Rollout
         Signals as the sensors measured them, the held torque, the reference; `truth` has the true
         parameters, `truth.signals` the true signals. Unless the sensors show an exact velocity,
-        it is derived from the position, and what the controller had is in
+        it is derived from the position, and the velocity that the controller used is in
         ``truth.signals["control_velocity"]``. ``metadata["saturations"]`` counts the control
         periods in which the torque limit cut the command. A `Rollout` is of a servo or a robot along its logs.
 

@@ -37,31 +37,31 @@ class Robot:
     tree : LinkTree
         Links, joints and inertias, from the URDF.
     names : tuple of str
-        Joints, in the order of everything that has one value a joint.
+        Joints; every list with one value per joint has this order.
     gear_ratios : tuple of float or None
-        Motor's angle per angle of the joint that it drives, signed.
+        Motor angle per angle of its joint, signed.
     couplings : ndarray, shape (n, n)
-        Speeds of the motors, divided by their gear ratios, from the speeds of the joints; the identity where each
-        motor turns with its own joint alone.
+        Matrix from joint speeds to motor speeds divided by gear ratios; the identity if each motor turns with its own
+        joint alone.
     rotor_inertias : tuple of (float or None)
-        Of each motor with its gear, at the joint [kg·m² or kg]; None: identified.
+        Inertia of each motor with its gear, at the joint [kg·m² or kg]; None: identified.
     zero_offsets : tuple of float or None
-        Positions of the joints in the URDF's terms where the recording says 0 [rad or m]; None: looked for among
-        multiples of 90 degrees where the URDF's inertias do not fit.
+        The URDF's joint positions at the recording's 0 [rad or m]; None: 0, or multiples of 90 degrees if the URDF's
+        inertias fit only with these.
     side : str or None
-        "joint" or "motor": where recordings have positions and torques; None: as their headers say.
+        "joint" or "motor": the side of positions and torques in recordings; None: as their headers say.
     name : str
         The URDF's.
     torque_scales : tuple of float or None
         Factors by which the recorded torques are multiplied; None: 1.
     directions : tuple of float or None
-        1, or -1 where the recording counts positions and torques against the URDF's axis; None: 1.
+        1, or -1 if positions and torques are recorded against the URDF's axis; None: 1.
     torque_constants : tuple of float or None
-        Of the motors [N·m/A], signed: torque per recorded current; None: not known.
+        Torque per recorded current of each motor [N·m/A], signed; None: not known.
     models : tuple of str or None
-        Friction models that are identified where a call names none, one a joint; None: "auto".
+        Friction model of each joint, for calls that name none; None: "auto".
     drive : PositionDrive or None
-        The loop that makes torques of wanted positions; None: torques are recorded.
+        The loop that turns wanted positions into torques; None: torques are recorded.
     gravity_free : bool
         Whether the direction of gravity is identified.
     """
@@ -107,55 +107,53 @@ class Robot:
         path : path-like
             The URDF. Meshes are not read.
         joints : sequence of str, optional
-            The joints that are identified, by the URDF's names and in its order, which is that of all lists below; the
-            others stand at zero.
-            Default: all that move.
+            The joints to identify, by the URDF's names and in its order; all lists below have this order. The others
+            stand at zero. Default: all that move.
         gear_ratios : sequence of float, optional
-            Motor's angle per angle of the joint, one a joint, negative if they turn in opposite directions.
-            Default: those of the recording, which needs none if it is at the joints.
+            Motor angle per joint angle, one per joint, negative if they turn in opposite directions. Default: those of
+            the recording; a recording at the joints needs none.
         couplings : array_like, shape (n, n), or mapping, optional
-            Speeds of the motors, divided by their gear ratios, from the speeds of the joints. Row i is motor i: ones
-            at 5 and 6 say that motor 6 turns with both; ``{"joint_6": {"joint_5": 1.0}}`` says the same. Default: each
+            Matrix from joint speeds to motor speeds divided by gear ratios. Row i is motor i: ones at 5 and 6 in row 6
+            mean that motor 6 turns with both joints. ``{"joint_6": {"joint_5": 1.0}}`` means the same. Default: each
             motor turns with its own joint alone.
         rotor_inertias : sequence of float or None, optional
-            Of each motor with its gear, at the joint: times the square of the gear ratio [kg·m² or kg]; None is
-            identified. Default: all are identified.
+            Inertia of each motor with its gear at the joint, so times the square of the gear ratio [kg·m² or kg]; None
+            is identified. Default: all are identified.
         zero_offsets : sequence of float, optional
-            Positions of the joints in the URDF's terms where the recording says 0 [rad or m]; a controller often counts
-            from another pose. Default: 0, or multiples of 90 degrees where `identify` finds that they make the
-            URDF's inertias fit.
+            The URDF's joint positions at the recording's 0 [rad or m]; a controller often counts from another pose.
+            Default: 0, or multiples of 90 degrees if `identify` finds that the URDF's inertias fit only with these.
         side : {"joint", "motor"}, optional
-            Where recordings have positions and torques. Default: as their headers say.
+            Side of positions and torques in recordings. Default: as their headers say.
         gravity : sequence of float or "free", optional
-            In the base's frame [m/s²], or "free": its direction is identified, of a robot on a stand or hanging.
-            Default (0, 0, -9.81): the base stands upright.
+            In the base's frame [m/s²]. "free" identifies its direction, for a robot on a stand or hanging. Default
+            (0, 0, -9.81): the base stands upright.
         torque_constants : sequence of float, optional
-            Of the motors [N·m/A], one a joint, for recorded currents; negative where a positive current turns the
-            joint back. The gear ratios bring the torques to the joints; without gear ratios the constants are the
-            joints'. Default: not known, and the recording needs a torque.
+            Motor torque per recorded current [N·m/A], one per joint; negative if a positive current turns the joint
+            backwards. Gear ratios convert the torques to the joints; without them the constants are the joints'.
+            Default: not known; the recording then needs a torque.
         torque_scales : sequence of float, optional
-            Factors by which the recorded torques are multiplied, one a joint (of its motor, where motors are recorded):
-            the true torque constant over the assumed one; -1 turns a sign. Default: 1.
+            Factors on the recorded torques, one per joint (per motor if motors are recorded): the true torque constant
+            over the assumed one; -1 reverses a sign. Default: 1.
         directions : sequence of float, optional
-            1 or -1, one a joint: -1 where positions and torques are recorded against the URDF's axis. Default: 1.
+            1 or -1, one per joint: -1 if positions and torques are recorded against the URDF's axis. Default: 1.
         models : mapping, optional
-            Friction models by joints' names, as `identify` takes them: what it uses where it is given none. In a
-            file of facts, ``model`` in a table ``[joints.NAME]``. Default: "auto".
+            Friction models by joint name, for calls of `identify` that name none. In a file of facts, ``model`` in a
+            table ``[joints.NAME]``. Default: "auto".
         drive : mapping, optional
-            Where no torque is recorded but the wanted position: the loop that makes torques of it, on the recording's
-            side. ``kp`` [N·m/rad] and ``kd`` [N·m·s/rad], one for all joints or one for each; ``"free"``: a ``kp`` that
-            is identified from what the links weigh, a ``kd`` that is part of the viscous coefficient. Further
-            ``torque_limits`` [N·m] (default: none), ``hold``, "zoh" (default) if a wanted position holds until the
-            next row, "linear" if it moves evenly, and ``delay`` from a row to its effect [s] (default: found).
+            The loop that turns the wanted position into torque, if no torque is recorded; on the recording's side.
+            ``kp`` [N·m/rad] and ``kd`` [N·m·s/rad], one for all joints or one per joint. ``"free"``: ``kp`` is
+            identified from the weight of the links, ``kd`` is part of the viscous coefficient. ``torque_limits`` [N·m]
+            (default: none). ``hold``: "zoh" (default) if a wanted position holds until the next row, "linear" if it is
+            interpolated. ``delay`` from a row to its effect [s] (default: identified).
             Default: torques are recorded.
         facts : path-like, optional
-            A TOML file with any of these arguments but `path`, ``zero_offsets_deg`` among them; arguments that are
-            given win. A rotor inertia that is identified is ``"free"`` there.
+            A TOML file with any of these arguments except `path`, also ``zero_offsets_deg``. Arguments of the call
+            override it. ``"free"`` marks a rotor inertia to identify.
 
         Raises
         ------
         InputError
-            pinocchio is missing, no URDF, no such joint, or values that do not fit the joints.
+            pinocchio is missing, the file is no URDF, a joint does not exist, or values do not fit the joints.
 
         Examples
         --------
@@ -232,7 +230,7 @@ class Robot:
 
     @property
     def coupled(self) -> NDArray[np.bool_]:
-        """Motors that turn with several joints, or with another one than their own."""
+        """Motors that turn with several joints, or not with their own."""
         return np.array(
             [np.any(np.delete(row, k) != 0.0) for k, row in enumerate(self.couplings)], dtype=bool
         )
@@ -240,9 +238,8 @@ class Robot:
     def columns_of(self, recording: RobotRecording) -> list[int]:
         """Return the recording's column of each joint.
 
-        Joints are found by name. As many joints that were listed when they were loaded, none of them with a name of
-        the robot's, are in the listed order. Otherwise they are found by number, where the recording numbers them, or
-        in order, where there are as many and none has a name of the robot's joints.
+        Joints are matched by name. If no name fits and the number of joints is the same, they are taken in the order
+        that was listed when loading, otherwise by number if the recording numbers them, otherwise in order.
 
         Raises
         ------

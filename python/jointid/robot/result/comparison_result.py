@@ -32,9 +32,9 @@ class RobotComparison(KeptResult):
         In the order of the call.
     winner : ComparedRobotModel
     models : mapping of str to str
-        The model of each joint, by the same rule with the winner's inertia.
+        The model of each joint, chosen by the same rule with the winner's inertia.
     reason : str
-        Why the winner won, in a sentence.
+        Why the winner was chosen, in a sentence.
     estimate : RobotEstimate
         Of all recordings, with the winner's inertia and each joint's model.
     settings : mapping

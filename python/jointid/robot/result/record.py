@@ -27,14 +27,14 @@ class RobotJoint:
     ----------
     name : str
     model : str
-        As "coulomb_viscous" or "stribeck:asymmetric".
+        For example "coulomb_viscous" or "stribeck:asymmetric".
     parameters : mapping of str to ParameterEstimate
-        At the joint: those of its model, as "coulomb" and "viscous", and "torque_offset"; of
-        a motor that turns with several joints "motor_coulomb" and "motor_viscous"; "rotor_inertia" where it is
-        identified, "inertia_scale" with ``inertia="scaled"``.
+        At the joint: those of its model, such as "coulomb" and "viscous", and "torque_offset". "motor_coulomb" and
+        "motor_viscous" if its motor turns with several joints, "rotor_inertia" if it is identified, "inertia_scale"
+        with ``inertia="scaled"``.
     residuals : ResidualStatistics
     windows : WindowTable
-        Its `friction` is the torque less all but this joint's friction.
+        Its `friction` is the torque minus everything except this joint's friction.
     """
 
     name: str
@@ -73,7 +73,7 @@ class RobotEstimateRecord:
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
-        """All parameters by the names that `free` has: "joint.name", and base parameters by their combination."""
+        """All parameters, named as in `free`: "joint.name", and base parameters by their combination."""
         of_joints = {
             f"{joint.name}.{name}": p
             for joint in self.joints.values()

@@ -36,14 +36,14 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     base_parameters : mapping of str to ParameterEstimate
         With ``inertia="free"``: the combinations of inertial parameters that motion shows.
     inertial : ndarray, shape (n, 10)
-        Inertial parameters of all links, as far as they are known: m, m·c, I about the joint's frame. With
-        ``inertia="free"`` one set of many with these base parameters: one that bodies can have and that is like the
-        URDF's, where there is one within the errors; its single values mean nothing.
+        Inertial parameters of all links: m, m·c, I about the joint's frame. With ``inertia="free"`` one of many sets
+        with these base parameters: physically consistent and close to the URDF's, if the errors allow it. Do not
+        interpret its single values.
     consistent : bool or None
-        Whether bodies can have these inertial parameters; None: the URDF's are used as they are.
+        Whether bodies can have these inertial parameters; None: the URDF's are used unchanged.
     impossible_by : float
-        With ``inertia="free"``, the distance of the identified base parameters from the nearest that bodies can
-        have, in standard errors (Mahalanobis distance of all together). Default 0: bodies can have them.
+        With ``inertia="free"``, the distance from the identified base parameters to the nearest that bodies can
+        have, in standard errors (Mahalanobis distance). Default 0: bodies can have them.
     relative_residual : float
         Norm of all joints' residuals over the norm of their measured integrals.
     free : tuple of str
@@ -61,7 +61,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         What `bootstrap` needs; None where the estimate was read from a file.
     cross_check : CrossCheck or None
         An independent plain filtered least squares on the signals as recorded, and whether it agrees.
-        None of an estimate that was saved without it.
+        None if the estimate was saved without it.
     """
 
     __slots__ = ()
@@ -82,7 +82,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return judged_robot(self)
 
     def friction(self, velocity: ArrayLike) -> Array:
-        """Friction torque of all joints at given speeds, with what coupled motors add.
+        """Friction torque of all joints at given speeds, including the friction of coupled motors.
 
         Parameters
         ----------
@@ -97,7 +97,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         Raises
         ------
         InputError
-            Not one number a joint.
+            Not one number per joint.
         """
         from jointid.robot.result.friction import friction_of
 
@@ -116,12 +116,12 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return friction_of(self, speeds)
 
     def predict(self, recording: RobotRecording) -> RobotPrediction:
-        """Predict the torques of a recording, and compare them with the measured ones, over windows as identified.
+        """Predict the torques of a recording, and compare them with the measured ones over the same kind of windows.
 
         Parameters
         ----------
         recording : RobotRecording
-            Of the same robot; it need not be one that the estimate was made from.
+            Of the same robot, usually one that was not used for the estimate.
 
         Returns
         -------
@@ -139,30 +139,30 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return predict_robot(self, recording)
 
     def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
-        """Draw stretches of the recordings anew, and refit all joints to each draw (block bootstrap).
+        """Resample blocks of the recordings, and refit all joints to each draw (block bootstrap).
 
-        A check of the standard errors that does not rest on their formula. A block holds all joints; it is as long as
-        a segment of motion: an eighth of the recordings, between 0.25 and 1 s, and longer on recordings over 10 min. A
-        draw is refitted inside the parameters' bounds, with the balance linearised at the estimate, and with what is
-        known beforehand of base parameters. Errors are widened by the square root of B / (B - p), for B blocks and
-        p parameters of a joint, at most 1.41 times: so much of the blocks' errors the fit takes away.
+        This checks the standard errors without their formula. A block holds all joints. It lasts an eighth of the
+        recordings, between 0.25 and 1 s, and longer on recordings over 10 min. Each draw is refitted within the bounds,
+        with the balance linearised at the estimate and the same prior on base parameters. Errors are widened by the
+        square root of B / (B - p), for B blocks and p parameters of a joint, by at most 1.41: the fit absorbs this
+        part of the blocks' errors.
 
         Parameters
         ----------
         n : int
-            Draws, 20 to 1,000,000. Default 1000.
+            Number of draws, 20 to 1,000,000. Default 1000.
         seed : int
-            The same seed gives the same bits, on any number of threads. Default 0.
+            The same seed gives the same result, on any number of threads. Default 0.
 
         Returns
         -------
         Bootstrap
-            Its parameters are named as in `parameters`.
+            Parameters are named as in `parameters`.
 
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold the recordings; or another number.
+            The estimate was read from a file, which has no recordings; or `n` is out of range.
 
         Examples
         --------
