@@ -62,15 +62,15 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "a servo's estimate as the subject": (
         lambda b: verbs.identify(b.runs, b.servo_estimate),
-        "subject is a ServoEstimate: identify takes what a result is of: a Joint, or a Robot; give its .joint",
+        "subject is a ServoEstimate: identify takes a Joint or a Robot, not a result; give its .joint",
     ),
     "a robot's estimate as the subject": (
         lambda b: verbs.compare(b.arm, b.robot_estimate),
-        "subject is a RobotEstimate: compare takes what a result is of: a Joint, or a Robot; give its .robot",
+        "subject is a RobotEstimate: compare takes a Joint or a Robot, not a result; give its .robot",
     ),
     "two subjects": (
         lambda b: verbs.identify(b.run, b.joint, joint=b.joint),
-        "joint: this is the subject, which is there",
+        "joint: the subject is already given",
     ),
     "a misspelt option": (
         lambda b: verbs.identify(b.run, b.joint, residul="torque"),

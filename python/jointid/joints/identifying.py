@@ -132,7 +132,7 @@ def _with_drive(error: InputError, recording: Recording) -> InputError:
     whole = Action(
         "call",
         {"robot": ...},
-        "and a drive among its facts, as the wanted positions are recorded",
+        "with a drive among its facts, because wanted positions are recorded",
         "identify_robot",
     )
     return InputError(

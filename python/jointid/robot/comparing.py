@@ -163,7 +163,7 @@ def _models(models: object, robot: Robot) -> list[str]:
     names = [friction_models(each, robot.names)[0] for each in found]
     if {name_of(each) for each in names} - set(MODELS):
         raise InputError(
-            f"{', '.join(MODELS)} are compared, each also as NAME:asymmetric, and each joint's is chosen",
+            f"{', '.join(MODELS)} are expected, also as NAME:asymmetric; each joint's model is then chosen",
             argument="models",
             value=models,
         )

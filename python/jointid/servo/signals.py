@@ -122,7 +122,7 @@ def _of_full_voltage(duty: Array, place: str) -> Array:
             f"it reaches {top:.4g}, and 1 is the full voltage",
             argument="duty",
             place=place,
-            remedy="state its scale in the joint file's [drive]: duty_scale = 0.01 is of percent",
+            remedy="state its scale in the joint file's [drive]: duty_scale = 0.01 for percent",
         )
     return duty
 

@@ -91,7 +91,7 @@ def refuse_result(verb: str, subject: object) -> None:
         return
     remedies = [f"give its .{part}" for part in ("joint", "robot") if hasattr(subject, part)]
     raise InputError(
-        f"{verb} takes what a result is of: a Joint, or a Robot",
+        f"{verb} takes a Joint or a Robot, not a result",
         argument="subject",
         value=subject,
         remedy=tuple(remedies),
@@ -108,7 +108,7 @@ def second(subject: Any, options: dict[str, Any], *names: str) -> Any:
     for name in names:
         if name in options:
             if subject is not None:
-                raise InputError("this is the subject, which is there", argument=name)
+                raise InputError("the subject is already given", argument=name)
             subject = options.pop(name)
     return subject
 

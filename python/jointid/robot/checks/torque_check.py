@@ -206,7 +206,7 @@ def _unsigned(
         else f"the torques of {listed(names)} are never negative: they have lost their sign",
         Action(
             "inspect",
-            text="the driver's signed value (of a servo that has none, the sign of its position error)",
+            text="the driver's signed value (for a servo without one, the sign of its position error)",
         ),
         details="the joints move both ways, and the magnitude fits a torque that changes its sign"
         + (f"; joints: {', '.join(names)}" if len(names) > 1 else ""),

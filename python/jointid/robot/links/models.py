@@ -56,7 +56,7 @@ def _named(model: object, usual: str) -> str:
     stated = {name for name in chosen.stated() if name not in _FIELDS}
     if chosen.name not in (None, *MODELS, AUTO) or stated or chosen.load_friction == "drive":
         raise InputError(
-            f"of a whole robot's friction, one of {', '.join((*MODELS, AUTO))} is identified, each also as "
+            f"a robot's friction model is one of {', '.join((*MODELS, AUTO))}, each also as "
             "NAME:asymmetric, NAME:load_friction (of the links' torque), or both",
             argument="model",
             value=str(chosen),

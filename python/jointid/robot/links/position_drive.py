@@ -60,13 +60,13 @@ class PositionDrive:
         kd = _values(drive, "kd", count)
         if any(p is None and d for p, d in zip(kp, kd, strict=True)):
             raise InputError(
-                'where kp is "free", kd is "free", too: the viscous coefficient contains it',
+                'with kp = "free", kd must be "free" too: it is part of the viscous coefficient',
                 argument="drive.kd",
                 value=drive["kd"],
             )
         if None in kp and "torque_limits" in drive:
             raise InputError(
-                'limits of the torque need a known kp, and it is "free"',
+                'torque limits need a known kp, not "free"',
                 argument="drive.torque_limits",
                 value=drive["torque_limits"],
                 remedy="record motion that does not reach them",

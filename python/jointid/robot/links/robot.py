@@ -311,7 +311,7 @@ def _couplings(
             )
     if np.linalg.cond(matrix) > 1e9:
         raise InputError(
-            "the motors' speeds do not give the joints': the matrix is singular",
+            "the matrix is singular: motor speeds do not determine joint speeds",
             argument="couplings",
             value=couplings,
         )

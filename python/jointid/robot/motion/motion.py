@@ -267,8 +267,7 @@ def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Arra
         return np.array([recording.gear_ratio[column] for column in columns])
     names = ", ".join(robot.names)
     raise InputError(
-        f"the recording is of the motors; one gear ratio for each of {names} is needed, as motor's angle per angle of "
-        "the joint",
+        f"the recording is of the motors; one gear ratio for each of {names} is needed, motor angle per joint angle",
         argument="gear_ratios",
         remedy=Action("call", {"gear_ratios": [...] * robot.n}, function="Robot.from_urdf"),
     )

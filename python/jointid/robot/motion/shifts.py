@@ -63,7 +63,7 @@ def torque_shift(shift: object, robot: Robot) -> Array:
             )
         raise InputError(
             "only the torque of a robot can have a delay removed; a recorded velocity is moved to the positions' "
-            "clock by itself",
+            "clock automatically",
             argument="shift",
             value=signal,
             remedy="leave it out",

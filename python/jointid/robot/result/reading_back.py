@@ -240,7 +240,10 @@ def _of_robot(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if any(len(row) != count for row in (couplings, *couplings)):
         yield "robot.couplings", f"{count} rows of {count} are expected"
     elif not np.linalg.cond(np.array(couplings)) <= _SINGULAR:
-        yield "robot.couplings", "the motors' speeds do not give the joints': it is singular"
+        yield (
+            "robot.couplings",
+            "the matrix is singular: motor speeds do not determine joint speeds",
+        )
     for key in ("gear_ratios", "zero_offsets", "torque_scales", "directions", "torque_constants"):
         if d.get(key) is not None and len(d[key]) != count:
             yield f"robot.{key}", f"{count} numbers are expected, one per joint"

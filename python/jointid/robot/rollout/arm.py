@@ -49,7 +49,7 @@ class Arm:
         """
         if estimate.consistent is False and estimate.inertia == "free":
             raise InputError(
-                "no bodies can have its inertias, so that nothing can be simulated",
+                "no bodies can have its inertias, so it cannot be simulated",
                 argument="subject",
                 remedy="identify with inertia='scaled'",
             )
