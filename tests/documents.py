@@ -98,6 +98,17 @@ def run_console_blocks(
     return commands
 
 
+def parsed_commands(text: str) -> list[str]:
+    """Parse the commands in a page's sh blocks and in its sentences, and return their names."""
+    lines = "".join(blocks(text, "sh")).replace("\\\n", " ").splitlines()
+    lines += re.findall(r"`(jointid [^`]+)`", text)
+    given = [shlex.split(each, comments=True) for each in lines if "…" not in each]
+    commands = [words[1:] for words in given if words[:1] == ["jointid"]]
+    for words in commands:
+        assert command_parser().parse_args(words).command == words[0], words
+    return [words[0] for words in commands]
+
+
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?![\w]|\.\d)")
 
 

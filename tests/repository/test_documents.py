@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 import pytest
-from documents import ROOT, blocks, enter, read, run_python_blocks
+from documents import ROOT, blocks, enter, parsed_commands, read, run_python_blocks
 from example_recordings import WELL_EXCITED
 from moving_joints import recorded, sines, torques
 
@@ -75,6 +75,7 @@ def test_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 def test_the_page_about_own_terms_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = run_python_blocks(read("docs/own_terms.md"), tmp_path, monkeypatch)
     assert "viscous_of_again" in str(names["caught"])
+    assert parsed_commands(read("docs/own_terms.md")) == ["identify"]
     (text,) = blocks(read("docs/own_terms.md"), "toml")
     (tmp_path / "joint.toml").write_text(f"schema = 1\n{text}", encoding="utf-8")
     assert jid.Joint.load(tmp_path / "joint.toml").model == jid.Model(

@@ -5,7 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import small_arm
-from documents import blocks, read, run_console_blocks, run_python_blocks, same_text
+from documents import (
+    blocks,
+    parsed_commands,
+    read,
+    run_console_blocks,
+    run_python_blocks,
+    same_text,
+)
 from message_files import START, State, joint_state, ros2_bag
 
 import jointid as jid
@@ -71,6 +78,14 @@ def test_the_reference_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     names = run_python_blocks(read(REFERENCE), tmp_path, monkeypatch)
     assert names["coulomb"].value == pytest.approx(4.0, rel=0.02)
     assert 'friction="' in (tmp_path / "arm_with_friction.urdf").read_text(encoding="utf-8")
+
+
+def test_the_commands_between_the_steps_exist() -> None:
+    assert parsed_commands(read(STEPS).replace("CODE", "load_friction")) == ["explain", "compare"]
+    assert parsed_commands(read(REFERENCE)) == [
+        *("identify", "compare", "report", "export"),
+        "explain",
+    ]
 
 
 def test_its_facts_are_read(shared_data: Path, tmp_path: Path) -> None:

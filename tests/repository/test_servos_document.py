@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from documents import blocks, read, run_python_blocks
+from documents import blocks, parsed_commands, read, run_python_blocks
 
 import jointid as jid
 from jointid.identification.warnings.table import table_rows
@@ -62,6 +62,10 @@ def test_its_joint_file_is_read(tmp_path: Path) -> None:
     commented = text.replace("# resistance", "resistance").replace("# duty_scale", "duty_scale")
     path.write_text(commented, encoding="utf-8")
     assert jid.Joint.load(path).voltage is not None
+
+
+def test_its_command_exists() -> None:
+    assert parsed_commands(read(PAGE)) == ["identify"]
 
 
 def test_its_table_is_that_of_the_findings() -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from documents import read, run_python_blocks
+from documents import parsed_commands, read, run_python_blocks
 
 
 def write_arm(path: Path) -> None:
@@ -35,3 +35,7 @@ def test_the_page_runs(
     text = read("docs/several_joints.md")
     (sentence,) = [line for line in text.splitlines() if line.startswith("joint 2's speed")]
     assert sentence in capsys.readouterr().out
+
+
+def test_its_commands_exist() -> None:
+    assert parsed_commands(read("docs/several_joints.md")) == ["identify", "info", "identify"]
