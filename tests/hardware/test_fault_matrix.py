@@ -77,8 +77,9 @@ def test_every_limit_has_a_case_and_a_line_in_the_documentation(repo: Path) -> N
         *("stale_position", "drive_fault", "heartbeat_lost", "host_heartbeat_lost"),
         *("bus", "sensor", "user", "error", "torque_sign", "foreign_master", "command_echo"),
     }
-    lines = (repo / "docs" / "hardware_limits.md").read_text(encoding="utf-8").splitlines()
-    wording = {line.split("`")[1] for line in lines if line.startswith("| `")}
+    page = (repo / "docs" / "safety.md").read_text(encoding="utf-8")
+    table = page.partition("\n## Stops\n")[2].partition("\n## ")[0]
+    wording = {line.split("`")[1] for line in table.splitlines() if line.startswith("| `")}
     assert wording - {"stop.limit", "watchdog_travel"} == stops | {"recording"}
 
 

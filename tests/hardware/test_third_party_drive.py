@@ -149,7 +149,7 @@ def test_what_it_does_not_emulate_is_said(installed: Path, tmp_path: Path) -> No
 def test_it_needs_public_names_alone(repo: Path) -> None:
     texts = [(PACKAGE / "acme_drive.py").read_text(encoding="utf-8")]
     page = (repo / "docs" / "hardware.md").read_text(encoding="utf-8")
-    texts.append(page.partition("## Writing your own drive")[2])
+    texts.append(page.partition("\n## Writing your own drive")[2])
     for text in texts:
         assert "from jointid.hardware import " in text
         assert not re.search(r"(from|import) jointid\.(?!hardware import )", text)

@@ -1,16 +1,22 @@
-"""docs/hardware.md names what a bench file takes, and its tables hold what the code computes."""
+"""The pages on hardware have each key of a bench file and each limit, and the bus loads that the code computes."""
 
+import re
+import tomllib
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from documentation.bench_file import bench_file_page
 
+from jointid.hardware.bench import bench_file
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.bus_options import BusOptions
 from jointid.hardware.bench.emulation import Emulation
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.drive_type import ElmoType
 from jointid.hardware.elmo.emulated_bench import ElmoEmulation
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
@@ -21,6 +27,7 @@ from jointid.hardware.session.realtime import RealTimeOptions
 
 ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "docs" / "hardware.md").read_text(encoding="utf-8")
+EXAMPLE = ROOT / "examples" / "hardware" / "joint.toml"
 # Given by another table, or tables themselves.
 ELSEWHERE: dict[str, object] = {
     "torque": ElmoOptions,
@@ -45,19 +52,47 @@ def _row(start: str) -> list[str]:
     return [cell.strip() for cell in found.strip("|").split("|")]
 
 
+def _section(table: str) -> str:
+    """What the page of reference says of a table."""
+    _, found, behind = bench_file_page().partition(f"\n## `{table}`\n")
+    assert found, table
+    return behind.partition("\n## ")[0]
+
+
 @pytest.mark.parametrize("table", TABLES)
 def test_each_key_of_a_bench_file_is_explained(table: str) -> None:
-    keys = _row(f"`{table}`")[1]
+    section = _section(table)
     for kind in TABLES[table]:
         made: Any = kind
         for field in fields(made):
-            if field.name == "scaling" or ELSEWHERE.get(field.name) is kind:
+            if field.name in ("scaling", "truth", "sensors") or ELSEWHERE.get(field.name) is kind:
                 continue
-            assert f"`{field.name}`" in keys, f"{table} {field.name}"
+            assert re.search(rf"^`{field.name}` \(.+\)\n: \w", section, re.MULTILINE), field.name
+
+
+def test_each_table_is_explained() -> None:
+    for table in (*bench_file._TABLES, *ElmoType.tables):
+        assert _section(f"[session.{table}]")
+        assert f"\n| `[session.{table}]` |" in TEXT
+
+
+def test_each_key_of_the_example_is_explained() -> None:
+    for table, key in _keys(tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))["session"]):
+        section = _section(f"[{table}]")
+        if table != "session.emulated.truth":  # parameters, by name
+            assert f"`{key}`" in section, f"{table} {key}"
+
+
+def _keys(table: dict[str, Any], name: str = "session") -> Iterator[tuple[str, str]]:
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _keys(value, f"{name}.{key}")
+        else:
+            yield name, key
 
 
 def test_each_limit_has_a_row_that_says_what_stops() -> None:
-    text = (ROOT / "docs" / "hardware_limits.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
     for field in fields(SessionLimits):
         assert f"| `{field.name}` |" in text
 
@@ -74,7 +109,7 @@ def test_each_limit_has_a_row_that_says_what_stops() -> None:
 def test_bus_loads_are_those_that_a_session_computes(
     name: str, source: SyncedConverter | AnalogInput | None
 ) -> None:
-    bench = Bench.load(ROOT / "examples" / "hardware" / "joint.toml")
+    bench = Bench.load(EXAMPLE)
     cycles = ((500e3, 2e-3), (1e6, 2e-3), (1e6, 1e-3), (500e3, 1e-3))
     for printed, (bitrate, period) in zip(_row(name)[1:], cycles, strict=True):
         options = replace(bench.drive, torque=source, bitrate=bitrate)

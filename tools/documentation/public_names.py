@@ -226,7 +226,7 @@ GROUPS = (
         "hardware",
         "Hardware sessions",
         _of("jointid.hardware", *_promised("hardware")),
-        "Nothing here was tried on a real drive: read [a session on a real joint](../../hardware.md) first.",
+        "Nothing here was tried on a real drive: read [is it safe?](../../safety.md) first.",
     ),
     Group(
         "commissioning",

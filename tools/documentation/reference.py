@@ -1,4 +1,4 @@
-"""Pages of reference, written from the code: the commands' options, the joint file, the public names."""
+"""Pages of reference, written from the code: the commands' options, the files, the public names."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import re
 from collections.abc import Iterator, Mapping
 
 import jointid as jid
+from documentation.bench_file import bench_file_page
 from documentation.numpydoc import Described, described
 from documentation.public_names import GROUPS
 from documentation.staging import Stage
+from documentation.wording import definition, escaped, kind_in_toml, markdown, sentence
 from jointid.cli.command_table import HELP
 from jointid.cli.parser import command_parser
 from jointid.joint import joint_file
@@ -21,6 +23,7 @@ def write_reference(stage: Stage) -> None:
     """Put all of them there."""
     stage.write("reference/options.md", options_page())
     stage.write("reference/joint_file.md", joint_file_page())
+    stage.write("reference/bench_file.md", bench_file_page())
     stage.write("reference/api/index.md", _names_page())
     for group in GROUPS:
         stage.write(f"reference/api/{group.file}.md", group.page())
@@ -39,13 +42,13 @@ def options_page() -> str:
         "",
     ]
     for name, parser in _parsers().items():
-        lines += [f"## jointid {name}", "", f"{_sentence(HELP[name])}", ""]
+        lines += [f"## jointid {name}", "", f"{sentence(HELP[name])}", ""]
         parser.format_help()  # some help is only found out when it is asked for
         for group in parser._action_groups:
             lines += [line for action in group._group_actions for line in _option(action)]
         if parser.epilog:
             examples, rest = _epilog(parser.epilog)
-            lines += ["```sh", *examples, "```", "", *([_sentence(rest), ""] if rest else [])]
+            lines += ["```sh", *examples, "```", "", *([sentence(rest), ""] if rest else [])]
     return "\n".join(lines)
 
 
@@ -70,7 +73,7 @@ def _option(action: argparse.Action) -> Iterator[str]:
     help_ = (action.help or "").replace("%%", "%")
     help_ = re.sub(r"%\((\w+)\)s", lambda found: str(getattr(action, found[1], "")), help_)
     yield f"`{f'{names} {typed}'.strip()}`"
-    yield f": {_escaped(_sentence(help_))}"
+    yield f": {escaped(sentence(help_))}"
     yield ""
 
 
@@ -100,7 +103,7 @@ _TABLES = {
 }
 _KEPT = {
     "estimate": "Where the values come from; `estimate.save` writes it.",
-    "session": "The settings of the joint's bench: [the bench file](../hardware.md#the-bench-file).",
+    "session": "The settings of the joint's bench: [bench file](bench_file.md).",
     "user": "Yours: nothing reads it, and it is kept.",
 }
 _OWN = {
@@ -146,26 +149,12 @@ def joint_file_page() -> str:
         lines += [f"## {title}", "", _TABLES[table], ""]
         for name in names:
             entry = _OWN.get((table, name)) or texts[table][name]
-            lines += [
-                f"`{name}` ({_escaped(_kind(entry.kind))})",
-                f": {_markdown(entry.text) or 'See the guide.'}",
-                "",
-            ]
+            text = markdown(entry.text) or "See the guide."
+            lines += definition(name, kind_in_toml(entry.kind), text)
     lines += ["## Other tables", ""]
     for name in joint_file._KEPT:
         lines += [f"`[{name}]`", f": {_KEPT[name]}", ""]
     return "\n".join(lines)
-
-
-def _kind(kind: str) -> str:
-    """A type in the words of TOML."""
-    words = {"float": "number", "str": "text", "bool": "true or false", "int": "whole number"}
-    words |= {"mapping of text to text": "table of texts", "tuple of number": "list of numbers"}
-    words |= {"collection of number": "list of numbers", "collection of text": "list of texts"}
-    plain = kind.replace(", optional", "")
-    for word, said in words.items():
-        plain = re.sub(rf"\b{word}\b", said, plain)
-    return plain
 
 
 # --- Public names ---
@@ -182,23 +171,3 @@ def _names_page() -> str:
         ]
     lines += ["```{toctree}", ":hidden:", "", *(group.file for group in GROUPS), "```", ""]
     return "\n".join(lines)
-
-
-# --- Words ---
-
-
-def _sentence(text: str) -> str:
-    text = " ".join(text.split())
-    return f"{text[:1].upper()}{text[1:]}{'' if text.endswith('.') else '.'}"
-
-
-def _escaped(text: str) -> str:
-    return re.sub(r"([*_|<>\[\]])", r"\\\1", text)
-
-
-def _markdown(text: str) -> str:
-    """A docstring's text: `` for code, ` for names."""
-    parts = re.split(r"(``.+?``|`.+?`)", text)
-    return "".join(
-        f"`{part.strip('`')}`" if i % 2 else _escaped(part) for i, part in enumerate(parts)
-    )

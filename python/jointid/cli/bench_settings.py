@@ -24,6 +24,7 @@ _UNITS = {
     "torque_rate": "N·m/s",
     **dict.fromkeys(("period", "settle", "cycle", "duration"), "s"),
 }
+_UNSET = {"watchdog_travel": "the coasting and a share of the window"}
 _GAINS = ("bandwidth", "boundary", "stiffness", "damping")
 _SESSION = ("period", "approach_velocity", "settle")
 
@@ -52,7 +53,7 @@ class Setting:
         if isinstance(value, list):
             shown = " to ".join(_short(each) for each in value)
         else:
-            shown = "not watched" if value is None else _short(value)
+            shown = _UNSET.get(self.name, "not watched") if value is None else _short(value)
         unit = "" if value is None else _UNITS.get(self.name, "")
         mark = "" if self.stated else "   DEFAULT: the file has no such key"
         return f"  {self.name}: {f'{shown} {unit}'.rstrip()}{mark}"

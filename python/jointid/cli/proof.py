@@ -40,7 +40,7 @@ def add_first_motion(first: argparse.ArgumentParser) -> None:
         "  jointid first-motion joint.toml\n"
         "  jointid first-motion joint.toml --unknown-friction --largest-torque 20\n"
         "a real bench that passes gets the certificate that `jointid run` needs, next to the joint file.\n"
-        "First read docs/hardware.md, and run `jointid check`: it says how far the joint will move,\n"
+        "First read docs/safety.md, and run `jointid check`: it says how far the joint will move,\n"
         "0.4°, or 40 counts of a coarse encoder. Exit code 3: the bench is refused."
     )
     _add_common(first, "print passed, reason, travel, torques, signs and what is unchecked as JSON")

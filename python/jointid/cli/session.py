@@ -39,7 +39,7 @@ def add_run(run: argparse.ArgumentParser) -> None:
         "  jointid run joint.toml --cycles 2 --emulate --output runs\n"
         "  jointid run joint.toml --dry-run\n"
         "  jointid run joint.toml --cycles 2 --output runs --save joint.toml\n"
-        "the joint file has a table [session]: examples/hardware/joint.toml; read docs/hardware.md before\n"
+        "the joint file has a table [session]: examples/hardware/joint.toml; read docs/safety.md before\n"
         "the first motion of a real joint. Exit code 3: stopped by a limit, a fault or you, or refused."
     )
     run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")

@@ -204,7 +204,17 @@ class Trajectory:
 
     @classmethod
     def step(cls, distance: float, *, time: float = 0.0, duration: float) -> Self:
-        """Return a jump by `distance` [rad] at `time` [s]."""
+        """Return a jump.
+
+        Parameters
+        ----------
+        distance : float
+            [rad]
+        time : float
+            When it jumps [s]. Default 0.
+        duration : float
+            [s]
+        """
         return cls._made("step", distance=distance, time=time, duration=duration)
 
     @classmethod

@@ -9,20 +9,20 @@ from jointid.hardware.can.bus import check_bitrates, check_interface
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BusOptions:
-    """A CAN bus, as python-can names it.
+    """A CAN bus, with python-can's names.
 
     Attributes
     ----------
     interface : str
-        "socketcan", "pcan", "kvaser", … Default "socketcan".
+        Kind of adapter: "socketcan", "pcan", "kvaser", … Default "socketcan".
     channel : str
-        Default "can0".
+        Name of the bus: "can0", "PCAN_USBBUS1", … Default "can0".
     bitrate : int
-        Bit rate [bit/s]; for socketcan, set it with the interface. Default 500 000.
+        Bit rate [bit/s]; for socketcan `ip link` sets it. Default 500 000.
     fd : bool
-        Whether to allow CAN FD frames. Default False.
+        Send and receive CAN FD frames. Default false.
     data_bitrate : int, optional
-        Bit rate of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
+        Bit rate of the data in CAN FD frames [bit/s]. Default: `bitrate`.
     """
 
     interface: str = "socketcan"

@@ -24,9 +24,9 @@ class Emulation:
     sensors : Sensors
         Noise, ripple and other errors of the torque sensor. Encoder and converter belong to the drive.
     integration_step : float
-        Largest integration step of the joint [s].
+        Longest step of the joint's simulation [s].
     position : float
-        Initial angle of the joint [rad].
+        Angle of the joint at the start [rad].
     drive : object, optional
         Options of the emulated drive, as its drive type defines them. Default: the type's default.
     """

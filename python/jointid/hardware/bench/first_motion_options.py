@@ -18,37 +18,37 @@ class FirstMotionOptions:
     Attributes
     ----------
     largest_torque : float, optional
-        Largest torque [N·m], by the joint file's constants. Default: five times the breakaway torque of the joint file,
-        or twice without a torque sensor to watch, but at most the session's torque limit. Required if the joint file
-        has no breakaway torque and no sensor is watched.
+        Largest torque while nothing moves, by the joint file's constants [N·m]. Default: five times the
+        breakaway torque in the joint file, or twice without a torque sensor to watch; never more than the session's
+        torque limit. Required without a breakaway torque and without a sensor to watch.
     compare_friction : bool
-        Whether to compare the measured breakaway torque with the joint file's friction, within a factor of 1.5.
-        Use False if the file's values are guesses. Default True.
+        Compare the measured breakaway with the joint file's friction, which must be right within a factor of
+        1.5. Set false if it is only a guess. Default true.
     watch_sensor : bool
-        Whether a change of the torque sensor's reading ends the search for motion while the encoder stands still.
-        Default True.
+        Stop when the torque sensor's reading changes while the encoder stands. Set false for a sensor that
+        shows the motor's torque. Default true.
     hand_turn : float, optional
-        Longest wait, motor off, until the joint is turned by hand and the encoder counts [s]. Default: no wait; without
-        a sensor to watch, a stuck encoder then shows only at the largest torque.
+        Time to wait, motor off, until somebody turns the joint by hand by 50 counts [s]. Default: no wait; without
+        a sensor to watch, an encoder that does not count then shows only at the largest torque.
     counts : int, optional
-        Encoder counts that show a motion, together with `more_counts`. Default: 5, or fewer if both together exceed
-        0.1°, but at least 2.
+        Encoder counts that count as motion. Default: 5; fewer, but at least 2, if these and `more_counts` are
+        more than 0.1° together.
     more_counts : int, optional
-        Counts that must follow while the torque is constant; without them the gear only winds up. Default: 10, or
-        fewer as for `counts`.
+        Counts that must follow while the torque is held; without them the gear only wound up. Default: 10; fewer
+        in the same case.
     growth_time : float
-        Time in which the torque grows by a factor of e [s], so that the search is equally careful on weak and strong
-        joints. Default 2.
+        Time in which the torque grows by a factor of e [s]. The growth is exponential, so that a weak joint is
+        approached as carefully as a strong one. Default 2.
     travel : float, optional
-        Largest distance from the start, by the joint file's gear ratio [rad]; beyond it the motor goes off. Default:
-        0.4° or 40 encoder counts, whichever is larger.
+        Largest distance from the start, by the joint file's gear ratio [rad]; beyond it the motor goes off.
+        Default: the larger of 0.4° and 40 encoder counts.
     velocity : float
         Highest speed [rad/s]; beyond it the motor goes off. Default 0.5.
     still_time : float
-        Time at rest before a motion, with the motor off and on [s]. Default 0.5.
+        Time that the joint must stand still first, with the motor off and again with it on [s]. Default 0.5.
     moves : tuple of float, optional
-        Amplitudes of the small controlled motions, in order [rad]. Default: 0.1°, 0.2° and 0.3°, or 1/3, 2/3 and all
-        of 20 encoder counts if that is more.
+        Amplitudes of the small motions under control, in order [rad]. Default: 0.1°, 0.2° and 0.3°, or a
+        third, two thirds and all of 20 encoder counts if that is more.
     longest : float
         Longest time with the motor on [s]. Default 55.
 

@@ -24,30 +24,30 @@ class ElmoEmulation:
     idle_loop : float
         Time between two interpreter commands of the drive [s]. Default 0.0003.
     mantissa_bits : int
-        Significant bits of a current command: 24 for a float, 4 for the thesis's link. Default 24.
+        Bits of a current command that the drive keeps: 24 of a float, 4 over the thesis's link. Default 24.
     idle_jitter : float
-        How much longer that may be, each time anew [s]. Default 0.
+        Largest random addition to `idle_loop` [s]. Default 0.
     enable_time : float
         From MO=1 until the motor is on [s]: a brake opens, commutation is found. Default 0.
     brake : float
         Torque at the output of a brake that closes when the motor is off [N·m]. Default 0: none, and a load
         falls.
     clock_drift : float
-        By what share the host's clock is faster than the drive's: 1e-4 are 100 ppm. Default 0.
+        How much faster the host's clock is than the drive's, as a share: 1e-4 is 100 ppm. Default 0.
     jitter : float
-        So much later than it wanted the host goes on, at most, whenever it has waited [s]. Default 0.
+        Largest random delay of the host after each wait [s]. Default 0.
     torque_sign : float
         1, or -1: a positive current gives a negative torque. Default 1.
     encoder_sign : float
         1, or -1: the encoder counts down in the positive direction. Default 1.
     torque_scale : float
-        True torque constant over that of the joint file. Default 1.
+        True torque constant divided by the joint file's; 0: no torque. Default 1.
     gear_ratio : float, optional
-        The true one. Default: that of the joint file.
+        True gear ratio. Default: the joint file's.
     sensor_sign : float
         1, or -1: the torque sensor reads less for a positive torque. Default 1.
     peak_current : float, optional
-        PL[1] of the drive [A]. Default: what the joint file's torque or current limit allows.
+        PL[1] of the drive [A]. Default: as the joint file's torque or current limit allows.
 
     Raises
     ------

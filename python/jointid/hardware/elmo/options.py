@@ -19,34 +19,35 @@ class ElmoOptions:
     Attributes
     ----------
     node : int
-        1 to 127.
+        The drive's node, 1 to 127.
     counts_per_turn : int
-        Encoder counts of a motor turn.
+        Encoder counts per motor revolution.
     position_offset : float
-        Output angle where the encoder counts 0 [rad].
+        Output angle at encoder count 0 [rad].
     cob_command, cob_reply, cob_position : int, optional
-        COB-IDs of interpreter commands, replies, and the position's PDO. Default: 0x300, 0x280 and
-        0x480 plus the node.
+        COB-IDs of interpreter commands, replies and the position's PDO. Default: 0x300, 0x280 and 0x480,
+        plus the node.
     master : int, optional
-        Our node, 1 to 127, whose heartbeat the drive watches: no other node on the bus may have it. Default: 1,
-        or 2 if the drive is node 1.
+        The session's own node, 1 to 127; the drive watches its heartbeat. No other device on the bus may
+        use it. Default: 1, or 2 if the drive is node 1.
     listen : float
-        Before the drive is touched: time in which nobody else may beat as our node, or command the drive [s].
+        Time to listen for another master before the first frame is sent [s].
     heartbeat : float
-        Time without our heartbeat after which the drive stops by itself; without the drive's, the session [s].
+        Time without the session's heartbeat after which the drive stops, and without the drive's after which
+        the session stops [s].
     drive_heartbeat : float
-        Between two heartbeats of the drive [s]; at most half of `heartbeat`.
+        Time between two heartbeats of the drive [s]; at most half of `heartbeat`.
     acknowledge : bool
-        Start although the drive has shut its motor down before; enabling clears its report.
+        Start although the drive keeps an old failure; enabling clears it.
     torque : SyncedConverter, AnalogInput or None
         Where the joint's torque sensor is read.
     bitrate : float
         Bit rate of the bus [bit/s], to estimate its load.
     execution_delay : float
-        From a command's arrival until the drive acts on it: it waits for the drive's idle loop [s].
+        Delay from a command's arrival until the drive's idle loop acts on it [s].
     mantissa_bits : int
-        Bits of a current command that the drive keeps: 24 for a float, 4 over the thesis's link. Commands are
-        rounded to it, so that what is recorded is what the drive does.
+        Bits of a current command that the drive keeps: 24 of a float, 4 over the thesis's link. Commands are
+        rounded to it.
     """
 
     node: int = 127

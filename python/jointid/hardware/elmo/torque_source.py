@@ -19,13 +19,17 @@ class SensorScaling:
     Parameters
     ----------
     full_scale : float
-        Reading of a deflection by the span.
-    centre, span : float
-        [V]
-    zero, cosine : float
-        Shares of the full scale.
+        Reading of a deflection by `span`.
+    centre : float
+        Voltage of no deflection [V].
+    span : float
+        Voltage from there to the full scale [V].
+    zero : float
+        Offset, as a share of the full scale.
+    cosine : float
+        Amplitude of the offset that varies with the angle, as a share of the full scale.
     start : float
-        [rad]
+        Phase of that offset [rad].
     """
 
     full_scale: float = 217.34
@@ -63,10 +67,11 @@ class SyncedConverter:
     identifier : int
         COB-ID of its frame. Default 0x1C0.
     bits : int
+        Resolution of the converter.
     lowest, highest : float
-        [V]
+        Its range [V].
     conversions : int
-        In the sum.
+        Conversions that one sum holds.
     scaling : SensorScaling
     """
 
@@ -125,11 +130,11 @@ class AnalogInput:
     Parameters
     ----------
     number : int
-        1 or 2: AN[number].
+        1 or 2, for AN[1] or AN[2].
     lowest, highest : float
         Range of the input [V].
     every : int
-        Control cycles between two questions; each cycle would load bus and drive too much.
+        Cycles between two questions; a question in each cycle would load bus and drive too much.
     scaling : SensorScaling
     """
 

@@ -1,6 +1,6 @@
 """What a session needs of a drive: an object with these methods; nothing is inherited.
 
-`docs/hardware.md` shows a complete drive of sixty lines and in which order a session calls it.
+`docs/hardware.md` shows a complete drive of sixty lines.
 """
 
 from __future__ import annotations

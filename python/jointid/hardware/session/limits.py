@@ -26,42 +26,42 @@ class SessionLimits:
     Attributes
     ----------
     position : tuple of float
-        Lowest and highest output angle [rad].
+        Lowest and highest output angle [rad]. Default ±π.
     velocity : float
-        Largest velocity [rad/s]: the estimate from positions or the drive's measurement, whichever is larger.
+        Largest speed, estimated from positions or measured by the drive [rad/s].
     torque : float
-        Largest commanded torque at the output [N·m].
+        Largest commanded torque at the output [N·m]. Default: no limit.
     torque_rate : float
-        Largest rate of the torque command from cycle to cycle [N·m/s].
+        Largest change of the command from one cycle to the next [N·m/s]. Default: no limit.
     tracking_error : float
-        Largest deviation from the reference [rad].
+        Largest difference between reference and position [rad].
     measured_torque : float, optional
         Largest torque of the active current, if the drive reports it [N·m]. Default: 1.2 times `torque`.
     torque_difference : float, optional
-        Largest difference between commanded and measured torque, averaged over ten samples [N·m]. Default: a
-        quarter of `torque`.
+        Largest difference between commanded and measured torque, in the mean over ten samples [N·m].
+        Default: a quarter of `torque`.
     saturated_samples : int
-        Total number of cycles with a command cut to the torque limit; the thesis stops beyond 20.
+        Cycles, in all, in which the torque limit cut the command.
     missed_deadlines : int
-        Consecutive cycles that ended after the start of the next cycle was due.
+        Cycles in a row that ended after the next one had to begin.
     repeated_positions : int
-        Consecutive equal positions that show a stuck encoder or a blocked joint. They count if the joint was moving
-        just before, or if the torque has since changed by more than `torque` and more than four times the joint's
-        breakaway torque (at most 1.98 times `torque`).
+        Equal encoder counts in a row although the joint just moved, or the torque changed by more than
+        `torque` and four times the joint file's breakaway torque (at most 1.98 times `torque`): an encoder that
+        hangs, or a blocked joint.
     clipped_samples : int
-        Consecutive readings at the end of the sensor's range.
+        Torque readings in a row at the end of the sensor's range.
     late_samples : int
-        Consecutive cycles without a sample in time, because an answer was late or lost or the loop paused. The last
-        torque holds meanwhile, and the recording marks them (`Recording.late`).
+        Cycles in a row without a sample in time. The last torque is held meanwhile, and the recording marks
+        them (`Recording.late`).
     late_share : float
-        Largest share of such cycles in the last 5 s; up to `late_samples` cycles are always allowed.
+        Share of such cycles in the last 5 s; up to `late_samples` of them are always allowed.
     torque_envelope : float, optional
-        Largest factor between the commanded torque, over more than 50 ms, and the torque that the reference needs by
-        the joint's friction, inertia and weight; a twentieth of `torque` is added. Default: not watched;
-        `commission` uses 2 for runs with an identified joint.
+        Largest command for longer than 50 ms, as a multiple of the torque that the reference needs by the
+        joint's friction, inertia and weight; a twentieth of `torque` is added. Default: off; `commission` uses 2
+        for runs with an identified joint.
     watchdog_travel : float, optional
-        Largest travel after a failure of the host, until the drive's watchdog has stopped the joint [rad]. Default:
-        the travel with the motor off at once, plus `watchdog_share`.
+        Largest travel after the program's death, until the joint stands [rad]. Default: the coasting of a
+        motor that goes off at once, plus `watchdog_share`.
 
     Raises
     ------

@@ -27,16 +27,18 @@ class SessionOptions:
     period : float
         Time between commands [s]; at least 1e-5.
     approach_velocity : float
-        Largest velocity on the motion to the start [rad/s]; at least 1e-4.
+        Largest speed of the move to the start [rad/s]; at least 1e-4.
     settle : float
-        Rest at the start of the trajectory [s]; at most 5 million periods.
-    velocity_counts, velocity_time : int, float
-        Smallest number of counts and longest time [s] of the velocity estimator (thesis, 6.3.1).
+        Time at rest at the start [s]; at most 5 million periods.
+    velocity_counts : int
+        Encoder counts for a new velocity estimate (6.3.1).
+    velocity_time : float
+        Longest time between two velocity estimates [s].
     resolution : float, optional
         Output angle of an encoder count [rad]. Default: the drive's own `resolution`.
     answer_timeout : float, optional
-        Longest wait for the drive's state in a cycle [s]; after it the position is stale. Default: three quarters of a
-        period.
+        Time to wait for the drive's state in a cycle [s]; after it the position is stale. Default: three
+        quarters of a period.
     acknowledge_damped : bool
         Whether to start with a drive that damps, holds or brakes its motor, and does not switch it off, when the host
         fails.

@@ -26,13 +26,13 @@ class RealTimeOptions:
     Attributes
     ----------
     priority : int, optional
-        Priority of SCHED_FIFO, 1 to 99; 70 to 80 is usual. Needs CAP_SYS_NICE or `ulimit -r`.
+        SCHED_FIFO priority, 1 to 99; usually 70 to 80. Needs CAP_SYS_NICE or `ulimit -r`.
     lock_memory : bool
         Whether to keep all memory out of swap. Needs CAP_IPC_LOCK or `ulimit -l unlimited`.
     cpus : tuple of int, optional
         Processors that the loop may run on.
     timer_slack : float, optional
-        Largest extension of a sleep by the kernel [s]; Linux's default is 50e-6.
+        How much later a sleep may end [s]; Linux uses 50e-6 otherwise.
     freeze_garbage : bool
         Whether to stop garbage collection during the session.
     """
