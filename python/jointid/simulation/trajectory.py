@@ -158,10 +158,8 @@ class Trajectory:
         ----------
         amplitude : float or sequence of float
             Of each sine [rad]; a single number here or below holds for all of them.
-        frequency : float or sequence of float
-            [rad/s]
-        phase : float or sequence of float
-            [rad]
+        frequency, phase : float or sequence of float
+            [rad/s], [rad]
         offset : float
             [rad]. Default 0.
         fade : float
@@ -248,10 +246,8 @@ class Trajectory:
 
         Parameters
         ----------
-        time : array_like, shape (n,)
-            [s], strictly increasing.
-        position : array_like, shape (n,)
-            [rad]
+        time, position : array_like, shape (n,)
+            [s], strictly increasing; [rad].
         """
         return cls._made(
             "samples",

@@ -215,8 +215,8 @@ class Axis:
         if watch is not None and watch.stands(sample.time, position, self._torque):
             raise RefusedBenchError(
                 "encoder_stands",
-                f"the encoder stays at {position:.5f} rad under {self._torque:.4g} N·m, but the joint broke away at "
-                "less before: the encoder hangs or is disconnected, or something blocks the joint",
+                f"the encoder stays at {position:.5f} rad under {self._torque:.4g} N·m, although the joint "
+                "moved at less before: the encoder hangs or is disconnected, or something blocks the joint",
             )
         if self.on and not math.isnan(sample.torque):
             self._follow(sample.torque)

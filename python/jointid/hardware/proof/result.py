@@ -9,7 +9,7 @@ from typing import Any
 from jointid.hardware.session.watchdog import Watchdog
 
 UNCHECKED = {
-    "positive_direction": "torque and encoder inverted together look correct: check which way the link goes",
+    "positive_direction": "torque and encoder inverted together look correct: check in which direction the link moves",
     "encoder": "that the encoder counts: no other sensor shows motion, and nobody turned the joint by hand with the "
     "motor off; the reported travel is what the encoder saw",
     "homing": "that the joint's zero is where position_offset says",

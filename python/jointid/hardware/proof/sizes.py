@@ -51,7 +51,7 @@ class Sizes:
     def __str__(self) -> str:
         return (
             f"up to {math.degrees(self.travel):.2f}° ({self.travel:.4f} rad), with an encoder of "
-            f"{math.degrees(self.resolution):.2g}° a count"
+            f"{math.degrees(self.resolution):.2g}° per count"
         )
 
 

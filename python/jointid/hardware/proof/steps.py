@@ -260,15 +260,15 @@ class Steps:
         if any(along):
             raise RefusedBenchError(
                 "moves_one_way",
-                "the joint moves the same way under a positive and under a negative torque: something else "
-                "moves it, gravity or a spring, or another program commands the drive",
+                "positive and negative torque move the joint in the same direction: gravity or a spring moves it, "
+                "or another program commands the drive",
             )
         self.signs["torque_and_encoder"] = -1
         raise RefusedBenchError(
             "torque_and_encoder_disagree",
-            "a positive torque makes the encoder count down, and a negative one up: either the torque or the "
-            "encoder is inverted. Check which way the link goes under a positive torque: if that is your positive "
-            "direction, the encoder is inverted, otherwise the torque",
+            "a positive torque makes the encoder count down, and a negative one up: the torque or the encoder is "
+            "inverted. Look in which direction a positive torque moves the link: if that is your positive direction, "
+            "the encoder is inverted, otherwise the torque",
         )
 
     def _judge_scales(self, axis: Axis, breakaway: tuple[float, float]) -> None:
@@ -294,7 +294,7 @@ class Steps:
             f"the joint moves at {friction:.4g} N·m by the joint file's constants, {friction / stated:.3g} times "
             f"the {stated:.4g} N·m that it states"
             + ("" if math.isnan(inertia) else f", with an inertia of {inertia:.3g} kg·m²")
-            + "; where the stated friction is only a guess, set compare_friction = false in "
+            + "; if the stated friction is only a guess, set compare_friction = false in "
             "[session.first_motion]",
         )
 
