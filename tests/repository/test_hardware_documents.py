@@ -21,6 +21,7 @@ from jointid.hardware.elmo.emulated_bench import ElmoEmulation
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
+from jointid.hardware.session.braking import BRAKED
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -91,10 +92,12 @@ def _keys(table: dict[str, Any], name: str = "session") -> Iterator[tuple[str, s
             yield name, key
 
 
-def test_each_limit_has_a_row_that_says_what_stops() -> None:
+def test_each_limit_has_a_row_that_says_whether_it_brakes() -> None:
     text = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
-    for field in fields(SessionLimits):
-        assert f"| `{field.name}` |" in text
+    table = text.partition("\n## Stops\n")[2].partition("\n## ")[0]
+    rows = {row.split("`")[1]: row for row in table.splitlines() if row.startswith("| `")}
+    assert {field.name for field in fields(SessionLimits)} <= rows.keys()
+    assert {name for name, row in rows.items() if "*b* |" in row} == BRAKED
 
 
 @pytest.mark.parametrize(
