@@ -130,12 +130,14 @@ def _motions() -> Iterator[str]:
     for form in bench_file._TRAJECTORIES:
         make = getattr(jid.Trajectory, form)
         meaning = inspect.cleandoc(make.__doc__).partition("\n")[0].removeprefix("Return ")
-        yield from (f'### `form = "{form}"`', "", f"{meaning[:1].upper()}{meaning[1:]}", "")
+        meaning = f"{meaning[:1].upper()}{meaning[1:]}"
+        yield from (f'### `form = "{form}"`', "", markdown(meaning), "")
         texts = described(make)
         for name, parameter in inspect.signature(make).parameters.items():
             kind = kind_in_toml(type_name(parameter.annotation))
             required = ", required" if parameter.default is parameter.empty else ""
-            yield from definition(name, f"{kind}{required}", markdown(texts[name].text))
+            text = markdown(texts[name].text) if name in texts else "See the line above."
+            yield from definition(name, f"{kind}{required}", text)
 
 
 def _laws() -> Iterator[str]:

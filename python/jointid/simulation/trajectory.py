@@ -158,8 +158,10 @@ class Trajectory:
         ----------
         amplitude : float or sequence of float
             Of each sine [rad]; a single number here or below holds for all of them.
-        frequency, phase : float or sequence of float
-            [rad/s], [rad]
+        frequency : float or sequence of float
+            [rad/s]
+        phase : float or sequence of float
+            [rad]
         offset : float
             [rad]. Default 0.
         fade : float
@@ -202,17 +204,7 @@ class Trajectory:
 
     @classmethod
     def step(cls, distance: float, *, time: float = 0.0, duration: float) -> Self:
-        """Return a jump.
-
-        Parameters
-        ----------
-        distance : float
-            [rad]
-        time : float
-            When it jumps [s]. Default 0.
-        duration : float
-            [s]
-        """
+        """Return a jump by `distance` [rad] at `time` [s]."""
         return cls._made("step", distance=distance, time=time, duration=duration)
 
     @classmethod
@@ -246,8 +238,10 @@ class Trajectory:
 
         Parameters
         ----------
-        time, position : array_like, shape (n,)
-            [s], strictly increasing; [rad].
+        time : array_like, shape (n,)
+            [s], strictly increasing.
+        position : array_like, shape (n,)
+            [rad]
         """
         return cls._made(
             "samples",
