@@ -1,5 +1,6 @@
 """docs/design.md: its commands print what it shows, its Python runs, its motion by hand is a motion."""
 
+import shlex
 import shutil
 from pathlib import Path
 
@@ -7,13 +8,20 @@ import pytest
 from documents import ROOT, blocks, enter, read, run_console_blocks, run_python_blocks
 
 import jointid as jid
+from jointid.cli.parser import command_parser
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.session.limits import SessionLimits
 from jointid.simulation.motion_file import load_motion
 from jointid.simulation.peaks import Peaks
 
 PAGE = read("docs/design.md")
-BENCH = PAGE.partition("\n## Through the bench")[2].partition("\n## ")[0]
+
+
+def _section(title: str) -> str:
+    return PAGE.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
+
+
+OWN, BENCH = _section("Design a motion"), _section("With a session of jointid")
 
 
 def _bench(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -23,7 +31,21 @@ def _bench(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return joint
 
 
-def test_the_way_through_the_bench_has_commands_that_there_are(
+@pytest.mark.slow
+def test_an_own_joint_file_is_designed_for_and_rehearsed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    joint = tmp_path / "joint.toml"
+    text, behind = OWN.partition("```toml\n")[2].split("```\n", 1)
+    joint.write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    commands = run_console_blocks(behind, joint, capsys, within=0.5)
+    assert commands == ["design", "simulate", "identify"]
+    names = run_python_blocks(OWN, tmp_path, monkeypatch)
+    assert abs(names["position"]).max() < 1.05
+
+
+def test_the_session_has_commands_that_there_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     joint = _bench(tmp_path, monkeypatch)
@@ -32,7 +54,7 @@ def test_the_way_through_the_bench_has_commands_that_there_are(
 
 
 @pytest.mark.slow
-def test_the_way_through_the_bench_runs_and_prints_what_is_shown(
+def test_the_session_runs_and_prints_what_is_shown(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     joint = _bench(tmp_path, monkeypatch)
@@ -56,11 +78,23 @@ def test_the_way_through_the_bench_runs_and_prints_what_is_shown(
 
 
 def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = run_python_blocks(PAGE, tmp_path, monkeypatch)
+    first, second = _section("In Python"), _section("Record what is missing")
+    names = run_python_blocks(first, tmp_path, monkeypatch)
     estimate, design = names["estimate"], names["design"]
     for name, expected in design.parameters.items():
         true = names["true"].parameters[name].value
         assert abs(estimate.parameters[name].value - true) < 4.0 * expected.stderr, name
+    (block,) = blocks(second, "python")
+    exec(compile(block, "document", "exec"), names)
+    assert "designed by jid.design(estimate, " in str(names["estimate"].warnings[0])
+    for name, true in names["true"].parameters.items():
+        assert names["both"].parameters[name].value == pytest.approx(true.value, rel=0.02), name
+
+
+def test_the_commands_for_the_next_motion_are_ones() -> None:
+    (commands,) = blocks(_section("Record what is missing"), "sh")
+    for line in commands.splitlines():
+        assert command_parser().parse_args(shlex.split(line)[1:]).joint == Path("joint.toml")
 
 
 def test_the_motion_by_hand_is_a_motion(tmp_path: Path) -> None:

@@ -100,16 +100,6 @@ def test_the_page_on_exports_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert 'frictionloss="' in (tmp_path / "arm.xml").read_text(encoding="utf-8")
 
 
-def test_the_page_on_the_next_motion_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = run_python_blocks(read("docs/next_motion.md"), tmp_path, monkeypatch)
-    assert "designed by jid.design(estimate, " in str(names["estimate"].warnings[0])
-    for name, true in names["true"].parameters.items():
-        assert names["both"].parameters[name].value == pytest.approx(true.value, rel=0.02), name
-    (commands,) = blocks(read("docs/next_motion.md"), "sh")
-    for line in commands.splitlines():
-        assert command_parser().parse_args(shlex.split(line)[1:]).joint == Path("joint.toml")
-
-
 def test_the_joint_file_in_the_guide_loads(tmp_path: Path) -> None:
     (text,) = blocks(read("docs/guide.md"), "toml")
     path = tmp_path / "joint.toml"

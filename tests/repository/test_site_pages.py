@@ -12,8 +12,7 @@ from jointid.cli import main
 from jointid.cli.parser import command_parser
 
 PAGES = ["docs/findings.md", "docs/quickstart.md", "docs/safety.md"]
-PAGES += [f"docs/how_to/{path.name}" for path in sorted((ROOT / "docs/how_to").glob("*.md"))]
-SLOW = {"docs/how_to/move_my_joint.md", "docs/safety.md"}  # they run benches
+SLOW = {"docs/safety.md"}  # it runs a bench
 # Elsewhere: the page, and the test that runs it.
 RUN_BY = {
     "docs/app.md": "test_site_pages.py",
@@ -24,7 +23,6 @@ RUN_BY = {
     "docs/hardware.md": "test_first_motion_documents.py",
     "docs/index.md": "test_site_pages.py",
     "docs/logs.md": "test_logs_document.py",
-    "docs/next_motion.md": "test_documents.py",
     "docs/own_terms.md": "test_documents.py",
     "docs/reports.md": "test_documents.py",
     "docs/robot_reference.md": "test_robots_document.py",
