@@ -1,4 +1,4 @@
-"""What was found: verdict, values, findings with remedies, pictures, the comparison, and files to take away."""
+"""What was found: verdict, values, findings with remedies, pictures, the comparison, and files to download."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def _exports(desk: Desk, estimate: Estimate) -> None:
         if desk.call is not None and desk.recording is not None:
             ui.download.content(desk.call.script(desk.recording), "identify.py")
 
-    heading(3, "Take away")
+    heading(3, "Download")
     with ui.element("div").classes("buttons"):
         for name, text, file in (
             ("Joint (TOML)", lambda: joint_text(estimate.joint), "joint.toml"),
