@@ -65,7 +65,7 @@ def test_the_true_model_wins_where_it_matters(comparison: jid.Comparison) -> Non
     assert (plain.parameters, rich.parameters) == (4, 6)
     assert plain.score > 5 * rich.score
     assert plain.penalty > rich.penalty
-    assert "winner" in rich.reason
+    assert "chosen" in rich.reason
     assert "more than one standard error" in plain.reason
     assert "stribeck (6 parameters)" in comparison.reason
 
@@ -167,7 +167,7 @@ def test_the_simplest_within_one_standard_error_wins() -> None:
         "not significantly better",
         "not significantly better",
         "worse than the best by more than one standard error",
-        "winner",
+        "chosen",
     ]
 
 

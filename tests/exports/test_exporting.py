@@ -89,7 +89,7 @@ def test_values_of_several_recordings_are_averaged_and_said_so(tmp_path: Path) -
         ({"path": "joint.h", "speed": -1.0}, "more than 0"),
         ({"path": "joint.h", "speed": float("nan")}, "a finite number"),
         ({"path": "joint.h", "approximate": 1}, "true or false"),
-        ({"path": "joint.h", "joint_name": "elbow"}, "names a joint of the file to edit"),
+        ({"path": "joint.h", "joint_name": "elbow"}, "names a joint in a file to edit"),
         ({"path": "joint.h", "into": "arm.urdf"}, "only mujoco and urdf files"),
         ({"path": "new.urdf", "into": "nothing.urdf"}, "cannot be read: No such file"),
         ({"path": "new.urdf", "into": "arm.urdf", "joint_name": "elbo"}, "did you mean 'elbow'"),
@@ -168,7 +168,7 @@ def test_negative_friction_is_refused_where_a_simulator_refuses_it(tmp_path: Pat
 
 
 def test_the_nearest_friction_needs_a_range_of_speeds(tmp_path: Path) -> None:
-    with pytest.raises(jid.InputError, match="needs the range of speeds"):
+    with pytest.raises(jid.InputError, match="needs a range of speeds"):
         jid.export(THESIS, tmp_path / "j.xml", approximate=True)
     jid.export(THESIS, tmp_path / "j.xml", approximate=True, speed=0.5)
 

@@ -270,7 +270,7 @@ def test_the_armature_is_kept_where_the_links_inertia_is_in_it(tmp_path: Path) -
         "utf-8"
     )
     assert model_of(tmp_path / "new.xml").dof_armature[0] == 0.07
-    assert "armature is left as it was" in text
+    assert "armature is unchanged" in text
     assert "new.xml" not in source.read_text(encoding="utf-8")
     # Without a name, the joint's own is meant.
     jid.export(joint, tmp_path / "own.xml", into=source)

@@ -288,7 +288,7 @@ def test_the_palette_is_that_of_the_reports() -> None:
 def test_something_that_is_no_axes_is_refused(name: str) -> None:
     with pytest.raises(jid.InputError, match="axes are expected"):
         _drawn(name, pyplot.figure())
-    with pytest.raises(jid.InputError, match="given as `ax`"):
+    with pytest.raises(jid.InputError, match="axes to draw into as `ax`"):
         _drawn(name, None, axes=pyplot.subplots()[1])
 
 

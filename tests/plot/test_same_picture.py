@@ -65,7 +65,7 @@ ROWS = rows_panel(
         NamedRow(name="first", value=2.0, error=0.5, single=[1.0, 3.0], chosen=True),
         NamedRow(name="second", value=200.0, error=0.2, single=[199.0]),
     ],
-    *("residual [%]", "model", ("one part", "mean", "mean of the chosen one")),
+    *("residual [%]", "model", ("one part", "mean", "mean of the chosen model")),
     logarithmic=True,
 )
 LOGARITHMIC = Panel(

@@ -95,7 +95,7 @@ def test_a_study_without_a_truth_says_what_moves() -> None:
     unfinished = replace(study, rows=study.rows[:-2])
     assert "not finished: 2 trials are missing" in top(report_page(unfinished))
     nothing = replace(study, rows=())
-    assert "<b>No trial is done.</b>" in top(report_page(nothing))
+    assert "<b>No trial has finished.</b>" in top(report_page(nothing))
     rows = pictures(page(report_pages.of_a_study_of_rows))[0]
     assert any(each.startswith("penalty") for each in rows.texts)
     assert "1 trial is refused" in page(report_pages.of_a_study_of_rows)

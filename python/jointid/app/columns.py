@@ -167,7 +167,7 @@ def _facts(desk: Desk) -> None:
     hints = {
         "gear_ratio": "motor angle per joint angle; needed for signals of the motor",
         "torque_constant": "of the motor; needed for a current",
-        "inertia": "of the drive alone, where it is known",
+        "inertia": "of the drive alone, if known",
     }
     with ui.element("div").classes("fields facts"):
         for name in _FACTS:
@@ -179,7 +179,7 @@ def _facts(desk: Desk) -> None:
             on_change=lambda event: desk.choose(event.value),
         ).props(f"{FIELD} for=model")
         if desk.column_of("time") is None:
-            _number(desk, "sample_period", "time between rows [s]", "where the log has no time")
+            _number(desk, "sample_period", "time between rows [s]", "for a log without time")
 
 
 def _number(desk: Desk, name: str, label: str, hint: str) -> None:

@@ -1,4 +1,4 @@
-"""What was found: verdict, values, findings with remedies, pictures, the comparison, and files to download."""
+"""The result: verdict, values, findings with remedies, pictures, the comparison, and files to download."""
 
 from __future__ import annotations
 

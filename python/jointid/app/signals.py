@@ -20,11 +20,11 @@ def signals_step(desk: Desk) -> Callable[[], object]:
     def draw() -> None:
         recording = desk.recording
         if recording is None or desk.call is None:
-            ui.label("They are shown when time and position are known.").classes("hint")
+            ui.label("They appear as soon as time and position are known.").classes("hint")
             return
         ui.label(
-            "Drag over a part of the recording, or fill in its begin and end: its windows stand out below, "
-            "and it can be left out."
+            "Select a part with the mouse, or enter its begin and end. Its windows are highlighted below, "
+            "and you can leave it out."
         ).classes("hint")
         picture = chart(
             signals_options(recording, desk.call.left_out),

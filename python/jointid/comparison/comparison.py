@@ -1,4 +1,4 @@
-"""`compare_models`: which friction model predicts motion best that it was not fitted to."""
+"""`compare_models`: which friction model predicts held-out motion best."""
 
 from __future__ import annotations
 
@@ -69,16 +69,16 @@ def compare_models(
     callback: Callable[[ComparisonStep], object] | None = None,
     **options: Unpack[CompareOptions],
 ) -> Comparison | ServoComparison:
-    """Compare friction models by how well they predict what they were not fitted to.
+    """Compare friction models by how well they predict held-out motion.
 
     One recording is cut into contiguous blocks; of several recordings, each is one block. Every model is
-    fitted to all blocks but one and predicts that block, for each block in turn. The winner is the model
-    with the fewest parameters whose score is within one standard error of the best score (the
-    one-standard-error rule of Breiman et al., 1984). A model that the data do not support cannot win:
-    its estimate from all data has the warning `model_too_rich`, or a parameter on a bound.
+    fitted to all blocks except one and predicts that block, for each block in turn. The chosen model has the
+    fewest parameters of those with a score within one standard error of the best score (the one-standard-error
+    rule of Breiman et al., 1984). A model that the data do not support cannot be chosen: its estimate from all
+    data has the warning `model_too_rich`, or a parameter at a bound.
 
-    The options of `identify` are the same for all models. Delays that are chosen are chosen from all data; windows are
-    by default the shortest of the models' defaults.
+    All models have the same options of `identify`. Delays are estimated from all data. The default windows are
+    the shortest of the models' defaults.
 
     Parameters
     ----------
@@ -86,14 +86,14 @@ def compare_models(
     joint : Joint, optional
         As in `identify`, except that its model's name and `asymmetric` are not used.
     score : str
-        "windows" (default): the balance of held-out windows. "rollout": the closed loop of held-out runs, simulated, of
-        a servo without a torque signal, with `models` as the only option; see `compare`.
+        "windows" (default): the balance of held-out windows. "rollout": the simulated closed loop of held-out runs,
+        for a servo without a torque signal; `models` is then the only option; see `compare`.
     models : sequence of Model, str or mapping, optional
-        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, all with the gravity
-        that `identify` would choose, without those that cannot be used with these data; they are listed in
+        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()` with the gravity
+        that `identify` would choose. Models that these data do not allow are left out, and listed in
         `settings["left_out"]`.
     folds : int
-        Number of blocks of one recording, or largest number of groups of several. Default 5.
+        Number of blocks of one recording, or largest number of groups of several recordings. Default 5.
     **options
     callback : callable, optional
         Called with a `ComparisonStep` after every fit.
@@ -101,7 +101,7 @@ def compare_models(
     Returns
     -------
     Comparison
-        Of rollouts a `ServoComparison`.
+        For rollouts a `ServoComparison`.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def compare_models(
         usual = {name: option.default for name, option in options_of(CompareOptions).items()}
         if folds != 5 or callback is not None or options != usual:
             raise InputError(
-                "a servo takes no option but models here; compare(recordings, servo) has more",
+                "a servo takes only the option models here; compare(recordings, servo) has more",
                 argument="score",
                 value=score,
             )
@@ -281,9 +281,7 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
     sentence = found.sentence
     refused = [row.model for row in rows if not row.eligible]
     if len(refused) == len(rows):
-        sentence += (
-            "; but the data support none of the models: see the warnings of the winner's estimate"
-        )
+        sentence += "; but the data support none of the models: see the warnings of the chosen model's estimate"
     elif refused:
         sentence += f"; the data do not support {', '.join(refused)}"
     return tuple(reasoned), found.winner, sentence

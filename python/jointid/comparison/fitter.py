@@ -30,7 +30,7 @@ class ComparisonStep:
     Attributes
     ----------
     number, total : int
-        Number of fits done so far, and of all fits.
+        Fits done so far, and in all.
     model : str
         Text of the fitted model.
     """

@@ -1,4 +1,4 @@
-"""Which of the compared models wins, and the reason for each of them."""
+"""Which of the compared models is chosen, and the reason for each of them."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def judged(entrants: Sequence[Entrant], paired: bool = False) -> Judgement:
     for place, each in enumerate(entrants):
         more = each.parameters - entrants[winner].parameters
         if place == winner:
-            reason = "winner"
+            reason = "chosen"
         elif not each.eligible:
             reason = ""
         elif place != best and worse(place, best):

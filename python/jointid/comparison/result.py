@@ -1,4 +1,4 @@
-"""The result of a comparison of models: a row for each model, the winner, and the reason."""
+"""The result of a comparison of models: a row for each model, the chosen model, and the reason."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Comparison(KeptResult):
-    """What `compare` returns of a joint.
+    """The result of `compare` for a joint.
 
     Attributes
     ----------
     rows : tuple of ComparedModel
         In the order of the call.
     winner : str
-        Text of the winning model.
+        Text of the chosen model.
     reason : str
-        Why it won, in a sentence.
+        Why it was chosen, in a sentence.
     estimate : Estimate
-        The winner fitted to all data.
+        The chosen model fitted to all data.
     settings : mapping
         Folds, what each held out ("held_out"), windows, method, residual, and the models that were not
-        compared with the reason for each ("left_out").
+        compared, each with its reason ("left_out").
 
     Examples
     --------
@@ -100,16 +100,16 @@ class Comparison(KeptResult):
     def report(
         self, action: Callable[[Action], str] = str, saved: str = "", *, verbose: bool = False
     ) -> str:
-        """Return the comparison as text: the winner, a line for each model, the winner's verdict and findings.
+        """Return the comparison as text: the chosen model, a line for each model, its verdict and findings.
 
         Parameters
         ----------
         action : callable
-            Words an action. Default: as at a Python prompt.
+            Returns the words of an action. Default: as at a Python prompt.
         saved : str
-            The file that has the winner's estimate. Default: there is none.
+            The file with the chosen model's estimate. Default: no file.
         verbose : bool
-            Everything: penalties, folds, what was not compared. Default False.
+            Whether to add penalties, folds and the models that were not compared. Default False.
         """
         if verbose:
             return self._whole()
@@ -148,7 +148,7 @@ class Comparison(KeptResult):
         return printable("\n".join([*lines, f"winner: {self.winner}", self.reason, *self._said()]))
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return a row for each model, in the order of the call, as a data frame; needs pandas.
+        """Return a data frame with a row for each model, in the order of the call.
 
         Returns
         -------
@@ -169,7 +169,7 @@ class Comparison(KeptResult):
         return data_frame(rows, index="model")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; the winner's estimate as in `Estimate.to_dict`."""
+        """Return everything in JSON's types; the chosen model's estimate as in `Estimate.to_dict`."""
         from jointid.comparison.reading_back import KIND, SCHEMA
 
         return {
@@ -188,7 +188,7 @@ class Comparison(KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the comparison that a JSON text holds; what needs the recordings is refused by its estimate.
+        """Return the comparison from a JSON text; its estimate refuses methods that need the recordings.
 
         Parameters
         ----------
@@ -198,7 +198,7 @@ class Comparison(KeptResult):
         Raises
         ------
         InputError
-            Not JSON, not a comparison, another schema, or a value that cannot be used; names the place in it.
+            Not JSON, not a comparison, another schema, or a value that cannot be used; the error names the place.
         """
         from jointid.comparison.reading_back import comparison_fields
 

@@ -16,18 +16,18 @@ class ComparedModel:
         The model's text, e.g. "coulomb_viscous:asymmetric".
     spec : Model
     parameters : int
-        Free parameters, shape parameters included.
+        Number of free parameters, shape parameters included.
     score : float
-        Relative residual of held-out windows, mean over the folds.
+        Relative residual of held-out windows: mean over the folds.
     stderr : float
         Its standard error over the folds.
     fold_scores : tuple of float
     penalty : float
-        Of the fit to all data [unit of a window integral, squared].
+        Penalty of the fit to all data [unit of a window integral, squared].
     eligible : bool
-        Whether the data support the model; otherwise it cannot win.
+        Whether the data support the model; otherwise it cannot be chosen.
     reason : str
-        Why it wins or does not win.
+        Why it is chosen or not.
     """
 
     model: str

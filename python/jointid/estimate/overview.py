@@ -1,4 +1,4 @@
-"""Return the summary that a report page shows."""
+"""Summary of an estimate for a report page: values, how they were found, findings."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""How a joint should move, so that its parameters can be identified best."""
+"""The motion that identifies a joint's parameters best."""

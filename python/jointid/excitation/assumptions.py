@@ -1,4 +1,4 @@
-"""One line of what a design assumes: the sensors' noise and the controller, on which its errors rest."""
+"""One line with a design's assumptions: the sensors' noise and the controller."""
 
 from __future__ import annotations
 

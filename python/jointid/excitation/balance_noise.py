@@ -1,4 +1,4 @@
-"""The noise that sensors bring into the torque balance."""
+"""The noise of the torque balance that the sensors cause."""
 
 from __future__ import annotations
 

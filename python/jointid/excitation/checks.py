@@ -40,7 +40,7 @@ def check_arguments(
             "the joint has no torque sensor",
             argument="sensors.torque_noise",
             value=sensors.torque_noise,
-            remedy="state its encoder, encoder_counts",
+            remedy="give the encoder's encoder_counts",
         )
     if parameters is not None and (
         isinstance(parameters, str) or not isinstance(parameters, Sequence)
@@ -77,9 +77,9 @@ def check_gain(joint: Joint, request: Request) -> None:
         return
     if gain.min <= 0.0 <= gain.max:
         raise InputError(
-            "the prior and the joint's bounds contain 0, a sensor that reads nothing",
+            "the prior and the joint's bounds contain 0: such a sensor reads nothing",
             argument="sensor_gain",
             value=[gain.min, gain.max],
             place="prior",
-            remedy="give the joint bounds of the gain's sign",
+            remedy="give the gain in the joint bounds of one sign",
         )

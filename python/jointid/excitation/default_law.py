@@ -1,4 +1,4 @@
-"""The controller of a design for which none is stated."""
+"""The controller that a design assumes by default."""
 
 from jointid import _core
 from jointid.base.errors import InputError

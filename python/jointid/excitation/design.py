@@ -1,4 +1,4 @@
-"""A designed motion: where it goes, what it keeps, and how well it will identify a joint."""
+"""A designed motion: its course, its limits, and how well it will identify a joint."""
 
 from __future__ import annotations
 
@@ -20,48 +20,48 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design(DesignFields, KeptResult):
-    """What `design` found; `load_design` reads it from a file.
+    """The result of `design`; `load_design` reads it from a file.
 
     Attributes
     ----------
     status : str
-        "complete", or in a few words what is wrong with it.
+        "complete", or in a few words what is wrong.
     reason : str
-        The same in a sentence. Default: empty.
+        What is wrong, in a sentence. Default: empty.
     trajectory : Trajectory
-        For `simulate`, a session, files.
+        The motion, for `simulate` and for a session.
     joint : Joint
-        The nominal one: the middle of what is believed.
+        The nominal joint: the values of the joint, or the middles of the prior's ranges.
     controller : Controller
-        That drives the joint.
+        The controller that drives the joint.
     sensors : Sensors
-        That are read.
+        The sensors that record the motion.
     limits : MotionLimits
-        What the motion keeps.
+        The limits of the motion.
     peaks : Peaks
-        What joints drawn from what is believed reach, with noise.
+        Largest values over joints drawn from the prior, noise included.
     parameters : mapping of str to ExpectedError
-        Of those that the motion was designed for.
+        Expected errors of the parameters that the motion was designed for.
     reference : mapping of str to float
-        Relative error of each parameter in the thesis's motion (20 degrees, ending at rest), counted for
-        the nominal joint with the same controller, sensors and duration. Default: not computed.
+        Relative error of each parameter with the thesis's motion (20 degrees, ending at rest), for the
+        nominal joint with the same controller, sensors and duration. Default: not computed.
     criterion : str
         "worst" or "determinant".
     joints : int
-        How many it was judged with.
+        Number of joints that the search judged each motion with.
     evaluations : int
-        Motions that the search tried.
+        Number of motions that the search tried.
     seed : int
     duration : float
         [s]
     believed : mapping of str to (float, float)
-        The range of each free parameter, from which joints were drawn. Default: not known.
+        The range of each free parameter from which joints were drawn. Default: not known.
     control_period : float
-        Of the controller [s]. Default 1 ms.
+        The controller's period [s]. Default 1 ms.
     weakest : str
-        The parameter with the largest error.
+        The parameter with the largest relative error.
     limited_by : str
-        What keeps that error from being smaller: a limit that is reached, the duration, the noise, …
+        What limits that error: a limit that is reached, the duration, the noise, …
 
     Examples
     --------
@@ -80,13 +80,12 @@ class Design(DesignFields, KeptResult):
         return overview_of(self)
 
     def report(self, *, verbose: bool = False) -> str:
-        """Return which errors to expect, and what limits them, as text.
+        """Return the expected errors and what limits them, as text.
 
         Parameters
         ----------
         verbose : bool
-            Whether to return everything: the table of errors, each limit, and how the motion was judged. Default
-            False.
+            Whether to add the table of errors, each limit, and how the motion was judged. Default False.
         """
         from jointid.excitation.tables import answer, summary
 
@@ -97,7 +96,7 @@ class Design(DesignFields, KeptResult):
         return self.report(verbose=True)
 
     def plot(self) -> tuple[Axes, Axes, Axes]:
-        """Draw position and velocity over time with their limits, and where friction is sampled.
+        """Draw position and velocity over time with their limits, and the time spent at each velocity.
 
         Returns
         -------
@@ -109,7 +108,7 @@ class Design(DesignFields, KeptResult):
         return designed_motion(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what `save` writes, in JSON's types; a number that is not finite is a text."""
+        """Return the content of a saved design in JSON's types; a number that is not finite is a text."""
         from jointid.excitation.design_document import document_of
 
         return document_of(self)
@@ -132,7 +131,7 @@ class Design(DesignFields, KeptResult):
         Raises
         ------
         InputError
-            Not JSON, no design, a newer schema, or a value that cannot be used; names the place in it.
+            Not JSON, not a design, a newer schema, or a value that cannot be used; the error names the place.
         """
         from jointid.base.schema import Plain, TableOf, read_json
         from jointid.excitation.design_file import read_design
@@ -193,7 +192,7 @@ class Design(DesignFields, KeptResult):
             raise (error if error.place.startswith(str(place)) else error.at(str(place))) from None
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the expected errors as a data frame, one row for each parameter.
+        """Return the expected errors as a data frame, one row per parameter.
 
         Returns
         -------
@@ -219,8 +218,8 @@ def load_design(path: str | os.PathLike[str]) -> Design:
     Parameters
     ----------
     path : path
-        A motion written by hand, without what a design knows of it, is read by a session and by
-        `jointid simulate --trajectory`, not here.
+        A motion without expected errors, such as one written by hand, is not a design: a session and
+        `jointid simulate --trajectory` read it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How a motion is searched for."""
+"""Settings and progress of the search for a motion."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class DesignSearch:
     Parameters
     ----------
     evaluations : int
-        Motions that are tried, about. Default 3600: a few seconds for 12 s of motion.
+        Approximate number of motions to try. Default 3600: a few seconds for 12 s of motion.
     joints : int
-        How many joints of the prior each motion is judged with. Default 4.
+        Number of joints of the prior that each motion is judged with. Default 4.
     rehearsals : int
-        Simulated recordings with noise from which the errors of the motion found are counted. Default 256.
+        Number of simulated recordings with noise that give the errors of the motion found. Default 256.
     seed : int
-        Default 0. The same seed gives the same motion, whatever the number of threads.
+        Default 0. The same seed gives the same motion on any number of threads.
     threads : int
         0 (default): all.
 
@@ -68,9 +68,9 @@ class DesignProgress:
     Attributes
     ----------
     number, total : int
-        Motions that were tried, of all.
+        Motions tried so far, and in all.
     best : float
-        What the search minimises, of the best motion so far: a relative error.
+        Criterion of the best motion so far: a relative error.
 
     Examples
     --------

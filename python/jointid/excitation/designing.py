@@ -1,4 +1,4 @@
-"""Design a motion that tells most about a joint."""
+"""Design the motion that identifies a joint best."""
 
 from __future__ import annotations
 
@@ -64,42 +64,42 @@ def design_excitation(
     known: Known | None = None,
     callback: Callback | None = None,
 ) -> Design:
-    """Return the motion from which a joint is identified best, within limits.
+    """Return the motion that identifies a joint best, within limits.
 
-    Motions are sums of sines that start and end at rest. Each is judged by the information in a
-    noise-free simulation with the controller that will drive it, for several joints that the prior
-    allows; a genetic algorithm searches; the best are rehearsed: simulated with noise, and identified.
+    Motions are sums of sines that start and end at rest. A genetic algorithm searches for the motion with
+    the most information about the parameters, in noise-free simulations of several joints of the prior.
+    The best motions are then simulated with noise and identified, which gives the expected errors.
 
     Parameters
     ----------
     joint : Joint
-        Its model's free parameters are what the motion is for.
+        The motion is for its model's free parameters.
     limits : MotionLimits or mapping, optional
         Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
-        the sensor [N·m] that the joint itself keeps, whichever of the prior it is. Default: the joint's.
+        the sensor [N·m]. Every joint of the prior keeps them. Default: the joint's.
     duration : float
         [s]. Default 12.
     controller : controller, optional
-        That will drive the joint. Default: an adaptive-robust law that believes the nominal joint and
-        does not feed the torque sensor back.
+        The controller that will drive the joint. Default: an adaptive-robust law with the nominal
+        joint's values and without torque feedback.
     sensors : Sensors, optional
-        Default: noise of 0.3 % of the torque limit at the torque sensor; without one, an encoder of 8000
-        counts a motor turn.
+        Default: a torque sensor with noise of 0.3 % of the torque limit; without a torque sensor, an
+        encoder of 8000 counts per motor revolution.
     parameters : sequence of str, optional
-        What the motion is for. Default: all free parameters.
+        Parameters that the motion is for. Default: all free parameters.
     criterion : {"worst", "determinant"}
-        What is made small: the largest relative error, or the product of all. Default "worst". A value
-        near 0 counts as a tenth of its range.
+        What to minimize: the largest relative error, or the product of all. Default "worst". The error of
+        a value near 0 is relative to a tenth of its range.
     prior : mapping of str to (low, high), or sequence of mappings, optional
-        Ranges of the free parameters, or values of joints of which the first is the nominal one.
-        Default: the joint's bounds; 30 % around a value without bounds.
+        Ranges of the free parameters, or values of several joints, the nominal one first.
+        Default: the joint's bounds; ±30 % of a value without bounds.
     search : DesignSearch, optional
     control_period : float
-        Of the controller [s]. Default 0.001.
+        The controller's period [s]. Default 0.001.
     known : Known, optional
-        Information about parameters from recordings that are there.
+        Information about parameters from existing recordings.
     callback : callable, optional
-        Called with a `DesignProgress` now and then; True ends the search early.
+        Called with a `DesignProgress` during the search; return True to end the search early.
 
     Returns
     -------
@@ -108,8 +108,8 @@ def design_excitation(
     Raises
     ------
     InputError
-        An argument that cannot be used, a parameter without a range, limits that leave no motion, or a
-        loop that is not stable for some joint of the prior.
+        An argument that cannot be used, a parameter without a range, limits that allow no motion, or a
+        control loop that is unstable for some joint of the prior.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
 
@@ -337,7 +337,7 @@ class _Designing:
                 raise InputError(
                     "on each motion tried, the loop is unstable for some joint of the prior",
                     argument="controller",
-                    remedy="narrow the prior, or give the controller that will drive the joint",
+                    remedy="narrow the prior, or give the joint's own controller",
                 )
             motions.append(_trajectory(judge, found.best))
             if found.stop == _core.Stop.observer:

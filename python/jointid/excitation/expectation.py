@@ -1,4 +1,4 @@
-"""Expected errors of a motion, and what keeps the largest from being smaller."""
+"""Expected errors of a motion, and what limits the largest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The error that a motion lets one expect of an identified parameter."""
+"""The expected error of an identified parameter."""
 
 from __future__ import annotations
 
@@ -7,22 +7,23 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExpectedError:
-    """How well one parameter will be identified from one recording of a motion, and of what is known already.
+    """Expected error of one parameter, from one recording of a motion and from what is known already.
 
     Attributes
     ----------
     name, unit : str
     value : float
-        Of the nominal joint [unit].
+        Value of the nominal joint [unit].
     stderr : float
-        Standard error to expect there [unit]; infinite where the motion does not determine the parameter.
+        Expected standard error for the nominal joint [unit]; infinite if the motion does not determine the
+        parameter.
     relative : float
-        `stderr` over the parameter's size.
+        `stderr` divided by the parameter's size.
     worst : float
-        Largest relative one over the joints that the motion was judged with.
+        Largest relative error over the joints that the motion was judged with.
     before : float, optional
-        Standard error of what is known without this motion [unit]; infinite where nothing determines the
-        parameter. Default None: nothing was said to be known.
+        Standard error without this motion [unit]; infinite if nothing determines the parameter. Default
+        None: no earlier information.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Information about parameters that is at hand before a motion is recorded."""
+"""Information about parameters from earlier recordings."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Known:
-    """Information about parameters, from recordings that are there.
+    """Information about parameters from existing recordings.
 
     Attributes
     ----------
     names : tuple of str
-        Of parameters; of others nothing is known.
+        The parameters; nothing is known of others.
     information : ndarray, shape (p, p)
-        Inverse of the covariance [1 / product of the two units]; singular where a direction is not determined.
+        Inverse of the covariance [1 / product of the two units]; singular if a combination is not determined.
 
     Examples
     --------
@@ -44,7 +44,7 @@ class Known:
         object.__setattr__(self, "information", 0.5 * (matrix + matrix.T))
 
     def stderr(self) -> dict[str, float]:
-        """The standard errors that this information alone leaves, by name; infinite where it does not determine."""
+        """Standard errors by this information alone, by name; infinite if it does not determine a parameter."""
         scale = np.sqrt(np.diag(self.information))
         seen = scale > 0.0
         errors = dict.fromkeys(self.names, float("inf"))

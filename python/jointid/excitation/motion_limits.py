@@ -1,4 +1,4 @@
-"""What a designed motion may not exceed."""
+"""The limits of a designed motion."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _SMALLEST = 1e-9  # of the other limits: what is used of them is a quotient
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionLimits:
-    """Limits of a designed motion; the joint itself keeps them, not only its reference.
+    """Limits of a designed motion. The joint's own motion keeps them, not only its reference.
 
-    A torque or velocity of a prismatic joint is a force or in m/s.
+    For a prismatic joint, lengths are in m and torques are forces.
 
     Parameters
     ----------
@@ -34,16 +34,16 @@ class MotionLimits:
     velocity : float
         Largest magnitude [rad/s].
     acceleration : float, optional
-        Largest magnitude, of the reference [rad/s²]. Default: not limited.
+        Largest magnitude of the reference [rad/s²]. Default: not limited.
     torque : float, optional
-        Largest magnitude, of the drive at the output [N·m]. Default: not limited; `of` takes the joint's.
+        Largest magnitude of the drive at the output [N·m]. Default: not limited; `of` takes the joint's.
     sensor_range : float, optional
         Largest magnitude of the torque at the joint's torque sensor [N·m]. Default: not limited.
 
     Raises
     ------
     InputError
-        A limit that is not a finite number above 0, or a window that is empty.
+        A limit that is not a finite number above 0, or an empty window.
 
     Examples
     --------
@@ -94,20 +94,20 @@ class MotionLimits:
 
     @classmethod
     def of(cls, given: MotionLimits | Mapping[str, Any] | None, joint: Joint) -> MotionLimits:
-        """Return limits, with those of the joint where none is given.
+        """Return limits; where one is missing, the joint's.
 
         Parameters
         ----------
         given : MotionLimits, mapping or None
             A mapping has fields of `MotionLimits`.
         joint : Joint
-            Its window and velocity count nine tenths, because a session stops at them; its torque (the
-            smaller of torque and current) counts whole.
+            Of its window and velocity nine tenths are used, because a session stops at them; its torque
+            (the smaller of torque and current) is used completely.
 
         Raises
         ------
         InputError
-            A name that is no limit, a value that cannot be used, a limit that neither says, or a range of
+            An unknown name, a value that cannot be used, a required limit that is missing, or a range of
             a sensor that the joint does not have.
 
         Examples
@@ -155,7 +155,7 @@ class MotionLimits:
         return made
 
     def asdict(self) -> dict[str, Any]:
-        """Return the limits that are stated, by name."""
+        """Return the limits that have a value, by name."""
         values = {item.name: getattr(self, item.name) for item in fields(self)}
         return {name: value for name, value in values.items() if value is not None}
 

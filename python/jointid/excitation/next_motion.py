@@ -1,4 +1,4 @@
-"""What to record next: the motion that adds most to what an estimate tells."""
+"""What to record next: the motion that adds most to an estimate."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def motion_after(
     search: DesignSearch | None = None,
     **options: Any,
 ) -> Design:
-    """Design the motion of `Estimate.next_motion`; `joint` has facts that the estimate's joint lacks."""
+    """Design the motion of `Estimate.next_motion`; `joint` adds facts that the estimate's joint lacks."""
     posterior = posterior_of(estimate)
     wanted = posterior.names if parameters is None else tuple(parameters)
     for name in wanted:
@@ -54,7 +54,7 @@ def motion_after(
     believed = joint_of(estimate, posterior, joint)
     if believed.sensor and believed.link is None and {"sensor_gain", "sensor_offset"} & set(wanted):
         raise InputError(
-            "the load of the torque sensor is not known: the joint has no link",
+            "the load of the torque sensor is unknown: the joint has no link",
             argument="joint",
             remedy="give a joint with its link's mass, centre_of_mass and inertia",
         )

@@ -36,7 +36,9 @@ def _answer(design: DesignFields) -> tuple[str, ...]:
         said = f"Usable with care: {unknown or 'a parameter'} will not be determined."
         return "usable with care", said
     limited = f" {design.limited_by.capitalize()}." if design.limited_by else ""
-    worst = f"One standard error, the worst of {design.joints} joints drawn from the prior."
+    worst = (
+        f"This is one standard error, the largest of {design.joints} joints drawn from the prior."
+    )
     return (
         "usable",
         f"Usable: no parameter's expected error is above {share_text(errors[name])}, and all limits are kept.",
@@ -50,6 +52,6 @@ def _quantity(each: ExpectedError) -> Quantity:
         value=each.value,
         error=each.stderr if math.isfinite(each.stderr) else None,
         unit=each.unit,
-        meaning="nominal value, with the error to expect",
+        meaning="nominal value with the expected error",
         remark=f"{share_text(each.worst)} at worst",
     )

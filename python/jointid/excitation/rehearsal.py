@@ -1,4 +1,4 @@
-"""Errors counted in simulated recordings: the motion, the controller, the noise, and the identification itself."""
+"""Errors in simulated recordings: of the motion, the controller, the noise, and the identification itself."""
 
 from __future__ import annotations
 

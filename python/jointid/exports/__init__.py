@@ -1,1 +1,1 @@
-"""A joint as other programs take it: simulators, controllers, PLCs; one file for each target, and the list of them."""
+"""Export of a joint to simulators, controllers and PLCs; one file for each target."""

@@ -1,4 +1,4 @@
-"""C99: a header with the joint's torques as functions, reference values, and a check of itself."""
+"""C99: a header with the joint's torques as functions, reference values, and a self-check."""
 
 from __future__ import annotations
 

@@ -37,36 +37,36 @@ def export(
     """Write an identified joint for a simulator, a controller, a PLC or Simulink.
 
     Each file states its source, units, signs and gear ratio, the standard error and 95 % interval of each
-    parameter, which parameters the recording did not determine, and what it cannot express. Numbers are written
-    with all their digits. The file is written completely or not at all.
+    parameter, the parameters that the recording does not determine, and what it cannot represent. Numbers have
+    all their digits. The file is written completely or not at all.
 
     Parameters
     ----------
     source : Estimate, Joint, ServoEstimate or RobotEstimate
-        A joint needs values for the parameters of its model; their uncertainty is not known then. So it is of a servo,
-        of which the joint is written as identified. A whole robot is
-        written into its URDF, which `into` names: damping and friction of every joint.
+        A joint needs values for the parameters of its model; it has no uncertainty. A servo is exported as its
+        identified joint, also without uncertainty. A whole robot is written into its URDF, which `into` names:
+        damping and friction of every joint.
     path : path-like
-        Its ending chooses the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC 61131-3 Structured
-        Text), ``.mat`` (Simulink).
+        The file ending chooses the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC 61131-3
+        Structured Text), ``.mat`` (Simulink).
     target : {"mujoco", "urdf", "c", "st", "matlab"}, optional
-        Instead of the one that the ending chooses.
+        A target instead of the one that the ending chooses.
     into : path-like, optional
-        An existing MuJoCo or URDF file: the new file is this one with damping and friction of one joint set, in
-        MuJoCo also its armature and the stiffness of its dry friction, and with a comment before the joint.
-        Everything else keeps its bytes. May be `path`
-        itself. Default: a model of this joint alone.
+        An existing MuJoCo or URDF file. The new file is a copy that sets damping and friction of one joint, in
+        MuJoCo also its armature and the stiffness of its dry friction, and adds a comment before the joint.
+        Everything else keeps its bytes. May be `path` itself. Default: a model of this joint alone.
     joint_name : str, optional
         Name of the joint in `into`. Default: the joint's own name.
     approximate : bool
-        MuJoCo and URDF have Coulomb and viscous friction, the same in both directions. False (default) refuses any
-        other; True writes the nearest over the recorded speeds, and in the file what is lost and how large it is.
+        MuJoCo and URDF have Coulomb and viscous friction, the same in both directions. False (default) refuses other
+        friction. True writes the nearest Coulomb and viscous friction over the recorded speeds; the file states
+        what is lost.
     speed : float, optional
-        Largest speed for the nearest friction and for tables [rad/s or m/s]. Default: that of the estimate's
-        recordings, or the joint's limit.
+        Largest speed for the nearest friction and for tables [rad/s or m/s]. Default: the largest speed of the
+        estimate's recordings, or the joint's limit.
     inertia : bool
-        Of a whole robot, whether the links get the inertia that was identified with ``inertia="free"`` or "scaled",
-        too; what is fixed to a link is then part of it. Default False.
+        Only for a whole robot: whether to write also the links' inertia, identified with ``inertia="free"`` or
+        "scaled". The inertia of a link then includes all bodies fixed to it. Default False.
 
     Returns
     -------
@@ -76,8 +76,8 @@ def export(
     Raises
     ------
     InputError
-        An ending that no target has, a parameter without a value, no such joint in `into`, a model that the
-        target cannot express, or scipy is not installed, which writes ``.mat``.
+        An unknown file ending, a parameter without a value, no such joint in `into`, a model that the target
+        cannot represent, or scipy, which writes ``.mat``, is not installed.
     OSError
         The file cannot be written.
 
@@ -125,7 +125,7 @@ def export(
     )
     if joint_name is not None and order.into is None:
         raise InputError(
-            "it names a joint of the file to edit, but no file is given",
+            "it names a joint in a file to edit, but no file is given",
             argument="joint_name",
             value=joint_name,
         )
@@ -158,7 +158,7 @@ def _export_robot(
         )
     if into is None:
         raise InputError(
-            "a whole robot is written into its URDF, which is to be named",
+            "a whole robot is written into its URDF: name that file",
             argument="into",
             remedy=Action("call", {"into": ...}, function="export"),
         )

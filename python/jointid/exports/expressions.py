@@ -1,4 +1,4 @@
-"""A joint's law as expressions of a programming language, from the same terms."""
+"""A joint's torque law as expressions of a programming language."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The body behind a joint for simulators that know bodies only: mass, centre of mass, inertia, and the drive's part."""
+"""The body behind a joint, for simulators of rigid bodies: mass, centre of mass, inertia, and the drive's part."""
 
 from __future__ import annotations
 

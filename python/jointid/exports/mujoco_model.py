@@ -66,7 +66,7 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
     armature = drive_inertia(subject)
     if armature is None:
         notes.append(
-            "armature is left as it was: the identified inertia contains the link's, which this model has already"
+            "armature is unchanged: the identified inertia includes the link's, which this model already has"
         )
     else:
         changes["armature"] = repr(armature)

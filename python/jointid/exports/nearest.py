@@ -1,4 +1,4 @@
-"""The nearest Coulomb and viscous friction, and what it loses of a joint's torque law."""
+"""The nearest Coulomb and viscous friction, and the part of a joint's torque law that it loses."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
             f"{target} has only Coulomb and viscous friction; the export would lose {' and '.join(lost)}",
             argument="model",
             value=subject.model,
-            remedy=Action("call", needed, "the nearest of that kind", "export"),
+            remedy=Action("call", needed, "the nearest Coulomb and viscous friction", "export"),
         )
     if not friction:  # it is Coulomb and viscous friction
         return Nearest(
@@ -100,7 +100,7 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
         )
     if subject.speed is None:
         raise InputError(
-            "the nearest friction needs the range of speeds, which a joint file does not hold",
+            "the nearest friction needs a range of speeds, which a joint file does not have",
             argument="speed",
             remedy=Action("call", {"speed": ...}, "the largest speed", "export"),
         )

@@ -1,4 +1,4 @@
-"""What every exported file says of itself: source, units, signs, uncertainty, and what is missing."""
+"""The statements in every exported file: source, units, signs, uncertainty, and what is missing."""
 
 from __future__ import annotations
 

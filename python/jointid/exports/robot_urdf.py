@@ -30,7 +30,7 @@ def robot_in_urdf(
                 f"URDF has Coulomb and viscous friction of single joints; {joint.name} has {' and '.join(lost)}",
                 argument="approximate",
                 value=False,
-                remedy=Action("call", {"approximate": True}, "to lose that", "export"),
+                remedy=Action("call", {"approximate": True}, "to leave that out", "export"),
             )
         content = _with_dynamics(content, place, joint)
     return with_link_inertias(estimate, content, place) if inertia else content

@@ -28,7 +28,7 @@ def voltage_motor(joint: Joint, drive: VoltageDrive, name: str) -> str:
                 "a model of a motor on a voltage needs it",
                 argument=argument,
                 place=joint.owner,
-                remedy="state it in the joint file's [drive]",
+                remedy="give it in the joint file's [drive]",
             )
     assert joint.torque_constant is not None
     assert drive.resistance is not None

@@ -1,4 +1,4 @@
-"""Return the summary that a report page shows."""
+"""Summary of several joints for a report page: each joint's values and findings."""
 
 from __future__ import annotations
 

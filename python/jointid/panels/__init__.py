@@ -1,1 +1,1 @@
-"""Pictures as data: what is drawn, from which both the reports and `jid.plot` draw."""
+"""Pictures as data, which both the reports and `jid.plot` draw."""

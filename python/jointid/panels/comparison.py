@@ -1,4 +1,4 @@
-"""How well each of the compared models predicts what it was not fitted to."""
+"""How well each compared model predicts held-out motion."""
 
 from __future__ import annotations
 
@@ -18,9 +18,7 @@ if TYPE_CHECKING:
     from jointid.servo.comparison_result import ServoComparison
 
 _DRAWN = 20  # rows; the table has all
-_PARTS = (
-    "A grey point is one part that was held out, the stroke is the mean with its standard error."
-)
+_PARTS = "A grey point is one held-out part; the stroke is the mean with its standard error."
 
 
 def held_out(comparison: Comparison) -> Picture:
@@ -39,7 +37,7 @@ def held_out_robot(comparison: RobotComparison) -> Picture:
         "Relative residual of torque that the candidate was not fitted to, mean over joints: smaller is better. "
         f"{_PARTS}"
     )
-    return _picture(rows, caption, "candidate", "mean of the chosen one")
+    return _picture(rows, caption, "candidate", "mean of the chosen model")
 
 
 def held_out_servo(comparison: ServoComparison) -> Picture:
@@ -61,7 +59,7 @@ def held_out_servo(comparison: ServoComparison) -> Picture:
     )
     caption = (
         "Error of the closed loop, simulated with values that were fitted to other runs: smaller is better. "
-        "A grey point is one run, the stroke is the median."
+        "A grey point is one run; the stroke is the median."
     )
     return Picture(caption=caption + _first_of(rows, "model"), panels=(panel,))
 

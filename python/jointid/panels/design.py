@@ -1,4 +1,4 @@
-"""A designed motion: where it goes within its limits, and where it samples friction."""
+"""A designed motion: its course within its limits, and the time spent at each velocity."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def motion(design: DesignedMotion) -> Picture:
         ),
     )
     return Picture(
-        caption="Position and velocity of the reference, and their limits. Shaded: what the joints reach.",
+        caption="Position and velocity of the reference, with their limits. Shaded: range that joints reach.",
         panels=panels,
     )
 
@@ -127,8 +127,8 @@ def sampled_velocities(design: DesignedMotion) -> Picture:
         right=tuple(curves * moves),
         right_up=f"friction [{torque_unit(kind)}]",
     )
-    friction = ", and the friction of the nominal joint there" if panel.right else ""
+    friction = ", and the nominal joint's friction" if panel.right else ""
     return Picture(
-        caption=f"Where friction is sampled: how long the joint moves at each velocity{friction}.",
+        caption=f"Time spent at each velocity{friction}.",
         panels=(panel,),
     )

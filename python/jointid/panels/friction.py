@@ -1,4 +1,4 @@
-"""The friction map of an estimate: what the windows show, and what was identified."""
+"""The friction map of an estimate: measured windows and identified curve."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def friction_map(estimate: Estimate, windows: WindowTable | None = None) -> Pict
         ),
     )
     return Picture(
-        caption="Friction map: a grey point is the friction that the recording shows over one window, the line is the "
-        "identified model with its 95 % band.",
+        caption="Friction map. Grey points: measured friction of each window. Line: identified model with its 95 % "
+        "band.",
         panels=(panel,),
     )

@@ -1,4 +1,4 @@
-"""What a picture is made of: lines, points, bands, bars, levels, shades and ranges, on panels."""
+"""The elements of a picture: lines, points, bands, bars, levels, shades and ranges, on panels."""
 
 from __future__ import annotations
 

@@ -56,8 +56,8 @@ def signals(recording: Recording, begins: Array, ends: Array) -> Picture:
         panels.append(signal_panel({"": recording}, name, unused, height=110))
     derived = " The velocity is derived from the position." if recording.velocity_derived else ""
     return Picture(
-        caption="The signals as recorded. Shaded: what the estimate does not use: standstill, slow motion, gaps, and "
-        f"what the call left out.{derived}",
+        caption="Recorded signals. Shaded parts are not used: standstill, slow motion, gaps, and parts that the call "
+        f"leaves out.{derived}",
         panels=tuple(panels),
     )
 
@@ -99,7 +99,7 @@ def signal_panel(
 
 
 def residual_over_position(estimate: Estimate, recordings: Sequence[Recording]) -> Picture:
-    """What is left over the position: ripple of the gear, gravity and a varying inertia show there."""
+    """Residual over position: it shows gear ripple, gravity and a varying inertia that the model lacks."""
     windows = estimate.windows
     middle = 0.5 * (windows.start + windows.stop)
     position = np.empty_like(middle)
@@ -121,7 +121,7 @@ def residual_over_position(estimate: Estimate, recordings: Sequence[Recording]) 
         ),
     )
     return Picture(
-        caption="The residual over the position: where it follows a curve, gravity, the gear's ripple or an inertia "
-        "that varies is missing in the model.",
+        caption="Residual over position. If it follows a curve, the model lacks gravity, gear ripple or a varying "
+        "inertia.",
         panels=(panel,),
     )

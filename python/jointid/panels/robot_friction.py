@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def friction_of_joint(estimate: RobotEstimate, name: str) -> Picture:
-    """Friction over velocity of a robot's joint: what the windows show, and what was identified."""
+    """Friction over velocity of a robot's joint: measured windows and identified curve."""
     joint = estimate.joints[name]
     windows = joint.windows
     marks: list[Mark] = [
@@ -33,8 +33,8 @@ def friction_of_joint(estimate: RobotEstimate, name: str) -> Picture:
         marks=tuple(marks),
     )
     return Picture(
-        caption="A grey point is the torque over one window less all but this joint's speed-dependent friction. The "
-        "line is what was identified, with the other joints at rest.",
+        caption="Grey points: torque of each window minus all terms except this joint's speed-dependent friction. "
+        "Line: identified friction, with the other joints at rest.",
         panels=(panel,),
         title=name,
     )
@@ -69,7 +69,7 @@ def windows_of_joint(estimate: RobotEstimate, name: str) -> Picture:
         marks=(Line(look="second", across=time, up=residual),),
     )
     return Picture(
-        caption="Above: measured and fitted mean torque over each window. Below: the residual.",
+        caption="Above: measured and fitted mean torque of each window. Below: residual.",
         panels=(means, below),
         title=name,
     )

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def rolled_out(run: RunRollout) -> Picture:
-    """Position of a run over time, as logged and as simulated, with the mean error in the legend."""
+    """Logged and simulated position of a run over time, with the mean error in the legend."""
     time = run.time - run.time[0]
     label = f"simulated, {run.shown(run.error):.2f} {run.unit} mean error"
     if run.bistable:
@@ -26,5 +26,5 @@ def rolled_out(run: RunRollout) -> Picture:
         ),
     )
     return Picture(
-        caption="Position as logged (grey) and as simulated.", panels=(panel,), title=run.name
+        caption="Logged position (grey) and simulated position.", panels=(panel,), title=run.name
     )

@@ -1,4 +1,4 @@
-"""The genetic search of an estimate, generation by generation."""
+"""The genetic search of an estimate over its generations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How runs followed their reference."""
+"""How closely runs followed their reference."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _REFERENCE = "true parameters"  # the run with the emulated joint's own values
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrackingError:
-    """How one run followed.
+    """How closely one run followed its reference.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class TrackingError:
     time : ndarray, shape (n,)
         From the start of the run [s].
     error : ndarray, shape (n,)
-        Position less reference [rad] or [m].
+        Position minus reference [rad] or [m].
     size : float
         Its root mean square, in the same unit.
     dashed : bool
@@ -44,7 +44,7 @@ class TrackingError:
 
 
 def tracking(result: Commissioning) -> Picture:
-    """First and last run on the same axis; reference runs and those between on their own."""
+    """First and last run on one axis; the runs between and reference runs on a second axis."""
     slides = result.runs[0].recording.kind == "prismatic"
     last = () if result.true_run is None else (result.true_run,)
     ends = result.runs[:1] if len(result.runs) == 1 else (result.runs[0], result.runs[-1])
@@ -53,7 +53,7 @@ def tracking(result: Commissioning) -> Picture:
     caption = "Position minus reference over time, by the encoder"
     if others:
         panels.append(tracking_panel(_of_runs(others), slides, LOOKS[2:], height=110))
-        caption += "; below: the other runs, on a scale of their own"
+        caption += "; below: the other runs, on their own scale"
     return Picture(caption=f"{caption}.", panels=tuple(panels))
 
 

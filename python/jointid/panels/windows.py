@@ -1,4 +1,4 @@
-"""Measured and fitted windows of an estimate over time, and what is left over time and velocity."""
+"""Measured and fitted windows of an estimate over time, and residuals over time and velocity."""
 
 from __future__ import annotations
 
@@ -46,14 +46,13 @@ def window_means(estimate: Estimate) -> Picture:
         ),
     )
     return Picture(
-        caption="Above: measured and fitted mean over each window. Below: the residual. Windows in which the joint "
-        "stands still are left out.",
+        caption="Above: measured and fitted mean of each window. Below: residual. Windows at standstill are left out.",
         panels=(means, residuals),
     )
 
 
 def residuals_over_velocity(estimate: Estimate) -> Picture:
-    """What is left over velocity: a form of friction that the model lacks shows there."""
+    """Residual over velocity: it shows a form of friction that the model lacks."""
     windows = estimate.windows
     whole = whole_windows(windows)
     panel = Panel(
@@ -70,6 +69,6 @@ def residuals_over_velocity(estimate: Estimate) -> Picture:
         ),
     )
     return Picture(
-        caption="The residual over velocity: where it follows a curve, friction has another form.",
+        caption="Residual over velocity. If it follows a curve, friction has another form.",
         panels=(panel,),
     )

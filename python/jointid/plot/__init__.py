@@ -1,4 +1,4 @@
-"""Plots of recordings, estimates and studies: one style, units on the axes, Matplotlib axes in and out."""
+"""Plots of recordings, estimates and studies: one style, units on the axes; all take and return Matplotlib axes."""
 
 from jointid.plot.appearance import line_style, style
 from jointid.plot.design import designed_motion

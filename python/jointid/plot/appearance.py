@@ -1,4 +1,4 @@
-"""One style for all plots: curves differ in colour, dash and marker, also in print and for the colour-blind."""
+"""One style for all plots: curves differ in colour, dash and marker, for print and for colour-blind readers."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _STYLE: dict[str, Any] = {
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Apply the Matplotlib settings of all our plots within a `with` block.
+    """Apply the Matplotlib settings of jointid's plots within a `with` block.
 
-    A setting that was changed from Matplotlib's own, by a style sheet or in `rcParams`, stays as it is.
+    A setting that the user has changed, by a style sheet or in `rcParams`, stays.
 
     Examples
     --------
@@ -67,25 +67,25 @@ def _chosen(setting: str) -> Any:
 
 
 def look(style: Mapping[str, Any], **ours: Any) -> dict[str, Any]:
-    """Return the keywords of a curve: the user's, and ours where he gives none.
+    """Return the keywords of a curve: the user's, and jointid's for the others.
 
     Short names count, too: ``lw`` is ``linewidth``.
 
     Raises
     ------
     InputError
-        ``axes`` is among them: it is the name of what is called `ax`.
+        ``axes`` is among them; the argument's name is `ax`.
     """
     from matplotlib.cbook import normalize_kwargs
     from matplotlib.lines import Line2D
 
     if "axes" in style:
-        raise InputError("axes to draw into are given as `ax`", argument="axes")
+        raise InputError("give the axes to draw into as `ax`", argument="axes")
     return {**ours, **normalize_kwargs(dict(style), Line2D)}
 
 
 def axes_or_new(ax: Axes | None) -> Axes:
-    """Return these axes, or new ones in our style for None.
+    """Return these axes, or for None new ones in jointid's style.
 
     Raises
     ------
@@ -97,7 +97,9 @@ def axes_or_new(ax: Axes | None) -> Axes:
     if ax is not None:
         if not isinstance(ax, Axes):
             raise InputError(
-                "Matplotlib axes are expected, as of pyplot.subplots()", argument="ax", value=ax
+                "Matplotlib axes are expected, for example from pyplot.subplots()",
+                argument="ax",
+                value=ax,
             )
         return ax
     from matplotlib import pyplot
@@ -107,14 +109,14 @@ def axes_or_new(ax: Axes | None) -> Axes:
 
 
 def line_style(number: int, count: int = 0) -> dict[str, Any]:
-    """Return the keywords of `Axes.plot` for a curve: colour and dash, and with `count` spaced markers.
+    """Return the keywords of `Axes.plot` for a curve: colour, dash and, with `count`, spaced markers.
 
     Parameters
     ----------
     number : int
-        Of the curve, from 0; styles repeat after six.
+        Number of the curve, from 0; styles repeat after six.
     count : int
-        Samples of the curve; markers are set at about twelve of them. Default 0: no markers.
+        Samples of the curve; about twelve of them get a marker. Default 0: no markers.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Plot of a designed motion: where it goes within its limits, and where friction is sampled."""
+"""Plot of a designed motion: its course within its limits, and the time spent at each velocity."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 def designed_motion(
     design: DesignedMotion, ax: Sequence[Axes] | None = None, **style: Any
 ) -> tuple[Axes, Axes, Axes]:
-    """Draw a design: position and velocity over time, and how long it moves at each velocity.
+    """Draw a design: position and velocity over time, and the time spent at each velocity.
 
     Parameters
     ----------
     design : Design
-        Of `design`, or read by `load_design`.
+        From `design` or `load_design`.
     ax : sequence of three Axes, optional
         Drawn into. Default: new axes.
     **style
@@ -33,14 +33,14 @@ def designed_motion(
     Returns
     -------
     tuple of Axes
-        Position [rad] or [m] over time [s] and velocity [rad/s] or [m/s] over time, each with its limits
-        and with what the joints reach; share of the time [%] over velocity, with the nominal joint's
-        friction [N·m] or [N] at the right.
+        Position [rad] or [m] and velocity [rad/s] or [m/s] over time [s], each with its limits and the
+        range that joints reach; share of the time [%] over velocity, with the nominal joint's friction
+        [N·m] or [N] on the right axis.
 
     Raises
     ------
     InputError
-        Another number of axes than three.
+        The number of axes is not three.
 
     Examples
     --------

@@ -25,7 +25,7 @@ def friction_map(
     Parameters
     ----------
     recording : Recording or None
-        The recording that the points come from; None: the windows that the estimate was fitted to.
+        Recording of the points; None: the windows that the estimate was fitted to.
     estimate : Estimate
     ax : Axes, optional
         Drawn into. Default: new axes.
@@ -40,7 +40,7 @@ def friction_map(
     Raises
     ------
     InputError
-        An argument of another kind, or a recording that the estimate cannot predict.
+        An argument of the wrong type, or a recording that the estimate cannot predict.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def convergence(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axe
     Parameters
     ----------
     estimate : Estimate
-        Of a genetic search.
+        Result of a genetic search.
     ax : Axes, optional
         Drawn into. Default: new axes.
     **style
@@ -126,7 +126,7 @@ def convergence(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axe
     Raises
     ------
     InputError
-        The estimate was made without a genetic search, so there is no convergence to draw.
+        The estimate was made without a genetic search.
     """
     require_kind("estimate", estimate, Estimate)
     if estimate.convergence is None:

@@ -37,7 +37,7 @@ def friction_curves(
     Parameters
     ----------
     joints : mapping of str to Joint or Estimate
-        Label → a joint whose friction parameters have values, or an estimate.
+        By label: joints with values for their friction parameters, or estimates.
     ax : Axes, optional
         Drawn into. Default: new axes.
     peak : float
@@ -91,16 +91,16 @@ def sensitivity(
     reading: float = 5.0,
     **style: Any,
 ) -> Axes:
-    """Draw the torque at constant speed and sensor reading, and how an error of a parameter changes it.
+    """Draw the torque at constant speed and sensor reading, and its change with a parameter's error.
 
-    This is the drive's torque by (4-20) without acceleration: friction + gain · reading + offset.
-    Where the three curves differ, a recording contains information on the parameter. Forward motion
-    is shown; backward, friction changes its sign.
+    The torque is that of the drive in (4-20) without acceleration: friction + gain · reading + offset.
+    A recording contains information about the parameter at speeds where the three curves differ. The plot
+    shows forward motion; backward, friction changes its sign.
 
     Parameters
     ----------
     joint : Joint
-        With values for its parameters.
+        A joint with values for its parameters.
     parameter : str
         A friction parameter, `sensor_gain` or `sensor_offset`.
     ax : Axes, optional
@@ -169,7 +169,7 @@ def torque_over_velocity(
     Parameters
     ----------
     recording : Recording
-        With a torque.
+        A recording with torque.
     ax : Axes, optional
         Drawn into. Default: new axes.
     sensed_by : Joint or Estimate, optional

@@ -36,8 +36,8 @@ def tracking_error(
     Parameters
     ----------
     runs : Recording or mapping of str to Recording
-        One run, or several by name, e.g. ``{"before": a, "after": b}``. For a simulated run the
-        true position is used, not the encoder's.
+        One run, or several by name, e.g. ``{"before": a, "after": b}``. A simulated run is drawn with
+        its true position, not the encoder's.
     ax : Axes, optional
         Drawn into. Default: new axes.
     settling : float, optional
@@ -91,7 +91,7 @@ def signal(runs: Runs, name: str, ax: Axes | None = None, **style: Any) -> Axes:
     Raises
     ------
     InputError
-        No run, an unknown signal, or one that a run lacks.
+        No run, an unknown signal, or a signal that a run lacks.
     """
     if name not in _SIGNALS:
         raise InputError(f"{alternatives(_SIGNALS)} is expected", argument="name", value=name)
@@ -125,7 +125,7 @@ def trajectory(
     ax : Axes, optional
         Drawn into; several motions in the same axes differ in colour and dash. Default: new axes.
     label : str
-        For the legend. Default: no legend.
+        Entry of the legend. Default: no legend.
     **style
         Keywords of Matplotlib's `Axes.plot` for the curve, e.g. ``color="black"``.
 
@@ -180,7 +180,7 @@ def _named(runs: Runs) -> Mapping[str, Recording]:
         require_kind("runs", run, Recording)
     if not named:
         raise InputError(
-            "there is no recording to draw; one is expected, or several by name",
+            "there is no recording to draw; give one, or several by name",
             argument="runs",
             value=runs,
         )

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def rolled_out(
     result: Rollout, ax: Axes | None = None, *, run: str | int = 0, **style: Any
 ) -> Axes:
-    """Draw a run's position as logged and as its closed loop is simulated, with the mean error in the legend.
+    """Draw the logged and the simulated position of a run, with the mean error in the legend.
 
     Parameters
     ----------

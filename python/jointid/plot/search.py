@@ -26,9 +26,9 @@ def adaptation(
     Parameters
     ----------
     options : GaOptions
-        If they are not adaptive, both lines are constant.
+        With constant probabilities both lines are constant.
     generations : sequence of Generation
-        Of a search with these options; each adds one point to both lines. Default: none.
+        Generations of a search with these options; each adds one point to both lines. Default: none.
     ax : Axes, optional
         Drawn into. Default: new axes.
     **style

@@ -33,9 +33,9 @@ def sweep(
     ax: Axes | None = None,
     **style: Any,
 ) -> Axes:
-    """Draw a quantity over one swept setting as points and a line, over two as a heat map.
+    """Draw a quantity over one swept setting as points and a line, or over two settings as a heat map.
 
-    A report has no heat map: it draws a line for each value of the second setting, which a phone shows, too.
+    A report instead draws a line for each value of the second setting.
 
     Parameters
     ----------

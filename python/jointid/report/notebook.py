@@ -1,4 +1,4 @@
-"""What a notebook shows of a result: the first parts of its page, in a style of its own."""
+"""A result in a notebook: the first parts of its page, with their own style."""
 
 from __future__ import annotations
 

@@ -19,11 +19,11 @@ def page_of(result: Result, extras: Extras) -> Page:
     Raises
     ------
     InputError
-        It is no result; recordings that the result was not made from.
+        Not a result, or recordings that the result was not made from.
     """
     if kind_of(result) not in KINDS:
         raise InputError(
-            "this has no report; reports are made of what identify, compare, design, simulate and sweep return",
+            "this has no report; only results of identify, compare, design, simulate and sweep have one",
             argument="result",
             value=type(result).__name__,
         )

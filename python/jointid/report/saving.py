@@ -28,7 +28,7 @@ def report_page(
     rollout: Rollout | None = None,
     ending: str = ".html",
 ) -> str:
-    """Return the report of a result as one page that needs no other file.
+    """Return the report of a result as one self-contained page.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def report_page(
     Raises
     ------
     InputError
-        No result; recordings that the result was not made from.
+        Not a result, or recordings that the result was not made from.
     """
     extras = Extras(action, () if recordings is None else tuple(listed(recordings)), rollout)
     renderer = import_module(f"jointid.report.renderers.{RENDERERS[ending]}")
@@ -59,24 +59,24 @@ def save_report(
     recordings: Recording | Sequence[Recording] | None = None,
     rollout: Rollout | None = None,
 ) -> Path:
-    """Write the report of a result as one page that needs no other file, whole or not at all.
+    """Write the report of a result as one self-contained page, completely or not at all.
 
-    The page begins with the verdict or the answer; pictures are inside; a phone shows it, and a dark screen.
+    The page begins with the verdict or the answer. It contains its pictures, and suits phones and dark screens.
 
     Parameters
     ----------
     result : Result
-        Of any kind: what `identify`, `compare`, `design`, `simulate`, `sweep` and `commission` return.
+        Result of `identify`, `compare`, `design`, `simulate`, `sweep` or `commission`.
     path : path
-        Ends in .html; or in .md or .txt, whose pictures are their captions. Replaced when it exists.
+        Ends in .html, .md or .txt; the last two have captions instead of pictures. An existing file is replaced.
     action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
+        Returns the words of a finding's advice. Default: as at a Python prompt.
     recordings : Recording or sequence of Recording, optional
-        That an `Estimate` was made from, in this order: the page then shows their signals, with what was left out
-        shaded, and the residual over the position. Default: a page without these.
+        The recordings of an `Estimate`, in its order. The page then shows their signals, with unused parts
+        shaded, and the residual over position. Default: a page without these pictures.
     rollout : Rollout, optional
-        Of a servo's or a robot's recordings: the page then shows each run or joint as logged and as simulated.
-        Default: a page without these.
+        The rollout of a servo's or a robot's recordings. The page then shows the logged and the simulated motion
+        of each run or joint. Default: a page without these pictures.
 
     Returns
     -------
@@ -85,8 +85,7 @@ def save_report(
     Raises
     ------
     InputError
-        No result; the estimate was made from other recordings; the path does not end as above, or its folder does not
-        exist.
+        Not a result, an estimate of other recordings, another file ending, or a folder that does not exist.
     OSError
         The file cannot be written; an existing one is untouched.
 

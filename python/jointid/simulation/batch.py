@@ -33,13 +33,13 @@ class SimulatedBatch:
     Parameters
     ----------
     error : ndarray, shape (n,)
-        Root mean square of the true tracking error after settling [rad].
+        Root mean square of the true tracking error after the settling time [rad].
     peak_error : ndarray, shape (n,)
         Its largest magnitude [rad].
     saturations : ndarray, shape (n,)
-        Control periods in which the torque limit cut the command.
+        Number of control periods in which the torque limit cut the command.
     recordings : tuple of SimulatedRecording
-        Empty unless asked for.
+        Empty without `recordings=True`.
 
     Examples
     --------
@@ -76,14 +76,14 @@ def simulate_batch(
 ) -> SimulatedBatch:
     """Simulate many joints, controllers or seeds along one trajectory, side by side.
 
-    Each is the same, bit for bit, as `simulate` alone.
+    Each has the same bits as `simulate` alone.
 
     Parameters
     ----------
     joints, controllers, seeds
-        One for all, or a sequence; sequences have one length.
+        One for all, or a sequence; all sequences have the same length.
     settling : float, optional
-        Time at the start that the tracking error leaves out [s]. Default: a sixth of the duration.
+        Time at the start that the tracking error excludes [s]. Default: a sixth of the duration.
     recordings : bool
         Whether to keep the signals, too. Default False.
     threads : int

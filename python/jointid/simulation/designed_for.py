@@ -1,4 +1,4 @@
-"""What a motion was designed for, and in what another bench differs from it."""
+"""What a motion was designed for, and how another bench differs from it."""
 
 from __future__ import annotations
 

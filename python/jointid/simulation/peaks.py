@@ -1,4 +1,4 @@
-"""What joints reach in a motion."""
+"""The largest values that joints reach in a motion."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from jointid.joint.checks import finite_number, not_negative, set_numbers
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Peaks:
-    """The farthest that any of several simulated joints goes in one motion.
+    """The largest values that any of several simulated joints reaches in one motion.
 
-    Of a prismatic joint in m, m/s, m/s² and N.
+    For a prismatic joint in m, m/s, m/s² and N.
 
     Parameters
     ----------
@@ -23,11 +23,11 @@ class Peaks:
     velocity : float
         Largest magnitude [rad/s].
     acceleration : float
-        Largest magnitude, of the reference [rad/s²].
+        Largest magnitude of the reference [rad/s²].
     torque : float
-        Largest magnitude, of the drive at the output [N·m].
+        Largest magnitude of the drive at the output [N·m].
     sensor_torque : float, optional
-        Largest magnitude at the joint's torque sensor [N·m]. Default: there is no sensor.
+        Largest magnitude at the joint's torque sensor [N·m]. Default: no sensor.
 
     Raises
     ------

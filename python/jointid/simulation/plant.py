@@ -16,9 +16,9 @@ from jointid.simulation.terms import require_compensated, require_simulated, req
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bristle:
-    """Friction behind a spring: Dahl's model (2-4), or with damping and static friction LuGre (2-6).
+    """Friction behind a spring: Dahl's model (2-4), or LuGre's (2-6) with damping and static friction.
 
-    The friction that is reached when the joint slides is that of the joint's own model.
+    While the joint slides, friction follows the joint's own model.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     Parameters
     ----------
     joint : Joint
-        With values for its parameters, e.g. an estimate's.
+        A joint with values for its parameters, e.g. an estimate's.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A closed loop with all its settings except the seed, which a study simulates many times."""
+"""A closed loop with all settings except the seed, for many simulations."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from jointid.simulation.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class Scenario:
-    """Joint, controller, trajectory and sensors: all of a simulation but its seed.
+    """Joint, controller, trajectory and sensors: a simulation without its seed.
 
     Parameters
     ----------
     joint : Joint
-        The simulated one, with its true parameters.
+        The simulated joint with its true parameters.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
     trajectory : Trajectory
     sensors : Sensors
@@ -36,7 +36,7 @@ class Scenario:
     Raises
     ------
     InputError
-        Joint, controller, trajectory or sensors are something else.
+        Joint, controller, trajectory or sensors of the wrong type.
 
     Examples
     --------
@@ -44,7 +44,7 @@ class Scenario:
     >>> len(scenario.simulate(0).recordings)
     1
 
-    Other controllers, each with settings of its own:
+    Other controllers, each with its own settings:
 
     >>> laws = [jid.Pid(stiffness=8000.0, integral=2000.0, damping=400.0), jid.OpenLoop(gain=1.0),
     ...     jid.CompensatedPid(stiffness=8000.0, damping=400.0), jid.LugreObserver(bandwidth=60.0),
@@ -93,14 +93,14 @@ class Scenario:
         recordings: bool = True,
         threads: int = 0,
     ) -> SimulatedBatch:
-        """Simulate, once for each seed or controller; each is the same, bit for bit, as `simulate`.
+        """Simulate once for each seed or controller, with the same bits as `simulate`.
 
         Parameters
         ----------
         seeds : int or sequence of int
-            Of the sensors' noise. Default 0.
+            Seeds of the sensors' noise. Default 0.
         controllers : optional
-            Instead of the scenario's own; as many as seeds, or one.
+            Controllers instead of the scenario's own: one, or as many as seeds.
         recordings : bool
             Whether to keep the signals. Default True.
         threads : int
@@ -130,7 +130,7 @@ class Scenario:
         )
 
     def options(self) -> list[str]:
-        """Names that `changed` knows; ``truth.NAME`` is a true parameter of the joint."""
+        """Names that `changed` takes; ``truth.NAME`` is a true parameter of the joint."""
         own = [item.name for item in fields(self)]
         for part in ("sensors", "controller"):
             own += [f"{part}.{name}" for name in getattr(self, part).asdict()]
@@ -139,12 +139,12 @@ class Scenario:
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """Return the scenario with other fields, ``sensors.FIELD``, ``controller.FIELD`` or ``truth.PARAMETER``.
 
-        Whole fields are changed first, then the fields inside them.
+        Whole fields change first, then the fields inside them.
 
         Raises
         ------
         InputError
-            A name that is not known, or a value that cannot be used.
+            An unknown name, or a value that cannot be used.
         """
         known = self.options()
         for name in changes:

@@ -23,9 +23,9 @@ class Truth(Mapping[str, Any]):
         By name [SI].
     signals : mapping of str to ndarray, shape (n,)
         `position` [rad], `velocity` [rad/s], `acceleration` [rad/s²], `friction`, `link_torque`
-        and `motor_torque` [N·m], at the recording's samples. `friction` is what the drive loses to
-        friction, `link_torque` what the sensor is in. `control_velocity` [rad/s] is what the
-        controller was given.
+        and `motor_torque` [N·m], at the recording's samples. `friction` is the friction torque of the
+        drive, `link_torque` the torque at the sensor. `control_velocity` [rad/s] is the velocity that
+        the controller used.
 
     Examples
     --------
@@ -58,7 +58,7 @@ class Truth(Mapping[str, Any]):
 class SimulatedRecording(Recording):
     """A recording with the true signals of its simulation in `truth.signals`.
 
-    A file keeps the true parameters but not the true signals; so does `resample`.
+    A file and `resample` keep the true parameters, but not the true signals.
 
     Examples
     --------
@@ -84,7 +84,7 @@ class SimulatedRecording(Recording):
         vars(self)["truth"] = truth
 
     def tracking_error(self, *, true: bool = True) -> FloatArray:
-        """Return position less reference [rad], of the true position or of the measured one.
+        """Return position minus reference [rad], for the true or the measured position.
 
         Raises
         ------

@@ -29,55 +29,54 @@ def simulate(
 ) -> SimulatedRecording:
     """Simulate a joint that a controller moves along a trajectory.
 
-    Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command
-    is held over each control period. Same arguments, same bits.
+    Below the breakaway torque the joint does not move at all. The command is held over each control
+    period. The same arguments give the same bits.
 
     Parameters
     ----------
     joint : Joint
-        With a value for each parameter of its model: see `Joint.with_parameters`. Its link, if it
-        has a sensor and ``gravity="none"``, hangs behind the sensor; a link without inertia is a
-        point mass.
+        A joint with a value for each parameter of its model: see `Joint.with_parameters`. With a sensor
+        and ``gravity="none"`` its link is behind the sensor; a link without inertia is a point mass.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
     trajectory : Trajectory
-        For `OpenLoop` it is the torque.
+        The desired motion; for `OpenLoop` the torque.
     duration : float, optional
         [s]. Default: the trajectory's.
     control_period : float
-        Between commands [s]. Default 0.001.
+        Time between commands [s]. Default 0.001.
     sample_period : float, optional
-        Between recorded samples [s], a whole number of control periods. Default: one. The recorded
-        torque is then the mean of the commands until the next sample.
+        Time between recorded samples [s], a whole number of control periods. Default: one. The recorded
+        torque is the mean of the commands until the next sample.
     integration_step : float, optional
-        [s]; a whole number of them is a control period. Default: half of it.
+        [s]; the control period is a whole number of steps. Default: half the control period.
     sensors : Sensors, optional
         Default: exact signals.
     payload : Link or float
-        A payload on the joint in addition to its own link, behind the sensor; a number is a constant
-        torque [N·m] against positive motion. Default 0.
+        A payload in addition to the joint's link, behind the sensor; a number is a constant torque
+        [N·m] against positive motion. Default 0.
     bristle : Bristle, optional
         Makes friction dynamic (Dahl, LuGre). Default: static.
     position, velocity : float, optional
-        At the start [rad], [rad/s]. Default: the trajectory's position, at rest.
+        Start values [rad], [rad/s]. Default: the trajectory's position, at rest.
     seed : int
-        Of the sensors' noise. Default 0.
+        Seed of the sensors' noise. Default 0.
     name : str
-        Of the recording. Default ``""``.
+        Name of the recording. Default ``""``.
 
     Returns
     -------
     SimulatedRecording
-        Signals as the sensors measured them, the held torque, the reference; `truth` has the true
-        parameters, `truth.signals` the true signals. Unless the sensors show an exact velocity,
-        it is derived from the position, and what the controller had is in
-        ``truth.signals["control_velocity"]``. ``metadata["saturations"]`` counts the control
-        periods in which the torque limit cut the command.
+        The measured signals, the held torque and the reference; `truth` has the true parameters,
+        `truth.signals` the true signals. Without a sensor of exact velocity, the velocity is derived
+        from the position; ``truth.signals["control_velocity"]`` is the velocity that the controller
+        used. ``metadata["saturations"]`` counts the control periods in which the torque limit cut the
+        command.
 
     Raises
     ------
     InputError
-        An argument that cannot be used, a term of the model that a simulation does not have, or a loop
-        that is not stable.
+        An argument that cannot be used, a term of the model that a simulation does not have, or an
+        unstable loop.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
 

@@ -31,7 +31,7 @@ _MOST_SINES = 5e7  # samples of all sines, to find the peak of a multisine
 
 @dataclass(frozen=True, repr=False)
 class Trajectory:
-    """A desired motion over time; made by the class methods.
+    """A desired motion over time; its class methods make one.
 
     For open-loop control the values are torques [N·m] instead of angles.
 
@@ -57,7 +57,7 @@ class Trajectory:
         amplitude : float
             [rad]. Default 20°.
         cycle : float
-            Time of a cycle [s]. Default 6.
+            Duration of one cycle [s]. Default 6.
         duration : float
             [s]. Default 12.
         """
@@ -94,7 +94,7 @@ class Trajectory:
         offset: float = 0.0,
         duration: float,
     ) -> Self:
-        """Return sines of equal size, evenly spaced in frequency, with Schroeder's phases.
+        """Return sines of equal amplitude and evenly spaced frequencies, with Schroeder's phases.
 
         Parameters
         ----------
@@ -103,9 +103,9 @@ class Trajectory:
         lowest, highest : float
             Frequencies of the first and the last sine [Hz].
         count : int
-            How many sines. Default 8.
+            Number of sines. Default 8.
         offset : float
-            Where it starts [rad]. Default 0.
+            Start position [rad]. Default 0.
         duration : float
             [s]
         """
@@ -157,7 +157,7 @@ class Trajectory:
         Parameters
         ----------
         amplitude : float or sequence of float
-            Of each sine [rad]; a single number here or below holds for all of them.
+            Amplitude of each sine [rad]; a single number, here or below, is for all of them.
         frequency : float or sequence of float
             [rad/s]
         phase : float or sequence of float
@@ -165,8 +165,8 @@ class Trajectory:
         offset : float
             [rad]. Default 0.
         fade : float
-            Time over which the sines grow at the start and shrink at the end, smooth to the second
-            derivative: the motion starts and ends at rest at `offset` [s]. Default 0: they do not.
+            Time over which the sines grow at the start and fade at the end [s], smooth to the second
+            derivative; the motion then starts and ends at rest at `offset`. Default 0: no fading.
         duration : float
             [s]
 
@@ -218,7 +218,7 @@ class Trajectory:
         distance : float
             [rad]
         velocity : float
-            At most [rad/s].
+            Largest velocity [rad/s].
         acceleration : float
             [rad/s²]
         duration : float
@@ -234,7 +234,7 @@ class Trajectory:
 
     @classmethod
     def from_samples(cls, time: npt.ArrayLike, position: npt.ArrayLike) -> Self:
-        """Return the natural cubic spline through samples; its clock starts at the first.
+        """Return the natural cubic spline through samples; its time starts at the first sample.
 
         Parameters
         ----------
@@ -251,13 +251,13 @@ class Trajectory:
 
     @classmethod
     def from_recording(cls, recording: Recording) -> Self:
-        """Return the motion of a recording: its reference if it has one, else its position."""
+        """Return the motion of a recording: its reference if it has one, otherwise its position."""
         followed = recording.position if recording.reference is None else recording.reference
         return cls.from_samples(recording.time, followed)
 
     @property
     def duration(self) -> float:
-        """How long it lasts [s]."""
+        """The duration [s]."""
         return self.core.duration
 
     @functools.cached_property
@@ -288,7 +288,7 @@ class Trajectory:
         Raises
         ------
         InputError
-            Something that is no number or list of numbers.
+            Not a number or an array of numbers.
 
         Examples
         --------

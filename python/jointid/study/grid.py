@@ -55,7 +55,7 @@ def _check_name(name: object, known: Sequence[str], scenario: Scenario | None) -
         return
     if part in ("sensors", "controller", "truth", "trajectory", "joint") and scenario is None:
         raise InputError(
-            "it is a setting of a simulation, and recordings are given",
+            "it is a setting of a simulation, but recordings are given",
             argument=name,
             place="grid",
             remedy=Action(

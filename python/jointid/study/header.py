@@ -67,7 +67,7 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
 
 
 def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
-    """Return the true parameters: as stated, else those that are the same for all recordings."""
+    """Return the true parameters: the stated ones, otherwise those that are the same for all recordings."""
     if given is not None:
         if not isinstance(given, Mapping):
             raise InputError(

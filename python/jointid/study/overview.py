@@ -1,4 +1,4 @@
-"""Return the summary that a report page shows."""
+"""Summary of a study for a report page: how often the truth was found, or which parameter differs most."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _answer(summary: Summary) -> list[str]:
     """How often the truth was found, where most and least often; without a truth, what moves most."""
     cells = [cell for cell in summary.cells if cell.trials]
     if not cells:
-        return ["No trial is done."]
+        return ["No trial has finished."]
     known = [(cell.success, cell) for cell in cells if cell.success is not None]
     lines = []
     if known:
@@ -69,7 +69,7 @@ def _answer(summary: Summary) -> list[str]:
     refused = sum(cell.refused for cell in cells)
     if refused:
         first = next(cell for cell in cells if cell.refused)
-        lines.append(f"{_trials(refused)} refused, the first one because {first.reason}.")
+        lines.append(f"{_trials(refused)} refused, the first because {first.reason}.")
     return lines
 
 

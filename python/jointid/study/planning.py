@@ -64,7 +64,7 @@ def work_of(
     if tracking:
         if scenario is None:
             raise InputError(
-                "the tracking error after identification needs a simulation, and recordings are given",
+                "the tracking error after identification needs a simulation, but recordings are given",
                 argument="tracking",
                 value=True,
                 remedy=Action(

@@ -49,15 +49,15 @@ class Row:
     cell, trial : int
         Index of the combination of settings, and of the repetition.
     seed : int
-        Of the search, and of the noise of a simulated recording: `identify` with it gives this row.
+        Seed of the search and of a simulation's noise; `identify` with it gives this row.
     status : str
         "converged", "stopped", or "refused" if these settings cannot be used here.
     message : str
         How the search ended, or why the settings are refused.
     penalty : float
-        At the result; not a number if refused.
+        Penalty of the result; NaN if refused.
     evaluations, generations : int
-        Of the search.
+        Number of each in the search.
     values, stderr : dict of str to float
         Parameters, and their standard errors if requested [SI].
     tracking : dict of str to float

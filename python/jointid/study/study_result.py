@@ -44,13 +44,13 @@ class Study(KeptResult):
     truth : dict of str to float
         Known true parameters [SI].
     truths : tuple of dict
-        The same for each cell, if cells differ; else empty.
+        The same for each cell, if cells differ; otherwise empty.
     rows : tuple of Row
         In the order of cells, then trials.
     settings : dict
         Recordings or scenario, joint, options and version, as a record.
     seconds : float
-        Wall time; of a resumed study, that of the last part.
+        Wall time; for a resumed study, of the last part.
 
     Examples
     --------
@@ -78,7 +78,7 @@ class Study(KeptResult):
 
     @property
     def title(self) -> str:
-        """What was swept, and how many trials are done, in a line."""
+        """One line with the swept settings and the number of finished trials."""
         done, cells = len(self.rows), len(self.cells)
         whole = "" if self.complete else f" of {cells * self.trials}"
         over = ", ".join(self.swept) or "nothing"
@@ -167,7 +167,7 @@ class Study(KeptResult):
         return printable(f"{self.title}\n\n{text}")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return header and rows of the study's file in JSON's types; a number that is not finite is a text."""
+        """Return header and rows of the study in JSON's types; a number that is not finite is a text."""
         rows = [row.asdict() for row in self.rows]
         document: dict[str, Any] = json_types({"kind": KIND, **header_of(self), "rows": rows})
         return document
@@ -190,7 +190,7 @@ class Study(KeptResult):
         Raises
         ------
         InputError
-            Not JSON, no study, another schema, or a value that cannot be used; names the place in it.
+            Not JSON, not a study, another schema, or a value that cannot be used; the error names the place.
         """
         from jointid.study.reading_back import read_study
 
