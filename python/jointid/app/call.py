@@ -1,4 +1,4 @@
-"""What a user of the page has stated: a file, how it is read, the joint, the settings, stretches to leave out."""
+"""The user's input on the page: a file, how to read it, the joint, the settings, and parts to leave out."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ _JOINT_FACTS = ("gear_ratio", "torque_constant", "inertia")
 
 
 class Desk:
-    """What one page works on.
+    """The state of one page.
 
     Parameters
     ----------

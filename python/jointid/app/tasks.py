@@ -1,4 +1,4 @@
-"""What the page asks of its process: each takes `report` first, for progress."""
+"""The tasks of a page's process: each takes `report` first, for progress."""
 
 from __future__ import annotations
 

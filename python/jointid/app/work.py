@@ -1,4 +1,4 @@
-"""What a page's process works on now: how far it is, how long it takes, and how long it may take."""
+"""The present work of a page's process: its progress, the elapsed and the expected time."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ class ComparisonStep:
 
 
 def with_causes(estimate: Estimate) -> Estimate:
-    """Return an estimate of `Fitter.fit` with the causes of its misfit, which take as long as the fit.
+    """Return an estimate of `Fitter.fit` with the causes of its residual, which take as long as the fit.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Fitter:
         self._done = 0
 
     def shift(self, delays: Mapping[str, float]) -> None:
-        """Take these delays away from now on [s]."""
+        """Remove these delays from now on [s]."""
         self._settings = replace(self._settings, shift=delays)
 
     def fit(
@@ -89,7 +89,7 @@ class Fitter:
         where : str
             Which part of the data, for the error. Default: all.
         attribute : bool
-            Whether the causes of its misfit are looked for; see `with_causes`. Default False.
+            Whether to search for the causes of its residual; see `with_causes`. Default False.
 
         Raises
         ------

@@ -25,7 +25,7 @@ class Entrant:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judgement:
-    """The winner, the reason for each candidate, and why the winner won, in a sentence."""
+    """The chosen candidate, the reason for each candidate, and one sentence about the choice."""
 
     winner: int
     reasons: tuple[str, ...]

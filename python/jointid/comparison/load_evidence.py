@@ -1,9 +1,9 @@
-"""Whether a recording shows load friction, or something else that its term happens to absorb.
+"""Whether a recording shows load friction, or another effect that its term absorbs.
 
-Load friction is a term that many errors of a model feed: whatever grows with the torque and turns with the
-velocity. It may only win where its coefficient stays what it is while other causes are allowed for: drift, a torque
-over the angle, a delay, a wrong inertia, another law of slow motion, pre-sliding, a sensor that is not linear. The
-balance is linear about the estimate, so that this is one more regression; leaving out stretches of the recording in
+Many model errors look like load friction: everything that grows with the torque and changes its sign with the
+velocity. A model with load friction may only be chosen if its coefficient hardly changes when other causes are in the
+model: drift, a torque over the angle, a delay, a wrong inertia, another law of slow motion, pre-sliding, a nonlinear
+sensor. The balance is linear about the estimate, so this is one more regression; leaving out parts of the recording in
 turn gives its error.
 """
 

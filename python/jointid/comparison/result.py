@@ -214,7 +214,7 @@ class Comparison(KeptResult):
         )
 
     def _said(self) -> list[str]:
-        """What to know of the winner's values, a line each: whether they are usable, and its warnings."""
+        """Lines about the chosen model's values: the verdict, and its warnings."""
         return [
             *self.estimate.verdict.lines(),
             *(
@@ -227,7 +227,7 @@ class Comparison(KeptResult):
         return self.estimate.joint.name or "joint"
 
     def setting(self) -> str:
-        """Return what was held out, and what is compared, in a sentence."""
+        """Return one sentence: what was held out, and what is compared."""
         settings = self.settings
         unit = "block of the recording" if settings["held_out"] == "block" else "recording"
         if settings["held_out"] == "recordings":
@@ -238,7 +238,7 @@ class Comparison(KeptResult):
         )
 
     def cells(self) -> list[tuple[str, ...]]:
-        """Return the table of the models, a row each, in the order of `HEAD`."""
+        """Return the table of the models, a row for each, in the order of `HEAD`."""
         return [
             (
                 row.model,

@@ -23,7 +23,7 @@ def assumed(design: DesignFields) -> str:
 
 
 def _sensors(sensors: _core.Sensors, prismatic: bool) -> Iterator[str]:
-    """What is not as in exact signals; rarer settings by their names."""
+    """How the sensors differ from exact ones; rare settings by their names."""
     usual: Mapping[str, Any] = _core.Sensors().asdict()
     stated = {name: each for name, each in sensors.asdict().items() if each != usual[name]}
     if "torque_noise" in stated:

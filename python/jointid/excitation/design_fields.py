@@ -19,7 +19,7 @@ CRITERIA = ("worst", "determinant")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignFields:
-    """What a `Design` holds."""
+    """The fields of a `Design`."""
 
     status: str
     trajectory: Trajectory

@@ -1,4 +1,4 @@
-"""Reading a design's tables: its motion, what it was designed for, and what to expect of it."""
+"""Reading a design's tables: its motion, its assumptions, and its expected errors."""
 
 from __future__ import annotations
 

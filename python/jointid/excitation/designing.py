@@ -163,7 +163,7 @@ def design_excitation(
 
 @dataclass(frozen=True, slots=True)
 class _Final:
-    """A motion as it may be recorded: what it reaches, why it may not be, its rehearsals, what is minimised."""
+    """A motion at its final size: its peaks, why it cannot be used, its rehearsals, and its criterion."""
 
     trajectory: Trajectory
     peaks: Peaks
@@ -266,7 +266,7 @@ class _Designing:
         }
 
     def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
-        """Return what the search minimises, for the nominal joint.
+        """Return the criterion that the search minimizes, for the nominal joint.
 
         The information's errors scatter less than those of few rehearsals; the rehearsals' mean adds the bias, which
         the information lacks. Counted errors that contradict both decide: without a torque sensor, position errors

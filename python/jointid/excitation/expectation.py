@@ -71,7 +71,7 @@ def expected_errors(
 
 
 def what_limits(design: Design, situation: Situation, judgement: _core.MotionJudgement) -> str:
-    """Return one sentence: limits that are reached, what the error hangs together with, noise and duration."""
+    """Return one sentence: limits that are reached, correlated parameters, noise and duration."""
     reasons = []
     if not design.parameters[design.weakest].relative < _LARGE:
         reasons.append("no motion within the limits was found that determines it")

@@ -180,7 +180,7 @@ def _within(limits: MotionLimits, joint: Joint) -> None:
 
 
 def _own(joint: Joint) -> dict[str, Any]:
-    """What a joint's limits leave to a motion."""
+    """The part of a joint's limits that a motion may use."""
     known = joint.limits
     window = known.position
     if window is not None:

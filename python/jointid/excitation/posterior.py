@@ -1,4 +1,4 @@
-"""What an estimate says of its joint: information, joints that it leaves possible, the sensor's noise."""
+"""An estimate's knowledge of its joint: information, possible joints, the sensor's noise."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SIGNED = ("offset", "gravity", "ripple", "position")
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Posterior:
-    """What an estimate says of a joint's parameters."""
+    """An estimate's knowledge of a joint's parameters."""
 
     known: Known  # information as wide as the intervals are
     values: Array
@@ -82,7 +82,7 @@ class Posterior:
 
 
 def posterior_of(estimate: Estimate) -> Posterior:
-    """Return what an estimate says of the parameters that another motion can improve, as uncertain as its intervals.
+    """Return an estimate's knowledge of the parameters that another motion can improve, as uncertain as its intervals.
 
     An offset that no motion divides from the friction of the two directions is fixed, and so is a value at its bound,
     except unseen friction at low speed: the next motion is to show it.
@@ -172,7 +172,7 @@ def sensors_of(estimate: Estimate) -> _core.Sensors | None:
 def joint_of(estimate: Estimate, posterior: Posterior, facts: Joint | None) -> Joint:
     """Return the joint of a design: the estimate's values, free where another motion can improve them.
 
-    `facts` is a joint with what that of the identification lacked: a link, limits.
+    `facts` is a joint with facts that the identified one lacks: a link, limits.
     """
     if facts is not None:
         require_kind("joint", facts, Joint)

@@ -1,4 +1,4 @@
-"""The joints that a motion has to be good for."""
+"""The joints that a motion is designed for."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SMALL = 0.1  # of its range: an error of a smaller value counts in this
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ranges:
-    """What is believed of each free parameter."""
+    """The believed range of each free parameter."""
 
     nominal: Mapping[str, float]  # the joint in the middle
     ranges: Mapping[str, Range]
@@ -29,7 +29,7 @@ class Ranges:
     drawn: tuple[Mapping[str, float], ...] = ()
 
     def scale(self, name: str, value: float) -> float:
-        """Return what an error of a parameter counts in: its value, or a part of its range."""
+        """Return the size that a parameter's error is relative to: its value, or a part of its range."""
         low, high = self.ranges[name]
         return max(abs(value), _SMALL * (high - low)) or 1.0
 
@@ -59,7 +59,7 @@ class Ranges:
 
 
 def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
-    """Return what is believed of the free parameters `names`; refuse those without any range, and name them all."""
+    """Return the believed ranges of the free parameters `names`; refuse those without a range, and name them all."""
     if prior is not None and (not isinstance(prior, Mapping | Sequence) or isinstance(prior, str)):
         raise InputError(
             "a range by parameter, or values of joints, are expected", argument="prior", value=prior
@@ -113,7 +113,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
 
 
 def with_room(joint: Joint, ranges: Mapping[str, Range]) -> Joint:
-    """Return the joint with bounds that hold these ranges: what is believed may lie beyond those of a search."""
+    """Return the joint with bounds that contain these ranges, which may exceed the joint's own bounds."""
     table = dict(joint.parameters)
     for name, (low, high) in ranges.items():
         own = table.get(name)

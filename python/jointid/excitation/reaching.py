@@ -1,4 +1,4 @@
-"""How far joints go in a motion, which of them goes farthest, and by how much it exceeds a limit."""
+"""The largest values that joints reach in a motion, and by how much the worst joint exceeds a limit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _NAMES = {
 
 @dataclass
 class Reached:
-    """What joints reach, how much of the limits that is, and which joint goes farthest."""
+    """The values that joints reach, their shares of the limits, and the joints that reach most."""
 
     situation: Situation
     lowest: float = np.inf  # position [rad]
@@ -165,7 +165,7 @@ def described(joint: Mapping[str, float]) -> str:
 
 
 def _needed(situation: Situation, trajectory: Trajectory, joint: Mapping[str, float]) -> float:
-    """Return the torque that a joint would need were the drive stronger; 0 where that is not known."""
+    """Return the torque that a joint would need from a stronger drive; 0 if it is not known."""
     stronger = replace(situation.limits, torque=_UNLIMITED * situation.torque)
     try:
         batch = simulate_batch(

@@ -34,7 +34,7 @@ class Rehearsal:
         return dict(zip(self.names, size.tolist(), strict=True))
 
     def bias(self) -> dict[str, float]:
-        """Return the magnitude of each parameter's mean error, less what scatter alone makes it; 0 if that is all."""
+        """Return the magnitude of each parameter's mean error minus the part that scatter explains; at least 0."""
         count = len(self.errors)
         scatter = np.var(self.errors, axis=0) / max(1, count - 1)
         size = np.sqrt(np.maximum(np.mean(self.errors, axis=0) ** 2 - scatter, 0.0))

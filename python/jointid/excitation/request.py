@@ -19,7 +19,7 @@ from jointid.recording.recording import Recording
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What an identification leaves free, and what a motion is designed for."""
+    """The parameters that an identification leaves free, and those that a motion is designed for."""
 
     names: tuple[str, ...]  # the free parameters
     wanted: tuple[str, ...]  # of the names, those that the motion is designed for

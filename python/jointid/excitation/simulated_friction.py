@@ -1,4 +1,4 @@
-"""What the friction of a simulated joint asks of its drive, by the core's table of terms."""
+"""The drive torque that friction of a simulated joint needs, by the core's table of terms."""
 
 from __future__ import annotations
 

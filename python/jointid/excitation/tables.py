@@ -30,7 +30,7 @@ def head(design: DesignFields) -> list[str]:
 
 
 def rows(design: DesignFields) -> list[list[str]]:
-    """One row a parameter: value, errors before and expected, as a share, the worst, the thesis's, unit."""
+    """One row per parameter: value, errors before and expected, as a share, the worst, the thesis's, unit."""
     found, titles = [], head(design)
     for each in design.parameters.values():
         row = [each.name, f"{each.value:.6g}"]
@@ -45,7 +45,7 @@ def rows(design: DesignFields) -> list[list[str]]:
 
 
 def limits_used(design: DesignFields) -> list[str]:
-    """One sentence a limit: what is reached of it."""
+    """One sentence per limit: the values reached."""
     peaks, side = design.peaks, design.joint.kind == "prismatic"
     low, high = design.limits.position
     reached = {
@@ -83,7 +83,7 @@ def summary(design: DesignFields) -> str:
 
 
 def answer(design: DesignFields) -> str:
-    """Return in a few lines which errors to expect, and what limits them."""
+    """Return the expected errors and what limits them, in a few lines."""
     shown = list(design.parameters.values())[:_VALUES]
     width = max((len(each.name) for each in shown), default=0)
     values = []

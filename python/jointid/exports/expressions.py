@@ -18,7 +18,7 @@ _PARTS: dict[Over, tuple[str, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Language:
-    """How a language writes what the law needs."""
+    """How a language writes the elements of a law."""
 
     name: Callable[[str], str]  # a constant's name from a parameter's
     number: Callable[[float], str]

@@ -19,7 +19,7 @@ _SHARE = 0.02
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """What a joint moves, so that inertia and gravity about its axis are those of the law."""
+    """The moved body, with the law's inertia and gravity about the joint's axis."""
 
     mass: float  # [kg]
     distance: float  # of the centre of mass from the axis [m]

@@ -41,7 +41,7 @@ def _write(subject: Subject, order: Order) -> bytes:
 
 
 def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
-    """Return what the nearest Coulomb and viscous friction has lost, in words."""
+    """Return in words what the nearest Coulomb and viscous friction loses."""
     if not nearest.lost:
         return []
     unit = subject.torque_unit

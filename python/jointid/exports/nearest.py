@@ -28,7 +28,7 @@ class Nearest:
 
 
 def lost_terms(subject: Subject) -> tuple[str, ...]:
-    """Return what Coulomb and viscous friction cannot express of a law, in words."""
+    """Return in words the parts of a law that Coulomb and viscous friction cannot represent."""
     law, unit = subject.law, subject.torque_unit
     lost = []
     excess = [each for each in law.friction if each.shapes and not each.vanishes]
@@ -59,7 +59,7 @@ def lost_terms(subject: Subject) -> tuple[str, ...]:
 
 
 def _own_lost(subject: Subject) -> tuple[str, ...]:
-    """Return what no body with Coulomb and viscous friction has of a model's own terms, in words."""
+    """Return in words the own terms of a model that a body with Coulomb and viscous friction cannot represent."""
     unit = subject.torque_unit
     lost = [
         f"torque over the joint's angle (up to {each.size:.4g} {unit})"

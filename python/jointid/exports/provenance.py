@@ -30,7 +30,7 @@ _PLAIN = str.maketrans(
 
 
 def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
-    """Return what a file states, line by line; `notes` say what the target expresses in another way or not at all."""
+    """Return the statements of a file, line by line; `notes` name what the target represents differently, or not."""
     joint = subject.joint
     name = f"Joint '{joint.name}'" if joint.name else "Joint"
     force = "force" if joint.kind == "prismatic" else "torque"

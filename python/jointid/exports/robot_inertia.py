@@ -21,9 +21,9 @@ _TURNING = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def with_link_inertias(estimate: RobotEstimate, content: bytes, place: str) -> bytes:
-    """Return a URDF with the inertial parameters of an estimate; all else keeps its bytes.
+    """Return a URDF with the inertial parameters of an estimate; everything else keeps its bytes.
 
-    What is fixed to a link is part of it: the link that the joint moves gets all, the others lose theirs.
+    The link that a joint moves gets the inertia of all bodies fixed to it; those bodies lose theirs.
     """
     _check(estimate)
     found = elements(content, place)

@@ -1,4 +1,4 @@
-"""What is exported: a joint with values, what is known of them, and where they come from."""
+"""The exported joint: its values, their uncertainty, and their source."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Subject:
 
 
 def subject_of(value: Estimate | Joint, speed: float | None = None) -> Subject:
-    """Return what is exported of an estimate, or of a joint with values, known up to a speed [rad/s or m/s]."""
+    """Return the export of an estimate, or of a joint with values that are known up to a speed [rad/s or m/s]."""
     require_kind("source", value, Estimate, Joint)
     subject = _of_estimate(value) if isinstance(value, Estimate) else _of_joint(value)
     for each in subject.values:

@@ -1,4 +1,4 @@
-"""What a target declares: its name, endings, and how a subject is written for it."""
+"""The declaration of a target: its name, file endings, and how a joint is written for it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Existing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Order:
-    """What is asked of a target."""
+    """The order to a target."""
 
     name: str
     approximate: bool = False  # whether the nearest may replace what the target cannot express

@@ -23,7 +23,7 @@ _BINS = 40
 
 
 class _Limits(Protocol):
-    """What is drawn of a design's limits."""
+    """The drawn limits of a design."""
 
     @property
     def position(self) -> tuple[float, float]:
@@ -35,27 +35,27 @@ class _Limits(Protocol):
 
 
 class DesignedMotion(Protocol):
-    """What is drawn of a design: whoever makes one uses this room, not the other way round."""
+    """The drawn parts of a design; a protocol, because designs use panels and not the reverse."""
 
     @property
     def trajectory(self) -> Trajectory:
-        """What is commanded."""
+        """The commanded motion."""
 
     @property
     def duration(self) -> float:
-        """Of the motion [s]."""
+        """Duration of the motion [s]."""
 
     @property
     def joint(self) -> Joint:
-        """The nominal one."""
+        """The nominal joint."""
 
     @property
     def limits(self) -> _Limits:
-        """What it keeps."""
+        """The limits of the motion."""
 
     @property
     def peaks(self) -> Peaks:
-        """What the joints reach."""
+        """The largest values that joints reach."""
 
 
 def motion(design: DesignedMotion) -> Picture:

@@ -218,11 +218,11 @@ class Picture:
     Attributes
     ----------
     caption : str
-        What is seen, in a sentence or two.
+        One or two sentences that explain the picture.
     panels : tuple of Panel
         From above.
     title : str
-        What it is a picture of where a page has several of the same kind, e.g. a joint's name. Default: nothing.
+        Title if a page has several pictures of the same kind, e.g. a joint's name. Default: no title.
     """
 
     caption: str

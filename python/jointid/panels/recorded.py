@@ -1,4 +1,4 @@
-"""The signals as recorded, with what an estimate left out shaded, and what its residual does over the position."""
+"""Recorded signals, with unused parts shaded, and the residual over position."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def left_out(windows: WindowTable, number: int, time: Array) -> tuple[Array, Arr
 
 
 def signals(recording: Recording, begins: Array, ends: Array) -> Picture:
-    """All signals of a recording over time, and what was left out of it shaded; see `left_out`."""
+    """All signals of a recording over time, with unused parts shaded; see `left_out`."""
     names = [name for name in _SHOWN if getattr(recording, name) is not None]
     panels = []
     for row, name in enumerate(names):

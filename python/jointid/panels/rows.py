@@ -1,4 +1,4 @@
-"""Named rows with a value each, its error and single values: what is compared, one below the other."""
+"""Named rows for a comparison, one below the other: a value with its error, and single values."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class NamedRow:
     single : array_like
         Values that it is the middle of. Default: none.
     chosen : bool
-        Drawn in the colour of what was found. Default False.
+        Whether it has the colour of the result. Default False.
     """
 
     name: str

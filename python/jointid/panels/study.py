@@ -69,11 +69,11 @@ def over_setting(
     ----------
     study : Study
     setting : str
-        One that was swept; "" where none was.
+        A swept setting; "" if there is none.
     values : ndarray, shape (rows,)
-        Of the trials.
+        Values of the trials.
     title : str
-        What they are, with the unit.
+        Their quantity and unit.
     statistic : str
         A key of `STATISTICS`. Default "median".
     combined : bool

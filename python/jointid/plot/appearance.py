@@ -90,7 +90,7 @@ def axes_or_new(ax: Axes | None) -> Axes:
     Raises
     ------
     InputError
-        Something else.
+        Not Matplotlib axes.
     """
     from matplotlib.axes import Axes
 

@@ -39,7 +39,7 @@ class DesignedFor:
         controller: Controller,
         control_period: float,
     ) -> str:
-        """Return one sentence that names in what a bench differs; empty for the design's bench or another motion."""
+        """Return one sentence that names how a bench differs; empty for the design's bench or another motion."""
         if trajectory != self.trajectory:
             return ""
         found = [*self._joints(joint), *self._laws(controller)]

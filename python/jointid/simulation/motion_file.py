@@ -61,7 +61,7 @@ COMMENTS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """What a motion's file holds."""
+    """The content of a motion's file."""
 
     trajectory: Trajectory
     peaks: Peaks | None = None  # what the joints of the design reach; None: not in the file

@@ -162,7 +162,7 @@ def simulated_joint(
 
 
 def torque_limit(joint: Joint) -> float | None:
-    """Return the smaller of the torque limit and what the current limit gives [N·m]."""
+    """Return the torque limit, or the torque at the current limit if that is smaller [N·m]."""
     limits = joint.limits
     known = [] if limits.torque is None else [limits.torque]
     if limits.current is not None and joint.torque_constant is not None:

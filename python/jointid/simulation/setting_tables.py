@@ -36,7 +36,7 @@ def read_sensors(table: Any, place: str) -> _core.Sensors:
 
 
 def plain(value: Any) -> Any:
-    """Return a number that is not finite as the text that a schema reads; all else as it is."""
+    """Return a number that is not finite as the text that a schema reads; anything else unchanged."""
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 

@@ -1,4 +1,4 @@
-"""What a trajectory shows of itself: a line at the prompt, a table in a notebook."""
+"""How a trajectory shows itself: a line at the prompt, a table in a notebook."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One cell of a study: a combination of the swept settings, and what it changes in a call."""
+"""One cell of a study: a combination of the swept settings, and the arguments that it changes."""
 
 from __future__ import annotations
 

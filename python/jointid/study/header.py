@@ -91,7 +91,7 @@ def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
 
 
 def _truths(work: Work, given: Mapping[str, float] | None) -> list[dict[str, float]]:
-    """Return the true parameters of each cell if cells differ, else an empty list."""
+    """Return the true parameters of each cell if cells differ, otherwise an empty list."""
     if not isinstance(work.subject, Scenario) or given is not None:
         return []
     truths = []

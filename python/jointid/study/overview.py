@@ -18,7 +18,7 @@ _DEFAULTS = ("None", "False", "Model", "")
 def overview_of(
     title: str, summary: Summary, settings: Mapping[str, Any], seeds: range, missing: int
 ) -> Overview:
-    """Return the report page's summary of a study with this title, summary and so many missing trials."""
+    """Return the content of a study's report, from its title, its summary and the number of missing trials."""
     shown = summary.best(SHOWN).cells
     names = varying(shown)
     unfinished = f"The study is not finished: {_trials(missing)} missing."

@@ -1,4 +1,4 @@
-"""The first line of a study's file as it is read again: what it must hold."""
+"""Reading the first line of a study's file, with its checks."""
 
 from __future__ import annotations
 

@@ -33,15 +33,15 @@ class CellSummary:
     labels : dict
         The swept settings.
     trials, refused : int
-        Number of trials done, and of those refused.
+        Number of finished trials, and of refused ones among them.
     reason : str
-        Why the first of them was refused; empty if none was.
+        Why the first one was refused; empty if none was.
     converged : float
         Share of the trials with the status "converged".
     penalty : float
-        Median.
+        Median penalty of the trials.
     mean, spread : dict of str to float
-        Of each parameter over the trials; the spread is the standard deviation [SI].
+        Mean and standard deviation of each parameter over the trials [SI].
     stderr : dict of str to float
         Median standard error of each parameter [SI]; empty where none was computed.
     bias, scatter : dict of str to float
@@ -131,7 +131,7 @@ class Summary:
 
 
 def html_summary(summary: Summary) -> Html:
-    """Return the table of the cells, and what is to be said of it."""
+    """Return the table of the cells with its notes."""
     header, body = summary_texts(summary)
     notes = (element("p", each) for each in summary_notes(summary))
     return element(

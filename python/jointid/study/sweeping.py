@@ -118,31 +118,31 @@ def sweep(
 ) -> Study:
     """Identify with every combination of some settings, several times each.
 
-    The options of `identify` hold for all cells. A model without a name is "coulomb_viscous". In every cell, trial t
+    All cells have the same options of `identify`. A model without a name is "coulomb_viscous". In every cell, trial t
     adds t to the seed of `search`, for the search and for the noise of a simulated recording; `identify` with a row's
-    seed gives the row. Threads of 0 are all threads in this process, and 1 for each trial in an executor. A grid over
-    "ga" or a field of it means the method "ga", unless one is stated. Callback, checkpoint and resume are refused.
+    seed gives the row. 0 threads are all threads in this process, and 1 for each trial in an executor. A grid over
+    "ga" or its fields implies the method "ga", unless the call names one. Callback, checkpoint and resume are refused.
 
     Parameters
     ----------
     subject : Recording, sequence of Recording, or Scenario
         Recordings to identify from. A scenario is simulated for each trial, each with its own seed.
     joint : Joint, optional
-        As in `identify`. Default with a scenario: the simulated joint, of which the search uses bounds
-        and known values, not the parameters' values.
+        As in `identify`. Default with a scenario: the simulated joint; the search uses its bounds and
+        known values, not its parameters' values.
     grid : mapping of str to sequence or mapping, optional
         Values of each setting, by its name, or a mapping from labels to values. Settings are arguments of
         `identify` (``"windows"``, ``"model"``, ``"model.FIELD"``, …), of the search ``"method"``, ``"ga"``
         and ``"ga.FIELD"``, fixed parameters ``"parameters.NAME"``, and of a scenario its fields,
         ``"sensors.FIELD"``, ``"controller.FIELD"``, ``"truth.NAME"``. Default: one cell.
     trials : int, optional
-        Number for each combination. Default: 10 where trials differ (a scenario's noise, a random search), and 1
-        where they do not.
+        Number of trials of each combination. Default: 10 if trials differ (a scenario's noise, a random search),
+        otherwise 1.
     standard_errors : bool
         Whether to compute standard errors, which takes some milliseconds per trial. Default True.
     tracking : bool
-        Whether to simulate again with the identified and with the true parameters; for a scenario whose
-        controller compensates friction. Default False.
+        Whether to simulate again with the identified and with the true parameters. It needs a scenario with a
+        controller that compensates friction. Default False.
     truth : mapping of str to float, optional
         True parameters [SI], for biases and shares of success. Default: those of the recordings or the
         scenario.
@@ -152,7 +152,7 @@ def sweep(
     callback : callable, optional
         Called with a `StudyStep` whenever trials finish; returning True stops the sweep.
     output : path, optional
-        File (.jsonl) that each row is written to when it is done.
+        File (.jsonl) that receives each row when its trial finishes.
     resume : bool
         Whether to continue an existing `output`, also with more trials. Default False.
     **options
