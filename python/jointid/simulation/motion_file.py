@@ -53,7 +53,7 @@ COMMENTS = {
     "trajectory.frequency": "rad/s",
     "trajectory.phase": "rad",
     "trajectory.offset": "where it starts and ends",
-    "trajectory.fade": "s, time over which the sines grow at the start and fade at the end",
+    "trajectory.fade": "s, in which the sines grow at the start and fade at the end",
     "trajectory.duration": "s",
 }
 """What a file says behind the keys of a motion."""
