@@ -11,7 +11,9 @@ import pytest
 
 matplotlib.use("Agg")
 
-FOLDER = Path(__file__).resolve().parents[2] / "examples" / "thesis"
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "examples" / "thesis"
+PAGE = ROOT / "docs" / "thesis.md"
 
 
 class Table:
@@ -71,6 +73,14 @@ def _check_pictures(folder: Path, *figures: str) -> None:
         assert figure in names
     for path in folder.glob("*.png"):
         assert image.imread(path).std() > 0.02, path.name  # a blank one has none
+
+
+def test_each_drawn_figure_has_a_claim_on_the_page() -> None:
+    claims = PAGE.read_text(encoding="utf-8").partition("## Claims")[2].partition("\n## ")[0]
+    places = [line.split(" | ")[1] for line in claims.splitlines() if line.startswith("| ")]
+    pictures = {path.stem for path in (ROOT / "docs/pictures/thesis").glob("*.png")}
+    first = {stem.partition("_")[0] for stem in pictures - {"window_count"}} | {"4.6"}
+    assert {each for each in first if not any(each in place for place in places)} == set()
 
 
 def test_a_group_leaves_its_pictures(few: Path) -> None:
