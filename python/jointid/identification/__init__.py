@@ -1,1 +1,1 @@
-"""From recordings and a joint to an estimate."""
+"""Identification: from recordings and a joint to an estimate."""

@@ -1,4 +1,4 @@
-"""The model that nobody named, chosen where delays are taken away; and the rule that its fit obeys."""
+"""Choice of a model when the caller names none, with delays removed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from jointid.problem.problem import Problem
 from jointid.problem.settings import Settings
 from jointid.problem.terms import Request
 
-# A delay leaves a misfit that a richer model fits in part; a model whose rival misses so much more has no need of that.
+# A richer model partly fits the residual of a delay. The choice is close if a simpler model has an error below this
+# multiple of the chosen model's error.
 _CLOSE = 2.0
 
 
@@ -25,24 +26,24 @@ def chosen_without_delays(
     settings: Settings,
     unfit: Mapping[str, str],
 ) -> tuple[Problem, dict[str, Delay], Selection]:
-    """Choose a model, and take the delays of its signals away.
+    """Choose a model and remove the delays of its signals.
 
-    Where the race is close it is run again without the delays, and the second winner counts.
+    If the choice is close, it is repeated without the delays. The second choice counts.
 
     Parameters
     ----------
     problem : Problem
-        Problem of the unchanged recordings, with any choice of terms.
+        Problem with the unchanged recordings and any choice of terms.
     request : Request
-        As in `select_model`.
+        Request of the call, as in `select_model`.
     settings : Settings
     unfit : mapping of str to str
-        Models that cannot win, and why.
+        Models that must not be chosen, with the reason.
 
     Returns
     -------
     problem : Problem
-        With the terms of the chosen model, without delays.
+        Problem with the terms of the chosen model, without delays.
     delays : dict of str to Delay
     selection : Selection
 
@@ -52,14 +53,14 @@ def chosen_without_delays(
         Input that cannot be used.
     """
     parameters, windows, shift = settings.parameters, settings.windows, settings.shift
-    # First: with the wrong model, delays of a fraction of a sample are lost in its misfit.
+    # The model comes first: the residual of a wrong model hides delays of a fraction of a sample.
     chosen, selection = select_model(problem, request, parameters, windows, unfit)
     moved, delays = without_delays(chosen, shift)
     if not _close(selection):
         return moved, delays, selection
     aligned = moved
     if not moved.shift:
-        # A richer model may have fitted the delay itself.
+        # The richer model may have fitted the delay.
         simple = simplest_model(problem, request, parameters)
         aligned, _ = without_delays(simple, shift)
         if not aligned.shift:
@@ -72,7 +73,7 @@ def chosen_without_delays(
 
 
 def _close(selection: Selection) -> bool:
-    """Whether a simpler model than the winner misses hardly more."""
+    """Return whether a simpler model predicts almost as well as the chosen one."""
     winner = selection[selection.model]
     return any(
         each.parameters < winner.parameters and each.score < _CLOSE * winner.score
@@ -81,7 +82,7 @@ def _close(selection: Selection) -> bool:
 
 
 def unfit_in(estimate: Estimate) -> str:
-    """Return why the model that was chosen cannot win after all, as its fit shows; empty if it can."""
+    """Return why the fit rules out the chosen model; empty if it does not."""
     selection = estimate.selection
     if selection is None or estimate.status != "converged":
         return ""

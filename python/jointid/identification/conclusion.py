@@ -1,4 +1,4 @@
-"""From the minimum of the penalty to an estimate: errors, correlations, statistics, findings."""
+"""Make an estimate from the minimum of the penalty: errors, correlations, statistics, findings."""
 
 from __future__ import annotations
 
@@ -51,9 +51,10 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-# Parameters with a smaller component of the weakest direction are not named.
+# Smallest component of the weakest direction for which a parameter is named.
 _NAMED = 0.3
-_SOMETHING = 0.5  # of the variance is left beside a cause that makes sense of a model that had none
+# Largest unexplained share of the variance with a cause that makes a useless model useful.
+_SOMETHING = 0.5
 
 
 def infer(
@@ -80,28 +81,27 @@ def infer(
     Parameters
     ----------
     balance : tuple or None
-        What the penalty's `balance_at` returns at the minimum; None: computed here.
+        Result of the penalty's `balance_at` at the minimum; None: computed here.
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
     refinements : Refinements
-        What was done to the data before the search.
+        Corrections of the data before the search.
     recordings : sequence of Recording
-        As the call gave them.
+        Recordings of the call, without corrections.
     beside : mapping of str to ndarray or None
-        Change of each parameter by what the residuals do not show.
+        Change of each parameter by error sources that the residuals do not show.
     known : tuple of Cause
-        Causes that were taken away from the data before.
+        Causes that were removed from the data before the fit.
     attribute : bool
-        Whether the causes of a misfit are looked for. Default True.
+        Whether to search for the causes of the residual. Default True.
     """
     threads = problem.threads
-    # Arrays of one value per window are freed early: a recording of an hour fills the memory.
+    # Arrays with one value per window are freed early, because a recording of an hour fills the memory.
     value, residual, jacobian, columns = balance or penalty.balance_at(best)
     sizes = column_sizes(jacobian)
     noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
-    alone = noise / np.where(
-        sizes > 0.0, sizes, 1.0
-    )  # each parameter's error if it were the only one
+    # Error of each parameter if all others were known.
+    alone = noise / np.where(sizes > 0.0, sizes, 1.0)
     freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
@@ -110,10 +110,10 @@ def infer(
     kept = divided(free, names, groups)
     free_jacobian = jacobian[:, kept]
     centre = _centre(penalty, columns, kept)
-    apart = penalty.cumulative  # the table's windows are then not the penalty's
+    apart = penalty.cumulative  # then the windows of the table differ from those of the penalty
     motion = Motion.of(problem, penalty) if apart else Motion.of_table(table)
     segments = motion_segments(motion)
-    # One decomposition serves the covariance and all that may be lacking.
+    # One decomposition serves the covariance and all terms that the model may lack.
     lacking = lacking_torques(problem, penalty, best) if kept else {}
     triangle = Triangle(np.column_stack([free_jacobian, *lacking.values()]), threads)
     own = triangle.matrix[: len(kept), : len(kept)]
@@ -159,7 +159,7 @@ def infer(
         parts["extra"] = np.where(np.isin(np.arange(len(best)), free), moved_by, 0.0)
     for noisy in (effect, None if own_noise is None else own_noise.effect):
         if noisy is not None and "windows" in parts:
-            # Other windows have other noise at their edges: it is chance, or counted as the velocity's already.
+            # Other windows have other noise at their edges. It is random, or already counted with the velocity.
             beyond = np.square(parts["windows"]) - np.square(noisy.of_windows)
             parts["windows"] = np.sqrt(np.maximum(0.0, beyond))
     parts |= {name: moved for name, moved in beside.items() if moved is not None}
@@ -176,9 +176,9 @@ def infer(
     causes = None
     run = table.recording
     structured = is_misfit(table, statistics)
-    # Running integrals of white noise are correlated by themselves.
+    # Running integrals of white noise are correlated.
     noise = not structured and testable(run) and not penalty.cumulative
-    # A misfit of a gain whose sign is a guess is not the model's.
+    # If the sign of the gain is a guess, the residual need not come from the model.
     sought = structured and not domain.guessed_sign and not (penalty.cumulative or not free)
     if sought and attribute:
         from jointid.identification.causes.causes import find_causes
@@ -203,9 +203,9 @@ def infer(
             )
         )
         if not explained:
-            causes = None  # values that are no estimate
+            causes = None  # the fitted values are not an estimate
         elif not causes.found and testable(run) and not correlated(table.residual, run):
-            # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
+            # The residual is larger at low speed, but has no cause and no correlation: noise of velocity or reversals.
             causes, noise = None, True
     if known:
         more = causes or Causes(found=())
@@ -273,9 +273,9 @@ def infer(
 
 
 def is_misfit(table: WindowTable, statistics: ResidualStatistics) -> bool:
-    """Whether residuals are more than noise, so that their causes are looked for.
+    """Return whether the residuals are more than noise, so that a search for their causes makes sense.
 
-    Noise alone may be most of what was measured: it is no misfit, and the errors contain it.
+    Noise alone may be most of the measured torque. It is not a model error, and the standard errors contain it.
     """
     run = table.recording
     return suspicious(table.residual, run, table.duration, table.velocity) or (
@@ -284,20 +284,23 @@ def is_misfit(table: WindowTable, statistics: ResidualStatistics) -> bool:
 
 
 def _cause_of(*arguments: Any, **more: Any) -> Cause | None:
-    """The cause that a check asks for; what looks for causes is imported when one is in doubt."""
+    """Return the cause that a check requests; imported here because most estimates need no search for causes."""
     from jointid.identification.causes.causes import cause_of
 
     return cause_of(*arguments, **more)
 
 
 def _explains(causes: Causes, r_squared: float) -> bool:
-    """Whether the first cause turns a model that says nothing into one that says something."""
+    """Return whether the first cause explains enough variance to make a useless model useful."""
     left = (1.0 - causes.found[0].share if causes.found else 1.0) * (1.0 - r_squared)
     return left < _SOMETHING
 
 
 def _explained_torque(penalty: _core.Penalty, table: WindowTable, best: Array) -> float:
-    """Share of the torque's variance that the model explains; of a reading that hardly varies it may be less."""
+    """Return the share of the torque's variance that the model explains.
+
+    If the sensor reading hardly varies, the model may explain a smaller share of the reading.
+    """
     names = list(penalty.names)
     gain = float(best[names.index("sensor_gain")]) if "sensor_gain" in names else 1.0
     torque = np.asarray(penalty.target) / table.duration
@@ -309,7 +312,7 @@ def _explained_torque(penalty: _core.Penalty, table: WindowTable, best: Array) -
 
 
 def _unknown(delay: Delay) -> float:
-    """What is not known of a delay, and what the identification had of it [s]."""
+    """Return the uncertainty of a delay during the identification [s]."""
     if delay.certain:
         return float(np.hypot(delay.left, delay.stderr))
     return delay.stderr if delay.applied else 0.0

@@ -1,7 +1,7 @@
-"""Friction that drifts during a recording: taken away from the torque where it is certain, before a second fit.
+"""Removal of a certain friction drift from the torque, before a second fit.
 
-A coefficient that changes with time leaves a misfit that other parameters take up, the sensor's gain before all.
-With the drift taken away they are what they are, and the coefficient is its value in the middle of the recording.
+A coefficient that changes with time biases other parameters, most of all the sensor gain. Removing the drift removes
+this bias. The fitted coefficient is then its value at the middle of the recording.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_SHARE = 0.8  # of the misfit
-_ROUNDED = 1.0 - 1e-6  # the same share, of other sums
-_LARGE = 0.05  # change over the recording
-_LINEAR = 1e-6  # of the torque: a signal of the drive is a multiple of it
+_SHARE = 0.8  # smallest share of the residual that a certain drift explains
+_ROUNDED = 1.0 - 1e-6  # tolerance for rounding, because the share is computed from other sums here
+_LARGE = 0.05  # smallest relative change over the recording
+_LINEAR = 1e-6  # relative deviation of a drive signal from a multiple of the torque
 _DRIVE = ("torque", "motor_torque", "current")
 
 
 def may_drift(
     problem: Problem, penalty: _core.Penalty, parameters: Mapping[str, ParameterEstimate]
 ) -> bool:
-    """Whether a coefficient that drifts explains so much of the misfit that it may be taken away.
+    """Return whether the drift of a coefficient explains enough of the residual to be removed.
 
-    That is a look at the drifts alone: other causes may explain it, too, and then nothing is taken away.
+    This examines drifts only. If other causes also explain the residual, no drift is removed later.
 
     Parameters
     ----------
     problem : Problem
     penalty : Penalty
-        As it was fitted.
+        Penalty as fitted.
     parameters : mapping of str to ParameterEstimate
     """
     from jointid.identification.causes.causes import share_of
@@ -51,20 +51,20 @@ def may_drift(
 def without_drift(
     problem: Problem, penalty: _core.Penalty, estimate: Estimate
 ) -> tuple[Problem, Cause] | None:
-    """Return the problem without the drift of a friction coefficient, and that drift; None where none is certain.
+    """Return the problem without the drift of a friction coefficient, and that drift; None if none is certain.
 
     Parameters
     ----------
     problem : Problem
     penalty : Penalty
-        As it was fitted.
+        Penalty as fitted.
     estimate : Estimate
-        Its fit.
+        Estimate of that fit.
 
     Notes
     -----
-    Certain is a drift that explains most of the misfit by itself, is not small, and has no cause beside it that
-    explains nearly as much, and without which the balance predicts held-out blocks better by three standard errors.
+    A drift is certain if all these conditions hold: it explains most of the residual alone, it is not small, no other
+    cause explains nearly as much, and its removal improves the prediction of held-out blocks by three standard errors.
     """
     if "drift" not in {finding.code for finding in estimate.findings}:
         return None
@@ -84,7 +84,7 @@ def without_drift(
     steady = []
     for number, recording in enumerate(problem.recordings):
         basis = np.asarray(_core.friction_basis(term.key, recording.velocity, shapes))
-        if problem.hold(number) == "zoh":  # until the next sample
+        if problem.hold(number) == "zoh":  # the torque is held until the next sample
             basis = 0.5 * (basis + np.append(basis[1:], basis[-1]))
         drift = rate * (recording.time - recording.time[0] - 0.5 * span) * basis
         changed = _with_less(recording, problem.output_torque(number), drift)
@@ -110,7 +110,10 @@ def without_drift(
 
 
 def _with_less(recording: Recording, torque: Array, drift: Array) -> Recording | None:
-    """The recording with less torque; None where its drive's signals are no multiples of the torque."""
+    """Return the recording with the drift subtracted from its torque.
+
+    Return None if a signal of the drive is not a multiple of the torque.
+    """
     signals = {name: getattr(recording, name) for name in recording.signals}
     size = float(np.einsum("i,i->", torque, torque))
     for name in _DRIVE:

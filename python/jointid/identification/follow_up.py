@@ -1,4 +1,4 @@
-"""Answers to questions about an estimate that need its recordings."""
+"""Self-test, bootstrap and causes of an estimate, which need its recordings."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EstimateSource:
-    """What an estimate was made from; it shares the recordings' arrays and keeps no array per window.
+    """Input of an estimate. It shares the recordings' arrays and keeps no array per window.
 
     Attributes
     ----------
     problem : Problem
-        As it was fitted.
+        Problem as fitted.
     given : tuple of Recording
-        As given in the call: those of the problem may lack the samples at which a shifted signal is not known.
+        Recordings of the call. Those of `problem` may lack the samples at which a shifted signal is unknown.
     known : tuple of Cause
-        Causes that were taken away from the data before.
+        Causes that were removed from the data before the fit.
     domain : SearchDomain
     windows : int, float, str, WindowOptions or None
-        As given in the call.
+        Windows of the call.
     search : Search
     again : callable
-        Returns the estimate from other recordings, with the same settings.
+        Function that returns the estimate from other recordings, with the same settings.
     attributed : callable or None
-        Returns the same estimate with the causes of its misfit; None where they were looked for.
+        Function that returns the same estimate with the causes of its residual; None if it already has them.
     """
 
     problem: Problem
@@ -64,14 +64,14 @@ class EstimateSource:
         )
 
     def bootstrap(self, estimate: EstimateRecord, n: int, seed: int) -> Bootstrap:
-        """Draw stretches of the recordings anew, and refit the parameters to each draw."""
+        """Resample blocks of the recordings, and refit the parameters to each sample."""
         penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
         from jointid.identification.inference.bootstrap import block_bootstrap
 
         return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
 
     def causes(self, estimate: EstimateRecord, signals: Mapping[str, ArrayLike]) -> Causes:
-        """Attribute the misfit of what was fitted, behind the causes that were taken away before."""
+        """Return the causes of the residual, after those that were removed before the fit."""
         from jointid.identification.causes.causes import attributed
 
         penalty = penalty_as_fitted(self.problem, self.windows, self.domain)

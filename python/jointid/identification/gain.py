@@ -1,4 +1,4 @@
-"""How the sensor's gain is found: by instruments, or by regression on one side where they are weak."""
+"""Estimation of the sensor gain: by instrumental variables, or by a one-sided regression where they are weak."""
 
 from __future__ import annotations
 
@@ -25,31 +25,31 @@ def with_instruments(
     windows: Windows,
     stated: bool,
 ) -> tuple[Problem, _core.Penalty]:
-    """Return problem and penalty ready to search: the reading projected on instruments, if they suffice.
+    """Return problem and penalty ready to search, with the reading projected on instruments if they suffice.
 
-    Before the search domain, which takes the gain's sign and size from the projected reading.
+    Call this before the search domain is made: the domain takes the gain's sign and size from the projected reading.
 
-    Gravity and inertia of a rigid link explain the reading, and neither the reading's noise nor friction
-    that the model lacks is correlated with them: the gain by two-stage least squares is free of the bias
-    that either side of a regression has. A vertical axis whose inertia is free, or one that hardly moves,
-    has no such motion: then the reading is regressed on the torque, whose noise is the smaller one.
+    Gravity and inertia of a rigid link explain the reading. Noise of the reading and friction that the model lacks
+    are not correlated with them. Two-stage least squares therefore avoids the bias of a one-sided regression.
+    A vertical axis with free inertia, or a joint that hardly moves, has no such instruments. The reading is then
+    regressed on the torque, because the torque has less noise.
 
     Parameters
     ----------
     problem : Problem
-        Its choice has the residual "instruments", or another one, which is left as it is.
+        Problem with the residual "instruments". Any other residual is left unchanged.
     penalty : Penalty
-        Over `windows`, of which it projects the reading.
+        Penalty over `windows`; its reading is projected.
     known : sequence of Parameter
-        What joint and call state of each parameter of the penalty; one that is fixed is no instrument.
+        Value and bounds of each parameter, set by joint and call. A fixed parameter gives no instrument.
     windows : int, float, str, WindowOptions or None
     stated : bool
-        Whether the caller asked for this residual, which then is not replaced.
+        Whether the caller set this residual. If so, it is not replaced.
 
     Raises
     ------
     InputError
-        The caller asked for instruments and for friction that depends on the load.
+        The caller set both residual "instruments" and friction that depends on the load.
     """
     if penalty.residual != _core.Residual.instruments:
         return problem, penalty
@@ -76,7 +76,7 @@ def with_instruments(
 
 
 def penalty_as_fitted(problem: Problem, windows: Windows, domain: SearchDomain) -> _core.Penalty:
-    """Return the penalty of a problem whose residual is settled, as a search or a refit needs it.
+    """Return the penalty for a search or a refit. The residual of the problem is already decided.
 
     Parameters
     ----------

@@ -31,15 +31,15 @@ def identify(
     """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
 
     The penalty is the sum of squared window residuals of the integrated torque balance (thesis 4-21 to
-    4-24), so no acceleration is needed.
+    4-24). It needs no acceleration.
 
     Parameters
     ----------
     recordings : Recording or sequence of Recording
-        One recording, or several that share all parameters but those of `per_recording`.
+        One recording, or several that share all parameters except those of `per_recording`.
     joint : Joint, optional
-        Known values, bounds and the model. Without one, inertia, friction and an offset are identified with
-        bounds from the data, and the sensor if the recording has one.
+        Known values, bounds and the model. Without a joint, `identify` estimates inertia, friction and an offset,
+        and the sensor if the recording has one. The bounds then come from the data.
     **options
 
     Returns
@@ -49,9 +49,9 @@ def identify(
     Raises
     ------
     InputError
-        Input that cannot be used: the error names the argument and the reason.
+        Invalid input. The error names the argument and the reason.
     KeyboardInterrupt
-        Ctrl-C; it is raised within 0.1 s.
+        Ctrl-C; raised within 0.1 s.
 
     Examples
     --------
@@ -72,13 +72,13 @@ def identified(
     *,
     attribute: bool = True,
 ) -> Estimate:
-    """Identify with options that are checked; see `identify`.
+    """Identify with checked options; see `identify`.
 
     Parameters
     ----------
     attribute : bool
-        Whether the causes of a misfit are looked for: what compares models needs those of one of them. A drift that
-        is taken away is looked for in any case. Default True.
+        Whether to search for the causes of the residual. A comparison of models needs them for one model only.
+        A drift that can be removed is searched in any case. Default True.
     """
     runs = listed(recordings)
     merged = settings.model.over(joint.model) if isinstance(joint, Joint) else settings.model
@@ -97,9 +97,9 @@ def identified(
             reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
             if not reason or fitted in unfit:
                 break
-            unfit[fitted] = reason  # held-out windows did not show it: the next best model
+            unfit[fitted] = reason  # held-out windows did not show this: try the next model
         found.append(estimate)
-    # A load that scales all values fits anything.
+    # A load that scales all values fits any data.
     return min(found, key=lambda each: (_blocked(each), each.residuals.relative))
 
 

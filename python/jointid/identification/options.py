@@ -1,4 +1,4 @@
-"""What `identify` and `compare` take by keyword: the settings of the problem, and the search."""
+"""Keyword arguments of `identify` and `compare`: settings of the problem and of the search."""
 
 from typing import Annotated, TypedDict
 
@@ -8,7 +8,7 @@ from jointid.problem.settings import FitOptions, ProblemOptions
 
 
 class SearchOptions(TypedDict, total=False):
-    """How the minimum is searched."""
+    """Options of the search for the minimum."""
 
     search: Annotated[
         Search | Method | None,
@@ -21,17 +21,17 @@ class SearchOptions(TypedDict, total=False):
 
 
 class IdentifyOptions(ProblemOptions, SearchOptions, total=False):
-    """All that `identify` takes besides recordings and joint."""
+    """Keyword arguments of `identify`."""
 
 
 class CompareOptions(FitOptions, SearchOptions, total=False):
-    """What all models of a comparison share; they are judged from a speed on."""
+    """Options that all models of a comparison share."""
 
     min_speed: Annotated[
         float,
         Option(
             kind="float",
-            help="As in `identify`, the same for all models. Default 0: all motion is judged.",
+            help="As in `identify`, the same for all models. Default 0: all motion counts.",
             default=0.0,
         ),
     ]

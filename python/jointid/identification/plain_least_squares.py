@@ -1,7 +1,7 @@
-"""A plain filtered least squares on the signals as recorded, to check the estimate by.
+"""Cross-check of an estimate by plain least squares on the filtered recorded signals.
 
-It is what an expert does by hand first. It shares no mask, window, velocity, delay or unwrapping with the
-identification; the shape of the Stribeck term alone is the estimate's.
+The cross-check does not use the masks, windows, velocities, delays or unwrapping of the identification. It takes only
+the shape of the Stribeck term from the estimate.
 """
 
 from __future__ import annotations
@@ -26,43 +26,41 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 _CUTOFF = 20.0  # Hz
-_BLOCK = 0.005  # s: rows that come faster are averaged first
-_SHORTEST = 24  # blocks
-_PASSES = 4  # moving averages, an even number of them has no phase
+_BLOCK = 0.005  # s: faster samples are first averaged over blocks of this length
+_SHORTEST = 24  # blocks in the shortest stretch
+_PASSES = 4  # moving averages; an even number has no phase
 _BAND = 0.225  # cutoff of these passes times their width
-_SETTINGS = ((1.0, 1.0), (0.5, 1.0), (1.0, 1.5))  # of the cutoff and of the least speed
-_FAST = 2.2  # over the root of the Stribeck shape: there static friction is below 1 %
-_SPEED, _MOST_SPEED = 0.15, 0.5  # of the peak speed
-_PEAK = 0.995  # of the rows are slower
-_JUMP, _ALONE = 20.0, 5.0  # times the usual step of the position, and times both neighbours
+_SETTINGS = ((1.0, 1.0), (0.5, 1.0), (1.0, 1.5))  # factors on the cutoff and on the lowest speed
+_FAST = 2.2  # speed times the root of the Stribeck shape; above it the Stribeck term is below 1 %
+_SPEED, _MOST_SPEED = 0.15, 0.5  # lowest speed and its upper limit, as shares of the peak speed
+_PEAK = 0.995  # quantile of the speeds that counts as the peak speed
+_JUMP, _ALONE = 20.0, 5.0  # a jump over the usual position step, and over both neighboring steps
 _STEP, _STEPS = 0.0025, 12  # s; delays of at most 12 steps are tried
-_WORTH = 0.8  # of the residual: a delay has to leave less
+_WORTH = 0.8  # a delay is used if it reduces the residual below this share
 _BLOCKS = 20
-_ROWS = 10  # for each unknown, at least
+_ROWS = 10  # smallest number of rows per unknown
 _SINGULAR = 1e-8
-_CLEAR = 5.0  # errors
-_SHARE, _ERRORS = (
-    0.05,
-    3.0,
-)  # of the value and of both errors: a larger difference is a disagreement
+_CLEAR = 5.0  # standard errors
+# Allowed difference: this share of the value, plus this number of combined standard errors.
+_SHARE, _ERRORS = 0.05, 3.0
 _GRAVITY = ("gravity_cos", "gravity_sin")
 _OFFSETS = ("torque_offset", "sensor_offset")
 _TORQUE = "N·m"
-_SEEN = 1e-6  # of a friction term's largest value: in these rows there is none of it
+_SEEN = 1e-6  # share of a friction term's largest value; below it the rows do not contain the term
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Stretch:
-    """Signals without gap or jump, as means over short blocks.
+    """Stretch of the signals without gap or jump, averaged over short blocks.
 
     Attributes
     ----------
     run : int
-        Number of the recording.
+        Index of the recording.
     signals : ndarray, shape (4 or 5, n)
-        Time, position, torque, sensor, and the velocity where one is recorded.
+        Time, position, torque, sensor, and the velocity if it is recorded.
     period : float
-        [s]
+        Time between blocks [s].
     """
 
     run: int
@@ -70,7 +68,7 @@ class _Stretch:
     period: float
 
     def smoothed(self, cutoff: float) -> tuple[Array, int]:
-        """Low-passed signals without phase, and the width of the moving averages."""
+        """Return the low-passed signals without phase, and the width of the moving averages."""
         width = max(2, round(_BAND / (cutoff * self.period)))
         values = self.signals
         for _ in range(_PASSES):
@@ -82,7 +80,7 @@ class _Stretch:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Rows:
-    """Filtered signals of all recordings at the rows that are kept, and each stretch before rows are chosen."""
+    """Filtered signals of all recordings at the kept rows, and each whole stretch."""
 
     run: NDArray[np.intp]
     time: Array
@@ -100,12 +98,12 @@ def second_look(
     penalty: _core.Penalty,
     parameters: Mapping[str, ParameterEstimate],
 ) -> CrossCheck:
-    """Return the second look at an estimate.
+    """Return the cross-check of an estimate.
 
     Parameters
     ----------
     given : sequence of Recording
-        As the call gave them.
+        Recordings of the call, without corrections.
     problem : Problem
     penalty : Penalty
     parameters : mapping of str to ParameterEstimate
@@ -144,7 +142,7 @@ def second_look(
                 parameters[name], value, errors[name], max(every) - min(every), scale
             )
         if all(each.agrees for each in found.values()):
-            break  # another setting can only excuse a difference
+            break  # another setting can only explain a difference
     if not found:
         return CrossCheck(reason="its rows determine no parameter")
     return CrossCheck(values=found, delay=looks[0][2])
@@ -155,14 +153,14 @@ def _compared_with(
 ) -> SecondValue:
     allowed = _SHARE * scale + spread
     allowed += _ERRORS * math.hypot(stderr, p.uncertainty if p.vary else 0.0)
-    # It knows no bounds; a friction of 0 is slightly negative there as often as not.
+    # The cross-check has no bounds, so a friction of 0 is often slightly negative there.
     within = min(max(value, p.min), p.max)
     agrees = not abs(within - p.shown_value) > allowed
     return SecondValue(value=value, stderr=stderr, spread=spread, agrees=agrees)
 
 
 def _compared(terms: Sequence[_core.Term]) -> set[str]:
-    """Parameters that the second look may contradict: no static friction, no ripple."""
+    """Return the parameters that the cross-check may contradict; static friction and ripple are not among them."""
     plain = {"inertia", "sensor_gain", *_GRAVITY, *_OFFSETS}
     return plain | {term.name for term in terms if term.friction and not term.shapes}
 
@@ -172,7 +170,7 @@ def _scale(
     friction: Sequence[str],
     parameters: Mapping[str, ParameterEstimate],
 ) -> float:
-    """What 5 % are taken of: the value; of an offset or gravity also dry friction."""
+    """Return the reference of the allowed 5 %: the value, or for offset and gravity also a larger dry friction."""
     if p.name.partition("[")[0] not in (*_GRAVITY, *_OFFSETS):
         return abs(p.value)
     return max(abs(parameters[name].value) for name in (p.name, *friction))
@@ -182,7 +180,7 @@ def _stretches(given: Sequence[Recording], problem: Problem) -> list[_Stretch]:
     found = []
     for number, run in enumerate(given):
         torque = output_torque(run, problem.joint)
-        if problem.hold(number) == "zoh":  # the command of the row before holds until this one
+        if problem.hold(number) == "zoh":  # the previous sample's command is held until this sample
             torque = 0.5 * (torque + np.concatenate([torque[:1], torque[:-1]]))
         sensed = run.sensor if problem.choice.sensor and run.sensor is not None else 0.0 * torque
         signals = [run.time, run.position, torque, sensed]
@@ -203,7 +201,7 @@ def _stretches(given: Sequence[Recording], problem: Problem) -> list[_Stretch]:
 def _rows_of(
     stretches: Sequence[_Stretch], cutoff: float, speed: float, shapes: Mapping[str, float]
 ) -> _Rows | None:
-    """The rows of fast steady motion; `speed` is a factor of the least one."""
+    """Return the rows of fast motion in one direction; `speed` is a factor on the lowest speed."""
     found = []
     for stretch in stretches:
         (time, position, torque, sensor, *recorded), width = stretch.smoothed(cutoff)
@@ -220,7 +218,7 @@ def _rows_of(
     parts, smooth, count = [], [], 0
     for number, width, time, position, velocity, torque, sensor in found:
         reach = 2 * width
-        # Rows near a reversal see both directions through the filter.
+        # Near a reversal the filter mixes both directions.
         signs = np.convolve(np.sign(velocity), np.ones(2 * reach + 1), "same")
         kept = np.flatnonzero((np.abs(velocity) > speed * least) & (np.abs(signs) > 2 * reach))
         kept = kept[kept % width == 0]
@@ -249,7 +247,7 @@ def _rows_of(
 
 
 def _jumps(position: Array) -> list[int]:
-    """Rows before which the position jumps far beyond its usual steps, and its neighbours' steps."""
+    """Return the rows where the position jumps: a step much larger than usual and than both neighboring steps."""
     steps = np.abs(np.diff(position))
     moved = np.flatnonzero(steps)
     if len(moved) < 3:
@@ -269,7 +267,7 @@ def _fitted(
     shapes: Mapping[str, float],
     delay: float | None,
 ) -> tuple[dict[str, float], dict[str, float], float]:
-    """Values, errors and delay of one setting."""
+    """Return values, standard errors and delay of one setting."""
     columns: dict[str, Array] = {}
     known = np.zeros(len(rows.time))
     for term, name in zip(terms, names, strict=True):
@@ -304,7 +302,7 @@ def _fitted(
 def _of_reading(
     order: Sequence[str], solved: Array, determined: NDArray[np.bool_]
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """The parameters from a regression of the reading, whose factor of the torque is 1 over the gain."""
+    """Return the parameters from a regression of the reading, where the coefficient of the torque is 1 / gain."""
     factor = solved[:, -1]
     if not determined[-1] or not abs(factor[0]) > _CLEAR * _jackknife(factor[:, None])[0]:
         return {}, {}  # the reading does not follow the torque
@@ -321,7 +319,7 @@ def _of_reading(
 def _column(
     term: _core.Term, name: str, rows: _Rows, shapes: Mapping[str, float], gear_ratio: float
 ) -> Array:
-    """What a coefficient is multiplied by, at each row."""
+    """Return the regressor of a coefficient at each row."""
     base = term.name
     if base == "inertia":
         column = rows.acceleration
@@ -334,7 +332,7 @@ def _column(
         column = np.ones(len(rows.time))
     elif base in _GRAVITY:
         column = (np.cos if base == "gravity_cos" else np.sin)(rows.position)
-    else:  # ripple_cos_2, position_sin_1: orders of the motor's angle and of the joint's
+    else:  # ripple_cos_2: order 2 of the motor's angle; position_sin_1: order 1 of the joint's angle
         kind, wave, order = re.fullmatch(r"(\w+?)_(cos|sin)_([\d.e+-]+)", term.key).groups()  # type: ignore[union-attr]
         angle = float(order) * rows.position * (gear_ratio if kind == "ripple" else 1.0)
         column = (np.cos if wave == "cos" else np.sin)(angle)
@@ -343,7 +341,7 @@ def _column(
 
 
 def _shifted(rows: _Rows, signal: int, delays: Array) -> Array:
-    """The torque (1) or the reading (2) at the rows, taken later by each delay; shape (rows, delays)."""
+    """Return the torque (1) or the reading (2) at the rows' times plus each delay; shape (rows, delays)."""
     target = np.empty((len(rows.time), len(delays)))
     for time, torque, sensor, here in rows.smooth:
         values = torque if signal == 1 else sensor
@@ -352,7 +350,7 @@ def _shifted(rows: _Rows, signal: int, delays: Array) -> Array:
 
 
 def _best_delay(rows: _Rows, regressors: Array, signal: int, less: Array) -> float:
-    """The delay of the target that leaves clearly less, or 0."""
+    """Return the delay of the target that clearly reduces the residual, or 0."""
     basis = np.linalg.qr(regressors)[0]
     grid: Array = _STEP * np.arange(-_STEPS, _STEPS + 1, dtype=np.float64)
     targets = _shifted(rows, signal, grid) - less[:, None]
@@ -362,7 +360,7 @@ def _best_delay(rows: _Rows, regressors: Array, signal: int, less: Array) -> flo
 
 
 def _solved(regressors: Array, target: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Least squares of all rows, then without each block; errors; whether each value is determined."""
+    """Return least-squares values of all rows, then without each block; their errors; which values are determined."""
     size = np.linalg.norm(regressors, axis=0)
     scale = np.where(size > 0.0, size, 1.0)
     both = np.column_stack([regressors / scale, target])
@@ -379,7 +377,7 @@ def _solved(regressors: Array, target: Array) -> tuple[Array, Array, NDArray[np.
 
 
 def _jackknife(values: Array) -> Array:
-    """Standard errors from the values without each block, which follow those of all rows."""
+    """Return standard errors by the jackknife: row 0 has the values of all data, the others lack one block each."""
     without = values[1:]
     away = without - without.mean(axis=0)
     return np.asarray(np.sqrt((len(without) - 1) / len(without) * np.square(away).sum(axis=0)))

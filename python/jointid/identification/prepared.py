@@ -1,4 +1,4 @@
-"""An identification before its search: recordings, terms, windows and search domain."""
+"""Preparation of an identification before its search: recordings, terms, windows and search domain."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_STEADIER = 0.7  # of the residuals' size: what a second fit without a drift has to leave
+_STEADIER = 0.7  # largest residual of a second fit without the drift, relative to the first fit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prepared:
-    """A penalty to minimise, and the domain to search.
+    """Penalty to minimize and domain to search.
 
     Attributes
     ----------
@@ -72,11 +72,11 @@ class Prepared:
     settings : Settings
         Settings of the call.
     given : tuple of Recording
-        As given in the call; those of the problem may be shifted.
+        Recordings of the call. Those of `problem` may be shifted.
     refinements : Refinements
-        What was done to the data, and why.
+        Corrections of the data, with their reasons.
     selection : Selection or None
-        How the model was chosen; None if it was named.
+        Choice of the model; None if the caller named it.
     """
 
     problem: Problem
@@ -94,7 +94,7 @@ class Prepared:
         started: float,
         attribute: bool = True,
     ) -> Estimate:
-        """Return the estimate of a search's outcome: intervals, checks, warnings.
+        """Return the estimate from the outcome of a search: intervals, checks, findings.
 
         Parameters
         ----------
@@ -103,8 +103,8 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         attribute : bool
-            Whether the causes of a misfit are looked for. Where they are not, the estimate's source finds them
-            later; but where a drift may have to be taken away they are looked for in any case. Default True.
+            Whether to search for the causes of the residual. If not, the estimate's source finds them later. If a
+            drift may have to be removed, the search takes place in any case. Default True.
         """
         estimate = self._inferred(search, outcome, started, attribute)
         left = not attribute and is_misfit(estimate.windows, estimate.residuals)
@@ -134,7 +134,7 @@ class Prepared:
         return replace(estimate, follow_up=source, selection=self.selection)
 
     def fitted(self, search: Search, outcome: Outcome) -> FittedModel:
-        """Return what a prediction needs of a search's outcome: no intervals, no findings.
+        """Return the fitted model for predictions, without intervals and findings.
 
         Parameters
         ----------
@@ -154,7 +154,7 @@ class Prepared:
         attribute: bool = True,
         known: tuple[Cause, ...] = (),
     ) -> Estimate:
-        """Return the estimate at one minimum; `known` are causes that were taken away before it."""
+        """Return the estimate at one minimum; `known` are causes that were removed before the fit."""
         domain = self.domain
         best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
         known_there = outcome.balance if np.array_equal(best, outcome.best) else None
@@ -199,7 +199,7 @@ class Prepared:
         return {**self._choices(search), "recordings": runs}
 
     def _choices(self, search: Search) -> dict[str, Any]:
-        """The settings without the recordings, whose fingerprints take a look at every byte."""
+        """Return the settings without the recordings, because a fingerprint reads every byte."""
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
         return {
             "version": _core.__version__,
@@ -222,14 +222,14 @@ class Prepared:
 
 
 def _of_instant(instant: SensorInstant | None) -> dict[str, Any]:
-    """Return the share of the torque's half steps that was added to the reading, as a setting."""
+    """Return, as a setting, the share of half a torque step that was added to the reading."""
     return (
         {"sensor_before_step": instant.applied} if instant is not None and instant.applied else {}
     )
 
 
 def _of_own_inertia(problem: Problem) -> dict[str, Any]:
-    """The mean of each signal that is an inertia, for what knows the joint without the recordings."""
+    """Return the mean of each inertia signal, for users of the joint without the recordings."""
     means = {
         own.signal: float(np.mean([np.mean(run.extra[own.signal]) for run in problem.recordings]))
         for own in problem.choice.model.resolved.terms.each
@@ -239,7 +239,7 @@ def _of_own_inertia(problem: Problem) -> dict[str, Any]:
 
 
 def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
-    """Return how the sensor's gain is found, as settings."""
+    """Return the estimation method of the sensor gain, as settings."""
     if choice.residual_reason:
         return {"residual_reason": choice.residual_reason}
     stage = penalty.first_stage
@@ -265,24 +265,24 @@ def prepare(
     Parameters
     ----------
     given : tuple of Recording
-        Checked, as `listed` returns them.
+        Checked recordings, as `listed` returns them.
     choose : bool
-        Whether a model without a name is chosen from the recordings. Default False: it is coulomb_viscous,
+        Whether to choose an unnamed model from the recordings. Default False: the model is coulomb_viscous,
         and the name "auto" is refused.
     unfit : mapping of str to str, optional
-        Models that are not chosen, and why. Default: none.
+        Models that must not be chosen, with the reason. Default: none.
     on_time : bool
-        Whether it is known that no signal is late, as in a simulation; else delays are looked for.
+        Whether all signals are known to have no delay, as in a simulation. If not, delays are estimated.
         Default False.
     measure : bool
-        Whether delays beside those of `shift` are looked for. Default True.
+        Whether to estimate delays in addition to those of `shift`. Default True.
     instant : bool
-        Whether it is measured when the sensor is sampled, against the steps of a held torque. Default True.
+        Whether to estimate the sampling instant of the sensor relative to the steps of a held torque. Default True.
 
     Raises
     ------
     InputError
-        Input that cannot be used.
+        Invalid input.
     """
     raise_if_still(given)
     runs, mends = zip(*(mended(run) for run in given), strict=True)
@@ -291,20 +291,20 @@ def prepare(
     merged = stated if joint is None else stated.over(joint.model)
     if merged.name == AUTO and not choose:
         raise InputError(
-            "name the model here; only identify chooses one by itself",
+            "name the model here; only identify can choose one",
             argument="model",
             value=str(merged),
             remedy=Action("call", {"model": "stribeck"}),
         )
     if joint is not None and stated.stated():
-        # What only this call's recordings have apart does not become a property of the joint.
+        # Parameters that are separate for each recording of this call do not become a property of the joint.
         joint = joint.replace(model=merged.replace(per_recording=joint.model.per_recording))
     request = Request(model=stated, residual=settings.residual)
     problem = Problem(
         recordings=runs,
         joint=joint,
         choice=choose_terms(runs, joint, request),
-        settings=replace(settings, shift={}, min_speed=0.0),  # until they are taken away
+        settings=replace(settings, shift={}, min_speed=0.0),  # both are applied below
         threads=whole_number("threads", threads, 0, 1024),
     )
     selection = None
@@ -337,9 +337,9 @@ def prepare(
 
             refuse_duplicates(penalty, domain, own, functools.partial(measured_once_more, problem))
     except InputError as error:
-        if error.place == "parameters":  # they are not excited
+        if error.place == "parameters":  # the motion does not excite a parameter
             raise_if_hardly_moving(runs)
-        elif not error.argument:  # the joint stands still, as far as its velocity says
+        elif not error.argument:  # according to the velocity, the joint stands still
             from jointid.identification.warnings.velocity import raise_if_far_off
 
             raise_if_far_off(runs)

@@ -1,1 +1,1 @@
-"""How sure the values are."""
+"""Uncertainty of the estimated values."""

@@ -1,4 +1,4 @@
-"""The block bootstrap of an estimate."""
+"""Block bootstrap of an estimate."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_NEAR = 3.0  # standard errors to a bound
-_OFTEN = 0.01  # of the draws end on it
-_MIDDLE = (0.158655, 0.841345)  # one standard error to both sides of a normal distribution
+_NEAR = 3.0  # standard errors from a bound
+_OFTEN = 0.01  # share of the draws that end on a bound
+_MIDDLE = (0.158655, 0.841345)  # quantiles at ±1 standard deviation of a normal distribution
 
 
 def block_bootstrap(
@@ -30,7 +30,7 @@ def block_bootstrap(
     count: int,
     seed: int,
 ) -> Bootstrap:
-    """Return the block bootstrap of an estimate that was made from this problem."""
+    """Return the block bootstrap of an estimate from this problem."""
     names = [name for name in domain.names if not domain.fixed(name)]
     places = [domain.names.index(name) for name in names]
     best = np.array([estimate.parameters[name].value for name in domain.names])
@@ -66,19 +66,19 @@ def block_bootstrap(
 def drawn_parameter(
     p: ParameterEstimate, moved: Array, room: tuple[float, float], freedom: int
 ) -> BootstrapParameter:
-    """Return one parameter over the draws.
+    """Return the bootstrap result of one parameter.
 
     Parameters
     ----------
     p : ParameterEstimate
     moved : ndarray, shape (n,)
-        Its change in each draw.
+        Change of the parameter in each draw.
     room : (float, float)
-        How far it may move: below 0 and above.
+        Largest change down (negative) and up (positive) within the bounds.
     freedom : int
         Degrees of freedom of Student's t.
     """
-    # Not their standard deviation: a draw that lacks a direction of motion may end anywhere.
+    # Quantiles instead of the standard deviation: a draw without one direction of motion may end anywhere.
     left, right = np.quantile(moved, _MIDDLE)
     stderr = 0.5 * float(right - left)
     below, above = room
@@ -89,7 +89,7 @@ def drawn_parameter(
     else:
         high = quantile(0.975, freedom) * stderr
         low = -high
-    if p.stderr == np.inf:  # nothing determines it, whatever the draws' convention
+    if p.stderr == np.inf:  # nothing determines the parameter, although the draws have values
         stderr, low, high = np.inf, -np.inf, np.inf
     usable = p.stderr is not None and 0.0 < p.stderr < np.inf
     return BootstrapParameter(

@@ -1,8 +1,8 @@
-"""What the tolerances of a joint's facts mean for each parameter.
+"""Effect of the tolerances of a joint's facts on each parameter.
 
-A fact acts in two ways: it scales the drive's torque, or it moves a parameter that the identification holds fixed
-(the inertia, gravity). A torque that is larger by a share gives coefficients that are all larger by it, where the
-fixed ones are smaller by it beforehand: so both are a refit over the same windows with other fixed values.
+A fact acts in two ways: it scales the drive's torque, or it changes a fixed parameter (inertia, gravity). Scaling the
+torque by a factor is equivalent to dividing the fixed parameters by it and scaling all results. Both effects are
+therefore computed by a refit over the same windows with other fixed values.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from jointid.problem.windows import Windows
 
 Array = NDArray[np.float64]
 
-_SAME = 1e-9  # share by which a fixed value may differ from what the joint's facts give
+_SAME = 1e-9  # largest relative difference between a fixed value and the value from the joint's facts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Change:
-    """What a fact at the limit of its tolerance changes: the scale of the torque, and fixed parameters."""
+    """Change of the torque's scale and of fixed parameters by a fact at the limit of its tolerance."""
 
     scale: float
     moved: Array
@@ -39,35 +39,35 @@ class _Change:
 def of_given_facts(
     problem: Problem, windows: Windows, domain: SearchDomain, best: Array
 ) -> Array | None:
-    """Return how far each parameter moves when the given facts are at the limits of their tolerances.
+    """Return the change of each parameter when the facts are at the limits of their tolerances.
 
     Parameters
     ----------
     problem : Problem
     windows : int, float, str, WindowOptions or None
-        As given in the call.
+        Windows of the call.
     domain : SearchDomain
     best : ndarray, shape (p,)
-        The parameters found.
+        Estimated parameters.
 
     Returns
     -------
     ndarray, shape (p,), or None
-        The root of the sum of the facts' squares, of each fact the limit that moves the parameter more; None
+        Root of the sum of squares over the facts. For each fact, the limit with the larger change counts. None
         without tolerances.
     """
     joint = problem.joint
     if joint is None or not joint.tolerances.given:
         return None
     parts = problem.parts(windows)
-    # Shapes do not grow with the torque, nor does friction as a share of the load.
+    # Shapes and load-dependent friction coefficients do not scale with the torque.
     scaled = {term.name for term in map(_core.term, problem.choice.terms) if not term.needs_load}
     linear = np.array([name.split("[")[0] in scaled for name in domain.names])
 
     low, high = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
 
     def refitted(change: _Change, side: float) -> Array:
-        """The parameters with the fact at one of its limits."""
+        """Return the parameters with the fact at one of its limits."""
         scale = np.where(linear, 1.0 + side * change.scale, 1.0)
         lower = (low + side * change.moved) / scale
         upper = (high + side * change.moved) / scale
@@ -88,7 +88,7 @@ def _changes(
 ) -> Iterator[_Change]:
     facts, known = joint.facts, known_values(joint)
     for name, stated in joint.tolerances.given.items():
-        if name not in facts:  # how alike the directions are: see undivided.py
+        if name not in facts:  # the symmetry of friction: see undivided.py
             continue
         size = joint.tolerances.size(name, facts[name])
         scale = 0.0
@@ -104,7 +104,7 @@ def _changes(
                 if base not in known or not domain.fixed(parameter):
                     continue
                 value = known[base].value or 0.0
-                if abs(best[i] - value) <= _SAME * abs(value):  # not a value that the call fixed
+                if abs(best[i] - value) <= _SAME * abs(value):  # otherwise the call fixed the value
                     moved[i] = (other[base].value or 0.0) - value
         yield _Change(scale=scale, moved=moved)
 
@@ -114,14 +114,14 @@ def _ratio(size: float | None, fact: float | None) -> float:
 
 
 def _changed(joint: Joint, name: str, size: float) -> Joint:
-    """The joint with one fact at the upper limit of its tolerance."""
+    """Return the joint with one fact at the upper limit of its tolerance."""
     joint = joint.replace(tolerances=Tolerances())
     if name in ("mass", "centre_of_mass", "link_inertia"):
         assert joint.link is not None
         field = name.removeprefix("link_")
         larger = getattr(joint.link, field) + size
         return joint.replace(link=replace(joint.link, **{field: larger}))
-    if joint.inertia is not None:  # it goes before that of the rotor
+    if joint.inertia is not None:  # it has priority over the rotor inertia
         joint = joint.replace(rotor_inertia=None)
         if name == "rotor_inertia":
             return joint

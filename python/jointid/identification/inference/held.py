@@ -1,4 +1,4 @@
-"""How far a value on its bound may be off: its 95 % interval as if the bound were not there."""
+"""95 % interval of a value on its bound, computed without the bound."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ def held_intervals(
     segments: Segments | None,
     threads: int = 0,
 ) -> dict[int, tuple[float, float]]:
-    """Return the interval of each coefficient that a bound holds: one step of least squares with it among the free.
+    """Return the interval of each coefficient on a bound, by one least-squares step with this coefficient free.
 
-    Where several are held, each is freed alone: two that the motion hardly separates are both held by the same bound.
+    Each coefficient is freed alone, because two that the motion hardly separates may both be on a bound.
 
     Parameters
     ----------
     jacobian : ndarray, shape (windows, p)
         Derivatives of the residuals by all parameters.
     kept : list of int
-        Free parameters.
+        Indices of the free parameters.
     held : mapping of int to float
-        The coefficients on a bound, and their values.
+        Index and value of each coefficient on a bound.
     """
     found = {}
     for index, value in held.items():
@@ -42,7 +42,7 @@ def held_intervals(
         triangle = Triangle(np.column_stack([columns, residual]), threads)
         own = triangle.matrix[:count, :count]
         step = triangle.solve(list(range(count)), count, rcond=1e-10)[0]
-        left = residual - np.einsum("ij,j->i", columns, step)  # what the bound leaves is no noise
+        left = residual - np.einsum("ij,j->i", columns, step)  # without the effect of the bound
         spread = parameter_covariance(columns, left, None, own, threads=threads, segments=segments)
         error = float(spread.stderr[-1])
         if math.isfinite(error):

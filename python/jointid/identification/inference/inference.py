@@ -25,8 +25,8 @@ from jointid.problem.window_table import WindowTable, r_squared, relative_residu
 
 Array = NDArray[np.float64]
 
-_LIMITED = ("sampling",)  # known limits of an error, not its standard error
-# Not in the intervals by themselves: also what another choice would give, and what the recording knows nothing of.
+_LIMITED = ("sampling",)  # errors with known limits instead of a standard error
+# Errors that do not enter the intervals like random errors: those with limits, of a choice, and of given facts.
 _APART = ("residual_side", "given", *_LIMITED)
 _NORMAL = 1.959964  # standard errors of a 95 % interval
 
@@ -40,7 +40,7 @@ class Freedom:
     indices : tuple of int
         Indices of the free parameters that are not at a bound.
     at_bound : tuple of str or None
-        "min" or "max" for each parameter that a bound holds.
+        "min" or "max" for each parameter on a bound; None for the others.
     """
 
     indices: tuple[int, ...]
@@ -48,10 +48,10 @@ class Freedom:
 
 
 def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -> Freedom:
-    """Find the parameters that a bound holds: they lie on it, and the penalty decreases beyond it.
+    """Find the parameters on a bound: they are at the bound, and the penalty decreases beyond it.
 
-    A parameter lies on a bound if it is nearer than a thousandth of its error by noise alone; a share of
-    the domain would take a small, correct value under very wide bounds for one on its bound.
+    A parameter is at a bound if its distance is less than a thousandth of its error by noise alone. A share of the
+    domain is no good measure, because with very wide bounds a small, correct value would seem to be at a bound.
     """
     at_bound: list[str | None] = []
     free = []
@@ -64,7 +64,7 @@ def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array)
         elif high > low and high - best[index] <= near and gradient[index] <= 0.0:
             bound = "max"
         at_bound.append(bound)
-        # A parameter on its bound cannot vary both ways: it has no standard error.
+        # A parameter on its bound cannot vary in both directions, so it has no standard error.
         if high > low and bound is None:
             free.append(index)
     return Freedom(indices=tuple(free), at_bound=tuple(at_bound))
@@ -104,7 +104,7 @@ def _terms_and_shapes(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Sh
     for name, term in zip(penalty.names, penalty.terms, strict=False):
         known[name] = term
         known.update({shape: shapes[shape] for shape in term.shapes if shape not in known})
-    # What acts on the sum of all terms belongs to none of them.
+    # Shapes that act on the sum of all terms belong to none of them.
     known.update({name: shapes[name] for name in penalty.names if name not in known})
     return known
 
@@ -127,10 +127,10 @@ def parameters_of(
     parts : mapping of str to ndarray
         Systematic errors of every parameter, by the name of their cause.
     held : mapping of int to tuple of float
-        Intervals of those that a bound holds. Default: none.
+        Intervals of the parameters on a bound. Default: none.
     """
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
-    # Most have the same freedom: all of them, where the residuals are white.
+    # Most parameters have the same degrees of freedom; all of them if the residuals are white.
     known = {f: quantile(0.975, f) for f in set(spread.freedom.tolist())}
     factors = dict(
         zip(freedom.indices, map(known.__getitem__, spread.freedom.tolist()), strict=True)
@@ -167,9 +167,9 @@ def parameters_of(
 
 
 def _half_width(chance: float, systematic: Mapping[str, float]) -> float:
-    """Half of the 95 % interval: chance, already at its quantile, and what the recording shows besides.
+    """Return half of the 95 % interval from random error, already at its quantile, and systematic errors.
 
-    An error within known limits is at worst at one of them: the rest is then held against that limit.
+    An error with known limits is in the worst case at a limit. The interval then covers the other errors there.
     """
     shown = (size for part, size in systematic.items() if part not in _APART)
     half = math.hypot(chance, _NORMAL * math.hypot(*shown))
@@ -178,7 +178,7 @@ def _half_width(chance: float, systematic: Mapping[str, float]) -> float:
 
 
 def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
-    """Return the joint with the estimated values in its parameter table; its known values stay as they are."""
+    """Return the joint with the estimated values in its parameter table; its known values do not change."""
     choice, recording = problem.choice, problem.recordings[0]
     base = problem.joint
     if base is None:
@@ -199,7 +199,7 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
         table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
     inertia = parameters.get("inertia")
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
-        # The estimate replaces the joint's own value, which is the drive's alone.
+        # The estimate replaces the joint's own value, which is that of the drive alone.
         drive = inertia.value - (0.0 if base.sensor else base.link_inertia)
         if drive > 0.0:
             others = replace(base.tolerances, inertia=None, rotor_inertia=None)

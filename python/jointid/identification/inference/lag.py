@@ -1,7 +1,7 @@
-"""What the delays between signals leave in the parameters.
+"""Effect of delays between signals on the parameters.
 
-A window's integral of a signal that is late by d misses d times the signal's change over the window: to first order
-that is all a delay does to the balance.
+If a signal is late by d, its integral over a window lacks d times the change of the signal over the window. To first
+order, this is the only effect of a delay on the balance.
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ def of_lags(
     jacobian: Array,
     lags: Mapping[str, float],
 ) -> Array:
-    """Return how far the free parameters move when signals are late by so much.
+    """Return the change of the free parameters when signals are late by `lags`.
 
     Parameters
     ----------
     jacobian : ndarray, shape (windows, free)
         Derivatives of the residuals by the free parameters.
     lags : mapping of str to float
-        What is not known of each signal's delay [s]: "torque", "sensor", "velocity".
+        Uncertainty of the delay of each signal [s]: "torque", "sensor", "velocity".
 
     Returns
     -------
     ndarray, shape (free,)
-        The root of the sum of the signals' squares.
+        Root of the sum of squares over the signals.
     """
     names = list(penalty.names)
     gain = float(best[names.index("sensor_gain")]) if "sensor_gain" in names else 1.0
-    # In the unit of the residual.
+    # Converts a torque to the unit of the residual.
     scale = 1.0 / gain if penalty.residual == _core.Residual.sensor else 1.0
 
     def torque(run: Recording) -> Array:
@@ -82,7 +82,7 @@ def of_lags(
 def _changes(
     problem: Problem, penalty: _core.Penalty, signal: Callable[[Recording], Array]
 ) -> Array:
-    """A signal's change over each window."""
+    """Return the change of a signal over each window."""
     bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
     result = np.empty(run.size)
     for number, recording in enumerate(problem.recordings):

@@ -1,4 +1,4 @@
-"""What it does to the parameters when signals are measured once more."""
+"""Effect of noise in signals on the parameters, by adding the same amount of noise again."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ Array = NDArray[np.float64]
 Shifts = tuple[Array | None, Array | None]
 
 DRAWS = 4  # two pairs
-_FACTORS = (0.5, 2.0)  # of the windows' duration, as of `Shifts`
+_FACTORS = (0.5, 2.0)  # factors on the windows' duration, as in `Shifts`
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NoiseEffect:
-    """Change of the parameters when signals become as noisy again.
+    """Change of the parameters when the same amount of noise is added to signals again.
 
     Attributes
     ----------
     shifts : ndarray, shape (2, p)
-        Its mean over each of two pairs of opposite draws: a systematic part of about this size is in the estimate.
+        Mean change over each of two pairs of opposite draws. The estimate has a systematic error of about this size.
     spread : ndarray, shape (p,)
-        Standard deviation over the draws.
+        Standard deviation of the change over the draws.
     of_windows : ndarray, shape (p,)
-        Root mean square of what it adds to the shift to halved and to doubled windows.
+        Root mean square change of the shifts to halved and to doubled windows.
     chance : ndarray, shape (p,)
-        Variance of what the shifts have in common and is chance. Default 0: nothing.
+        Variance of the random part that both shifts have in common. Default 0.
     """
 
     shifts: Array
@@ -45,16 +45,16 @@ class NoiseEffect:
 
     @property
     def systematic(self) -> Array:
-        """Size of the shift without what chance adds to it.
+        """Size of the shift without its random part.
 
-        The square of a mean contains the variance of the mean; the product of two independent ones does not.
+        The square of a mean contains the variance of the mean. The product of two independent means does not.
         """
         first, second = self.shifts
         return np.asarray(np.sqrt(np.maximum(0.0, first * second - self.chance)))
 
     @property
     def size(self) -> Array:
-        """Root of the sum of the squares of the systematic shift and of the spread."""
+        """Root of the sum of squares of systematic shift and spread."""
         return np.asarray(np.hypot(self.systematic, self.spread))
 
 
@@ -66,28 +66,30 @@ def noise_effect(
     again: Callable[[Recording, int, int], Recording],
     shifts: Shifts,
 ) -> NoiseEffect | None:
-    """Return how the parameters move over the same windows (simulation and extrapolation, Cook and Stefanski 1994).
+    """Return the change of the parameters with more noise, over the same windows.
+
+    The method is simulation extrapolation (Cook and Stefanski 1994). The result is None if no fit is possible.
 
     Parameters
     ----------
     problem : Problem
     penalty : Penalty
-        Over the windows used.
+        Penalty over the windows of the fit.
     best : ndarray, shape (p,)
-        The parameters found.
+        Estimated parameters.
     bounds : tuple of ndarray
-        Their lower and upper bounds.
+        Lower and upper bounds of the parameters.
     again : callable
-        Returns a recording with more noise, from itself, the number of the draw and its own number. An odd draw
-        has the noise of the one before with the other sign: in the mean of both, what is linear in the noise, and
-        so of chance, is gone.
+        Function that returns a recording with more noise. Its arguments are the recording, the index of the draw and
+        the index of the recording. An odd draw has the noise of the previous draw with the opposite sign, so the
+        mean of both has no part that is linear in the noise, which is random.
     shifts : tuple of ndarray or None
-        Change of each parameter when the windows are halved and doubled; None is not asked for.
+        Change of each parameter when the windows are halved and doubled; None is skipped.
 
     Notes
     -----
-    Shorter windows have more of the velocity's noise, and other ones have other noise: a part of the shifts that
-    decreases with the recording's length, and that the standard errors contain.
+    Shorter windows contain more noise of the velocity, and other windows contain other noise. This part of the
+    shifts decreases with the length of the recording, and the standard errors contain it.
     """
     moved, added = [], []
     for draw in range(DRAWS):
@@ -116,7 +118,7 @@ def _refitted(
     bounds: tuple[Array, Array],
     factor: float = 1.0,
 ) -> Array | None:
-    """The parameters over windows that are so many times as long, or None where there is no fit."""
+    """Return the parameters over windows that are longer by `factor`; None if there is no fit."""
     options = _core.WindowOptions(
         duration=factor * penalty.window_duration, cumulative=bool(penalty.cumulative)
     )

@@ -1,4 +1,4 @@
-"""How a joint moves in each window, and the segments of its motion."""
+"""Motion of a joint in each window, and segments of the motion."""
 
 from __future__ import annotations
 
@@ -16,15 +16,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """How the joint moves in each window.
+    """Motion of the joint in each window.
 
     Attributes
     ----------
     start, stop : ndarray, shape (windows,)
-        [s], on the recording's clock.
+        Start and end of each window on the recording's clock [s].
     travel : ndarray, shape (windows,)
-        [rad or m]
+        Change of the position over each window [rad or m].
     recording : ndarray of int
+        Index of each window's recording.
     """
 
     start: Array
@@ -46,7 +47,7 @@ class Motion:
 
     @classmethod
     def of_table(cls, table: WindowTable) -> Motion:
-        """Return the motion in windows of which a table is known."""
+        """Return the motion in the windows of a table."""
         travel = table.velocity * (table.stop - table.start)
         return cls(start=table.start, stop=table.stop, travel=travel, recording=table.recording)
 
@@ -57,12 +58,12 @@ class Motion:
 
     @property
     def segment_length(self) -> float:
-        """What a segment of this motion should last [s]."""
+        """Usual duration of a segment of this motion [s]."""
         return usual_length(float(np.sum(self.moved)))
 
 
 def motion_segments(motion: Motion) -> Segments:
-    """Return the segments of a motion: between reversals, merged or divided to a usual length."""
+    """Return the segments of a motion between reversals, merged or divided to a usual duration."""
     length = motion.segment_length
     edges = first_windows_of(motion.recording)
     cuts = _core.motion_cuts(motion.start, motion.stop, motion.travel, edges, length)
@@ -71,7 +72,7 @@ def motion_segments(motion: Motion) -> Segments:
 
 
 def first_windows_of(recording: NDArray[np.int64]) -> list[int]:
-    """Return the first window of each recording, and behind them the number of windows."""
+    """Return the first window of each recording, followed by the number of windows."""
     count = len(recording)
     if recording[0] == recording[-1]:
         return [0, count]

@@ -1,4 +1,4 @@
-"""What the noise of extra signals does to each parameter, found by measuring them once more."""
+"""Effect of the noise of extra signals on each parameter, by adding the same amount of noise again."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_HARMLESS = 3e-3  # of the signal's standard deviation
+_HARMLESS = 3e-3  # harmless noise, as a share of the signal's standard deviation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnNoise:
-    """Noise of extra signals, and what it does.
+    """Noise of extra signals, and its effect.
 
     Attributes
     ----------
     effect : NoiseEffect
-        Change of the parameters when all these signals become as noisy again.
+        Change of the parameters when the same amount of noise is added to all these signals again.
     noise : tuple of (str, float)
-        The signals, each with the standard deviation of its noise in its own unit.
+        Each signal with the standard deviation of its noise, in the signal's unit.
     """
 
     effect: NoiseEffect
@@ -46,20 +46,20 @@ def own_systematic(
     upper: Array,
     shifts: Shifts,
 ) -> OwnNoise | None:
-    """Return the effect of the extra signals' noise, or None where it is harmless or no coefficient is free.
+    """Return the effect of the extra signals' noise; None if it is harmless or no coefficient is free.
 
-    Noise in a signal makes the coefficient of its term too small (attenuation), and moves what is correlated with it.
-    A known torque or inertia with a fixed gain does nothing of the kind: its noise is noise of the torque.
+    Noise in a signal makes the coefficient of its term too small (attenuation) and changes correlated parameters.
+    A known torque or inertia with a fixed gain has no such effect, because its noise is noise of the torque.
 
     Parameters
     ----------
     problem : Problem
     penalty : Penalty
-        Over the windows used.
+        Penalty over the windows of the fit.
     best, lower, upper : ndarray, shape (p,)
-        The parameters found and their bounds.
+        Estimated parameters and their bounds.
     shifts : tuple of ndarray or None
-        Change of each parameter when the windows are halved and doubled; None is not asked for.
+        Change of each parameter when the windows are halved and doubled; None is skipped.
     """
     own = problem.choice.model.resolved.terms
     if not own.each:
@@ -84,7 +84,7 @@ def own_systematic(
 
 
 def measured_once_more(problem: Problem) -> Problem:
-    """Return the problem with the velocity and the own terms' signals measured once more, harmless noise included."""
+    """Return the problem with the noise of velocity and own terms' signals added again, including harmless noise."""
     signals = problem.choice.model.resolved.terms.signals
     runs = tuple(
         extra_measured_again(measured_again(run, 0, number), signals, 0, number)
@@ -94,7 +94,7 @@ def measured_once_more(problem: Problem) -> Problem:
 
 
 def _noisy(problem: Problem, own: OwnTerms, free: set[str]) -> dict[str, float]:
-    """The signals whose noise may matter, each with the largest of its noise."""
+    """Return the signals with relevant noise, each with its largest noise over the recordings."""
     noisy: dict[str, float] = {}
     for each in own.each:
         if each.signal not in own.signals or not free & set(each.keys):

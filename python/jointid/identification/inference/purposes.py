@@ -1,4 +1,4 @@
-"""How well an estimate does what it is for: half of a 95 % interval of what each purpose needs, over that."""
+"""Suitability of an estimate for its purposes: the relative half width of the 95 % interval that each purpose needs."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from jointid.problem.inner_products import column_sizes, size
 Array = NDArray[np.float64]
 
 NOTHING = 0.01
-"""Of the torque: friction of less is as good as nothing."""
+"""Share of the torque below which friction is negligible."""
 
-_FRICTION = 0.2  # of the torque: less friction than this is held against this
-_SHARE = 0.05  # of the torque: the same for a single parameter
+_FRICTION = 0.2  # share of the torque; smallest reference for all friction
+_SHARE = 0.05  # share of the torque; smallest reference for a single parameter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Torques:
-    """How large torques are in the recorded motion, in the unit of the residuals.
+    """Size of the torques in the recorded motion, in the unit of the residuals.
 
     Attributes
     ----------
     single : mapping of str to float
         Torque of each term with coefficient 1.
     friction : frozenset of str
-        Coefficients and shapes of friction.
+        Names of the coefficients and shapes of friction.
     of_friction, of_drive : float
-        Torque of all friction, and of the drive.
+        Torque of all friction, and torque of the drive.
     """
 
     single: Mapping[str, float]
@@ -45,20 +45,20 @@ class Torques:
 
     @property
     def friction_level(self) -> float:
-        """What is held against friction: all friction, or a fifth of the torque if that is more."""
+        """Reference for errors of friction: all friction, or a fifth of the torque if that is larger."""
         return max(self.of_friction, _FRICTION * self.of_drive)
 
     def is_friction(self, name: str) -> bool:
-        """Whether a parameter is a coefficient of friction, not one of its shapes."""
+        """Return whether a parameter is a coefficient of friction, not a shape."""
         return name in self.friction and name in self.single
 
     def of_all_friction(self, name: str, value: float) -> float:
-        """Share of all friction that a coefficient of this value makes up in the recorded motion."""
+        """Return the share of all friction of a coefficient with this value in the recorded motion."""
         torque = self.single[name]
         return value * torque / self.friction_level if torque > 0.0 else 0.0
 
     def is_nothing(self, p: ParameterEstimate) -> bool:
-        """Whether a friction is as good as 0, by how large it may be against the torque."""
+        """Return whether a friction coefficient is negligible: its interval is small compared with the torque."""
         if p.interval is None or not self.is_friction(p.name):
             return False
         largest = max(-p.interval[0], p.interval[1])
@@ -66,7 +66,7 @@ class Torques:
 
     @classmethod
     def of(cls, penalty: _core.Penalty, jacobian: Array, best: Array) -> Torques:
-        """Return those of a fit, from the derivatives of its residuals by all parameters."""
+        """Return the torques of a fit, from the derivatives of its residuals by all parameters."""
         names, count = list(penalty.names), penalty.coefficients
         places = [index for index, term in enumerate(penalty.terms) if term.friction]
         gain = best[names.index("sensor_gain")] if "sensor_gain" in names else 1.0
@@ -86,17 +86,18 @@ def within(
     gram: Array,
     torques: Torques,
 ) -> dict[str, float]:
-    """Return by purpose how far off what it needs may be, as a share of it; without what nothing is known of.
+    """Return the relative error of each purpose's quantity; purposes without a known error are missing.
 
-    Compensation needs the friction torque of the recorded motion, simulation its whole torque, both as root mean
-    squares. Monitoring needs every parameter apart, by chance alone; what hardly has a torque may be off by all of it.
+    Compensation needs the friction torque of the recorded motion, and simulation the whole torque, both as root mean
+    square. Monitoring needs each parameter separately, with random errors only. The error of a parameter with
+    a small torque is taken relative to a share of the drive's torque.
 
     Parameters
     ----------
     names : sequence of str
         Names of the parameters in `spread`.
     gram : ndarray, shape (p, p)
-        Inner products of the residuals' derivatives by these.
+        Inner products of the residuals' derivatives by these parameters.
     """
     chance = np.sqrt(np.diag(spread.matrix))
     held = {
@@ -110,9 +111,8 @@ def within(
         for name, error in zip(names, chance.tolist(), strict=True)
         if "offset" not in name and (torque := torques.single.get(name, 0.0)) > 0.0
     ]
-    with np.errstate(
-        invalid="ignore"
-    ):  # an infinite variance beside no torque: that purpose has no figure
+    # An infinite variance times zero torque: that purpose has no value.
+    with np.errstate(invalid="ignore"):
         squares = _squared_half_widths(parameters, names, spread.matrix, chance) * gram
     own = [index for index, name in enumerate(names) if name in torques.friction]
     of_friction = float(squares[np.ix_(own, own)].sum())
@@ -129,9 +129,10 @@ def within(
 def _squared_half_widths(
     parameters: Mapping[str, ParameterEstimate], names: Sequence[str], matrix: Array, chance: Array
 ) -> Array:
-    """The covariance, scaled so that the intervals are on its diagonal; of sums alone known, by chance.
+    """Return the covariance, scaled to the squared half widths of the intervals on its diagonal.
 
-    What an offset has of the asymmetry of friction, friction lacks: the torque is the same.
+    Parameters with an unknown interval keep their random error. The uncertainty that an offset shares with the asymmetry
+    of friction is removed, because it does not change the torque.
     """
     scale = np.full(len(names), NORMAL)
     for index, name in enumerate(names):

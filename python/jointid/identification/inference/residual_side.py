@@ -1,4 +1,4 @@
-"""What the choice of the compared signal means for each parameter."""
+"""Effect of the residual's choice, "torque" or "sensor", on each parameter."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _OTHER = {"sensor": "torque", "torque": "sensor"}
 def of_residual_side(
     problem: Problem, windows: Windows, domain: SearchDomain, best: Array
 ) -> Array | None:
-    """Return how far each parameter moves when the other side is compared; None where no side is chosen.
+    """Return the change of each parameter with the other residual; None if no side is chosen.
 
-    Noise of the reading makes the gain too small on one side, friction that the model lacks makes it too large on
-    the other: the truth lies between. A gain by instruments needs no side.
+    With the residual "torque", noise of the reading makes the gain too small. With "sensor", friction that the model
+    lacks makes it too large. The true gain is between. A gain by instruments needs no side.
 
     Parameters
     ----------
     windows : int, float, str, WindowOptions or None
-        As given in the call.
+        Windows of the call.
     best : ndarray, shape (p,)
-        The parameters found.
+        Estimated parameters.
     """
     other = _OTHER.get(problem.choice.residual)
     gain = "sensor_gain"

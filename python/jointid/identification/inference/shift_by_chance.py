@@ -1,11 +1,11 @@
-"""How much of a shift of the parameters is chance: what it owes to each segment of the motion tells.
+"""Random part of a parameter shift, estimated from the contributions of the motion's segments.
 
-A derived velocity that is measured once more is smoothed once more, and loses some of the noise that it had. That
-moves the parameters by chance, in every draw alike, and the standard errors know of it already. But each segment of
-the motion then moves them its own way, while a bias moves them the same way in all.
+A derived velocity that is measured again is also smoothed again and loses part of its original noise. This shifts the
+parameters randomly, but equally in every draw. The standard errors already contain this shift. It differs between
+segments of the motion, while a bias is the same in all segments.
 
-That holds of what is linear in the velocity. Friction that is curved at low speed is biased at each reversal, and by
-more at one than at another: there the spread over segments is no chance, and nothing is taken off.
+This is true for terms that are linear in the velocity. Friction that is nonlinear at low speed has a bias that differs
+between reversals. There the spread over segments is not random, and nothing is subtracted.
 """
 
 from __future__ import annotations
@@ -31,28 +31,30 @@ def variance_over_segments(
     free: Sequence[int],
     segments: Segments,
 ) -> Array:
-    """Return the variance by chance of the parameters' change from one problem's velocities to another's.
+    """Return the random variance of the parameters' change from one problem's velocities to another's.
 
     Parameters
     ----------
     problem, other : Problem
+        Problems with different velocities.
     penalty : Penalty
-        The first one's.
+        Penalty of the first problem.
     best : ndarray, shape (p,)
-        Its minimum.
+        Minimum of this penalty.
     free : sequence of int
+        Indices of the free parameters.
     segments : Segments
-        Segments of its motion.
+        Segments of the first problem's motion.
 
     Returns
     -------
     ndarray, shape (p,)
-        To first order; 0 for what is not free, and for friction that is not linear in the velocity.
+        Variance to first order; 0 for fixed parameters and for friction that is not linear in the velocity.
 
     Raises
     ------
     InputError
-        With the other velocities the joint seems to stand still.
+        With the other velocities, the joint seems to stand still.
     """
     chosen = list(free)
     options = _core.WindowOptions(
@@ -66,7 +68,7 @@ def variance_over_segments(
     size = np.sqrt(np.diag(square))
     size = np.where(size > 0.0, size, 1.0)
     inverse = np.linalg.pinv(square / np.outer(size, size), rcond=1e-10) / np.outer(size, size)
-    # Standing still is seen elsewhere, and windows are not quite the same: they are found by their time.
+    # The other velocities may have other standstills and other windows, so windows are matched by their time.
     clocks = [_clock(each, made) for each, made in ((problem, penalty), (other, there))]
     found = np.zeros((len(segments.cuts), len(best)))
     for row, cuts in zip(found, segments.cuts, strict=True):
@@ -81,20 +83,20 @@ def variance_over_segments(
 
 
 def _is_curved(penalty: _core.Penalty) -> NDArray[np.bool_]:
-    """Which parameters belong to friction of a shape: its coefficients and the shape itself."""
+    """Return which parameters belong to friction with a shape: its coefficients and the shape."""
     curved = [bool(term.friction and term.shapes) for term in penalty.terms]
     return np.array(curved + [True] * (len(penalty.names) - len(curved)))
 
 
 def _scores(penalty: _core.Penalty, best: Array, free: list[int]) -> tuple[Array, Array]:
-    """Each window's pull at the parameters, and the product of the Jacobian with itself."""
+    """Return each window's gradient by the free parameters, and the Jacobian's Gram matrix."""
     _, residual, jacobian = penalty.linearised(best)
     columns = jacobian[:, free]
     return columns * residual[:, None], np.einsum("ni,nj->ij", columns, columns)
 
 
 def _clock(problem: Problem, penalty: _core.Penalty) -> Array:
-    """Beginnings of the windows, one recording after the other."""
+    """Return the start of each window on one clock, with the recordings one after the other [s]."""
     motion = Motion.of(problem, penalty)
     first = np.array([run.time[0] for run in problem.recordings])
     lasting = np.array(

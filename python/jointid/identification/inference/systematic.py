@@ -1,4 +1,4 @@
-"""Systematic errors: of the choice of windows, of the instant at which a sensor is sampled, and between samples."""
+"""Systematic errors from the choice of windows, the sensor's sampling instant, and the motion between samples."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 
-_SHARE = 2.5e-4  # of the velocity's change over a window: over half of it noise has four times this share
+# Share of noise in the variance of the velocity's change over a window. Over half a window it is four times as large.
+_SHARE = 2.5e-4
 
 
 def other_windows(
     problem: Problem, penalty: _core.Penalty, domain: SearchDomain, windows: Windows, best: Array
 ) -> Shifts:
-    """Return the changes of the minimum with windows halved and doubled; None where there are no such windows."""
+    """Return the changes of the minimum with halved and doubled windows; None if such windows are impossible."""
     lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
-    if penalty.cumulative or not penalty.is_linear:  # their rows are no sums
+    if penalty.cumulative or not penalty.is_linear:  # their rows are not sums of shorter windows
         return _refitted(problem, penalty, windows, lower, upper, best)
     halved, doubled = _core.window_shifts(
         penalty,
@@ -51,7 +52,7 @@ def _refitted(
     upper: Array,
     best: Array,
 ) -> Shifts:
-    """Return the same by windows that are cut anew."""
+    """Return the same changes from newly cut windows."""
     options = problem.window_options(windows)
     changes: list[Array | None] = []
     for factor in (0.5, 2.0):
@@ -71,22 +72,22 @@ def _refitted(
 def admissible_shifts(
     penalty: _core.Penalty, shifts: tuple[Array | None, Array | None]
 ) -> tuple[Array | None, Array | None]:
-    """Return the shifts to other windows that say something about those used: not to ones too short for the noise.
+    """Return the shifts to other windows, without the shift to windows that are too short for the noise.
 
-    Windows are chosen so that the noise of the velocity has at most a thousandth of the variance of its change over a
-    window. What shorter ones do, by noise and by the smoothing of a derived velocity, grows as this share does.
+    Windows are chosen so that noise has at most a thousandth of the variance of the velocity's change over a window.
+    In shorter windows, the effects of noise and of the smoothing of a derived velocity grow with this share.
     """
     halved, doubled = shifts
     return (None if doubled is not None and penalty.noise_share > _SHARE else halved), doubled
 
 
 def lacking_torques(problem: Problem, penalty: _core.Penalty, best: Array) -> dict[str, Array]:
-    """Return what the residuals may lack in each window, by the name of the cause.
+    """Return the torque that the residuals may lack in each window, by the name of the cause.
 
     Returns
     -------
     mapping of str to ndarray, shape (windows,)
-        Parts that do not apply are missing.
+        Integrals of torque; causes that do not apply are missing.
     """
     lacking = {
         "sampling": _of_sampling(problem, penalty, best),
@@ -103,27 +104,27 @@ def systematic_errors(
     shifts: tuple[Array | None, Array | None],
     instant: float = 1.0,
 ) -> dict[str, Array]:
-    """Return the sizes of errors that do not decrease with the recording's length, by the name of their cause.
+    """Return the errors that do not decrease with the recording's length, by the name of their cause.
 
     Parameters
     ----------
     free : list of int
-        Free parameters.
+        Indices of the free parameters.
     count : int
         Number of all parameters.
     triangle : Triangle
         Triangle of the residuals' derivatives by the free parameters, then by the missing terms.
     lacking : collection of str
-        The causes of what is lacking, in that order.
+        Causes of the missing terms, in the order of the triangle.
     shifts : tuple of ndarray or None
-        Change of each parameter when the windows are halved and doubled; those that count.
+        Admissible changes of each parameter when the windows are halved and doubled.
     instant : float
-        How well the instant of the sensor's sample is known: the part of half a step that may be lacking.
+        Share of half a step that the reading may lack, because the sampling instant is uncertain. Default 1.
 
     Returns
     -------
     mapping of str to ndarray, shape (p,)
-        In the parameters' units; parts that do not apply are missing.
+        Errors in the parameters' units; causes that do not apply are missing.
     """
     parts: dict[str, Array] = {}
     moved = [shift[free] for shift in shifts if shift is not None]
@@ -137,18 +138,18 @@ def systematic_errors(
 
 
 def _everywhere(sizes: Array, free: list[int], count: int) -> Array:
-    """Sizes of the free parameters, among all."""
+    """Return an array for all parameters, with 0 for those that are not free."""
     result = np.zeros(count)
     result[free] = sizes
     return result
 
 
 def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array) -> Array | None:
-    """Return what is lacking by the unknown instant of the sensor's sample: before or after a command's step.
+    """Return the torque that is missing if the sensor is sampled before or after a command's step.
 
-    A held torque steps at the samples. Its step accelerates the drive and the link together, and the
-    link's share of it is a step in the sensor's reading. A reading sampled before the step, not in its
-    middle, lacks half of that share at every sample. Smooth signals are not affected.
+    A held torque steps at the samples. The step accelerates drive and link together, and the link's share is a step
+    in the sensor reading. A reading before the step instead of in its middle lacks half of that share at
+    every sample. Smooth signals are not affected.
     """
     names = list(penalty.names)
     if not {"sensor_gain", "inertia"} <= set(names):
@@ -160,18 +161,18 @@ def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array) -> Array
         recording.sample_period if holds[number] else 0.0
         for number, recording in enumerate(problem.recordings)
     ]
-    slow = 1.0  # of a column that is not used here
+    slow = 1.0  # affects only a column that is not used here
     motion = penalty.link_motion(*problem.masked, periods, slow)
     link, stepped = motion[:, [0, 1, 2, 3, 9]], motion[:, 4]
     for number in range(len(holds)):
-        if not holds[number]:  # it tells nothing of the link's share in a step
+        if not holds[number]:  # this recording does not show the link's share of a step
             of = np.asarray(penalty.recording_of) == number
             link[of, 0] = link[of, 2] = 0.0
             link[of, 1] = link[of, 3]
     if not np.any(stepped):
         return None
     gain = float(best[names.index("sensor_gain")])
-    # The link's inertia over the gain.
+    # `share` is the link's inertia over the gain.
     triangle = Triangle(np.asfortranarray(link), problem.threads)
     share = float(triangle.solve([0, 1, 2, 3], 4, rcond=1e-10)[0][0])
     both = float(best[names.index("inertia")]) + share * gain
@@ -184,7 +185,7 @@ def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array) -> Array
 
 
 def _of_curvature(problem: Problem, penalty: _core.Penalty, best: Array) -> Array | None:
-    """Return what is lacking because the trapezoid rule takes friction as straight between samples."""
+    """Return the torque that is missing because the trapezoidal rule treats friction as linear between samples."""
     names = list(penalty.names)
     if not any(term.shapes for term in penalty.terms):
         return None

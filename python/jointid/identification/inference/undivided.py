@@ -1,4 +1,4 @@
-"""Errors of parameters where nothing divides an offset from the difference of two Coulomb frictions."""
+"""Errors of parameters when an offset and the difference of two Coulomb frictions look the same in the data."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided
 
-_SYMMETRY = "10 %"  # of Coulomb friction, where the joint states none
+_SYMMETRY = "10 %"  # tolerance of the symmetry of Coulomb friction, if the joint sets none
 _NORMAL = 1.959964
 
 
 def divided(free: list[int], names: list[str], groups: tuple[Undivided, ...]) -> list[int]:
-    """Return the free parameters without one offset of each group: those have a covariance."""
+    """Return the free parameters without one offset of each group, because only these have a covariance."""
     dropped = {each.offset for each in groups}
     return [index for index in free if names[index] not in dropped]
 
@@ -31,9 +31,9 @@ def with_undivided(
 ) -> Covariance:
     """Return the covariance of all free parameters from that of the kept ones.
 
-    An offset that was dropped has an infinite variance and no covariance, the others of its group keep
-    theirs at a given offset: of whatever is determined, such as the sum of the two Coulomb frictions, the
-    variance follows. Their own standard errors are infinite.
+    A dropped offset gets an infinite variance and no covariance. The other parameters of its group keep the covariance
+    at a fixed offset. It gives the variance of each determined quantity, such as the sum of both Coulomb
+    frictions. The standard error of each parameter of the group is infinite.
     """
     if not groups:
         return spread
@@ -55,7 +55,7 @@ def with_undivided(
         signs = np.array(list(each.change.values()))
         dropped = free.index(names.index(each.offset))
         matrix[dropped, dropped] = np.inf
-        for name, sign in each.change.items():  # along the change of all there is no information
+        for name, sign in each.change.items():  # a common change of the group has no information
             if name != each.offset and names.index(name) in kept:
                 onto[dropped, kept.index(names.index(name))] = -sign / each.change[each.offset]
         stderr[members] = np.inf
@@ -77,10 +77,10 @@ def with_undivided(
 def of_symmetry(
     joint: Joint | None, domain: SearchDomain, best: NDArray[np.float64]
 ) -> NDArray[np.float64] | None:
-    """Return how far a sensor's offset may be off because friction is not the same in both directions.
+    """Return the error of a sensor offset because friction is not equal in both directions.
 
-    With friction that is taken as symmetric, the offset takes up half of the difference of the two directions, and no
-    log divides the two. The tolerance is taken as a 95 % interval. None without such a friction and such an offset.
+    If the model has symmetric friction, the offset contains half the difference of the two directions, and no log
+    separates both. The tolerance counts as a 95 % interval. Return None without Coulomb friction or a free offset.
     """
     tolerances = (Joint() if joint is None else joint).tolerances
     if tolerances.symmetry is None:

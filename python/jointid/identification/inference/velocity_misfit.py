@@ -1,4 +1,4 @@
-"""Causes that the velocity's own noise imitates: near a reversal a coarse position leaves a misfit that lasts."""
+"""Causes that noise of the velocity imitates: near a reversal, a coarse position leaves a systematic residual."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
-# The last ones are how fast the static excess decays, whatever the speed it decays at.
+# Names of causes that noise of the velocity imitates. The last ones are exponents of the Stribeck decay.
 IMITATED = (
     "slow_motion",
     "smooth_friction",
@@ -41,23 +41,23 @@ def beyond_velocity_noise(
     free: Sequence[int],
     causes: Sequence[Cause],
 ) -> tuple[Cause, ...]:
-    """Return the causes without those that it imitates and that explain no more than what measuring once more adds.
+    """Return the causes without those that noise of the velocity explains.
 
     Parameters
     ----------
     problem : Problem
-        Its velocities are noisy.
+        Problem with noisy velocities.
     penalty : Penalty
-        Over the windows used.
+        Penalty over the windows of the fit.
     best : ndarray, shape (p,)
     free : sequence of int
-        Parameters that vary.
+        Indices of the free parameters.
     causes : sequence of Cause
 
     Notes
     -----
-    A velocity that is measured once more has the same noise once more, and adds to the misfit what that noise has
-    added before. A cause that explains a smaller share of the misfit is not distinguished from it.
+    Adding the same amount of noise to the velocity again increases the residual by as much as the original noise did.
+    An imitated cause that explains a smaller share of the residual cannot be distinguished from noise.
     """
     if not any(each.name in IMITATED for each in causes):
         return tuple(causes)
@@ -72,7 +72,7 @@ def beyond_velocity_noise(
 def _added(
     problem: Problem, penalty: _core.Penalty, best: Array, free: list[int], factors: list[int]
 ) -> dict[int, float]:
-    """What measuring once more adds to the misfit at each scale, as a share of the misfit."""
+    """Return the relative increase of the squared residual at each scale when the noise is added again."""
     before = _misfits(penalty, best, free, factors)
     after = []
     options = _core.WindowOptions(
@@ -101,7 +101,7 @@ def _added(
 def _misfits(
     penalty: _core.Penalty, best: Array, free: list[int], factors: list[int]
 ) -> dict[int, float]:
-    """Mean square of the residual's sums over so many windows, the parameters being refitted to first order."""
+    """Return the mean square of the residual's sums over `factors` windows, with parameters refitted to first order."""
     _, residual, jacobian = penalty.linearised(best)
     columns = jacobian[:, free]
     size = np.sqrt(np.einsum("ij,ij->j", columns, columns))

@@ -1,4 +1,4 @@
-"""What the noise of the velocity does to each parameter, found by measuring it once more."""
+"""Effect of the velocity's noise on each parameter, by adding the same amount of noise again."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ from jointid.recording.velocity_noise import follows_position, noise_of_velocity
 
 Array = NDArray[np.float64]
 
-_HARMLESS = 3e-4  # of the peak speed, as where the velocity is derived
-_SHARE = 1e-3  # of the velocity's change over a window: below, the windows were chosen for it
+_HARMLESS = 3e-4  # harmless noise as a share of the peak speed, as for a derived velocity
+_SHARE = 1e-3  # share of noise in the variance of the velocity's change that the windows allow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VelocityEffect(NoiseEffect):
-    """Change of the parameters when the velocity becomes as noisy again, because friction is not linear in it.
+    """Change of the parameters when the same noise is added to the velocity again, because friction is nonlinear.
 
     Attributes
     ----------
     noise : float
-        Standard deviation of the velocity that was added: the noisiest recording's, a median over its
-        samples [rad/s or m/s].
+        Standard deviation of the added velocity noise: median over the samples of the noisiest recording
+        [rad/s or m/s].
     """
 
     noise: float
@@ -53,23 +53,23 @@ def velocity_systematic(
     free: Sequence[int],
     segments: Segments,
 ) -> VelocityEffect | None:
-    """Return the effect of the velocity's noise, or None where that noise is harmless.
+    """Return the effect of the velocity's noise; None if the noise is harmless.
 
-    A derived velocity is derived again, so that its smoothing is part of what is tried: from the smooth position,
-    rounded to the encoder's steps once more, or, where the position has no steps, from one with as much noise as it
-    has. A recorded velocity gets noise of its own size. The parameters are then fitted again.
+    A derived velocity is derived again, so that the test includes its smoothing. It is derived from the smooth
+    position, rounded again to encoder counts. If the position has no counts, the same amount of noise is added to the
+    position. A recorded velocity gets noise of its own size. The parameters are then fitted again.
 
     Parameters
     ----------
     problem : Problem
     penalty : Penalty
-        Over the windows used.
+        Penalty over the windows of the fit.
     best, lower, upper : ndarray, shape (p,)
-        The parameters found and their bounds.
+        Estimated parameters and their bounds.
     shifts : tuple of ndarray or None
-        Change of each parameter when the windows are halved and doubled; None is not asked for.
+        Change of each parameter when the windows are halved and doubled; None is skipped.
     free : sequence of int
-        Parameters that vary and that no bound holds.
+        Indices of the free parameters that are not on a bound.
     segments : Segments
         Segments of the motion.
     """
@@ -106,7 +106,7 @@ def velocity_systematic(
 
 
 def _in_the_mean(problem: Problem, draws: Sequence[Sequence[Recording]]) -> Problem:
-    """The problem with the mean velocity of the draws: smoothed once more, with hardly any noise added."""
+    """Return the problem with the mean velocity of the draws, which is smoothed again and has little added noise."""
     runs = tuple(
         run.with_velocity(np.mean([each.velocity for each in again], axis=0))
         for run, again in zip(problem.recordings, draws, strict=True)
@@ -115,7 +115,7 @@ def _in_the_mean(problem: Problem, draws: Sequence[Sequence[Recording]]) -> Prob
 
 
 def is_noisy(run: Recording, share: float) -> bool:
-    """Whether a velocity's noise may matter; `share` is that of its change over a window."""
+    """Return whether a velocity's noise may matter; `share` is its share in the velocity's change over a window."""
     if follows_position(run):
         return run.derived.refined
     peak = float(np.abs(run.velocity).max())
@@ -123,7 +123,7 @@ def is_noisy(run: Recording, share: float) -> bool:
 
 
 def measured_again(run: Recording, draw: int, number: int) -> Recording:
-    """Return a recording whose velocity has been measured once more; an odd draw is opposite to the one before."""
+    """Return a recording with velocity noise added again. An odd draw is opposite to the previous one."""
     random = np.random.default_rng((draw // 2, number))
     unit = noise_unit(random, len(run), draw)
     if not follows_position(run):
@@ -134,18 +134,18 @@ def measured_again(run: Recording, draw: int, number: int) -> Recording:
         scale = np.hypot(noise.sigma, noise.timing * run.velocity)
         position = run.position + scale * unit
     else:
-        # At low speed the position stays within a step for many samples: no white noise does that. So the smooth
-        # position is rounded again, its steps being elsewhere.
+        # At low speed the position stays within one count for many samples, unlike white noise. Therefore the smooth
+        # position is rounded again, with shifted counts.
         others = np.sqrt(max(0.0, noise.sigma**2 - step**2 / 12.0))
         scale = np.hypot(others, noise.timing * run.velocity)
-        place = random.random() + 0.5 * (draw % 2)  # errors of rounding are nearly opposite
+        place = random.random() + 0.5 * (draw % 2)  # rounding errors of the pair are nearly opposite
         position = (np.floor((_smooth(run) + scale * unit) / step + place) - place + 0.5) * step
     moved = Recording(time=run.time, position=position, kind=run.kind)
     return run.with_velocity(moved.velocity)
 
 
 def _smooth(run: Recording) -> Array:
-    """The position that the velocity gives; between two pieces of the recording as far as the positions are apart."""
+    """Return the integral of the velocity as a smooth position; over a gap it uses the recorded position change."""
     step = 0.5 * (run.velocity[1:] + run.velocity[:-1]) * np.diff(run.time)
     for gap in run.gaps:
         step[gap.index] = run.position[gap.index + 1] - run.position[gap.index]

@@ -1,1 +1,1 @@
-"""Refinements of the data before the search: delays between signals, and a minimum speed."""
+"""Corrections of the data before the search: delays, the sensor's sampling instant, and a minimum speed."""

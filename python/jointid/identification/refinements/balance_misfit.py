@@ -1,4 +1,4 @@
-"""Whether the torque balance predicts better with a signal changed."""
+"""Test whether a changed signal improves the prediction of the torque balance."""
 
 from __future__ import annotations
 
@@ -14,33 +14,34 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-# Stribeck speeds, of the peak speed: so dense that what they leave of any decay is less than a delay.
+# Stribeck speeds as shares of the peak speed, so dense that the error of any decay is smaller than that of a delay.
 _DECAYS = (0.01, 0.02, 0.03, 0.045, 0.065, 0.1, 0.15, 0.25)
 
 
 _BLOCKS = 40
 SURE = 3.0  # standard errors of the difference over held-out blocks
-_TINY = 1e-30  # a share of the torque's square: rounding
+_TINY = 1e-30  # share of the squared torque that is rounding
 
 
 def fits_better(
     before: Problem, after: Problem, least: float, *, sure: float = SURE, reversals: bool = True
 ) -> bool:
-    """Whether one problem's balance predicts held-out blocks clearly better than another's.
+    """Return whether the balance of `after` predicts held-out blocks clearly better than that of `before`.
 
-    The sum of squares falls by more than a share, and the logarithm of that of held-out blocks by some standard errors.
+    The sum of squares must decrease by more than `least`. Its logarithm over held-out blocks must decrease by more than
+    `sure` standard errors.
 
     Parameters
     ----------
     before, after : Problem
-        The second has the same recordings with a signal changed; samples that it lacks are left out of both.
+        The second has the same recordings with a changed signal. Samples that it lacks are left out of both.
     least : float
-        The share.
+        Smallest relative decrease of the sum of squares.
     sure : float
-        Standard errors; 0: held-out blocks are not asked. Default 3.
+        Number of standard errors; 0: do not test held-out blocks. Default 3.
     reversals : bool
-        Whether windows with a reversal count. Friction jumps there between two samples: no signal that is smooth
-        has anything to say to it.
+        Whether windows with a reversal count. Friction jumps there between two samples, which a smooth signal cannot
+        show. Default True.
     """
     rows = tuple(
         rows_of(run, other) for run, other in zip(before.recordings, after.recordings, strict=True)
@@ -51,13 +52,13 @@ def fits_better(
         return False
     if sure == 0.0:
         return True
-    # Of ratios: blocks of lively motion have a hundred times the misfit of others.
+    # Ratios, because blocks with fast motion have a hundred times the squares of others.
     gain = np.log(np.maximum(missed, _TINY) / np.maximum(without, _TINY))
     return float(np.mean(gain)) > sure * float(np.std(gain, ddof=1) / np.sqrt(len(gain)))
 
 
 def _missed(problem: Problem, reversals: bool) -> tuple[float, Array]:
-    """Share of the torque's integrals that the terms do not explain: in the fit, and in each block fitted by others."""
+    """Return the unexplained share of the torque's squares: in the fit, and in each held-out block."""
     terms = [_core.term(key) for key in problem.choice.terms]
     keys = tuple(term.key for term in terms if not term.shapes)
     decays = any(term.shapes for term in terms)
@@ -88,7 +89,7 @@ def _missed(problem: Problem, reversals: bool) -> tuple[float, Array]:
 
 
 def _in_one_direction(problem: Problem, penalty: _core.Penalty) -> NDArray[np.bool_]:
-    """Windows in which the joint does not turn round."""
+    """Return which windows contain no reversal."""
     windows = np.asarray(penalty.windows, dtype=np.int64)
     run_of = np.asarray(penalty.recording_of, dtype=np.int64)
     found = np.empty(len(windows), dtype=bool)
@@ -101,7 +102,7 @@ def _in_one_direction(problem: Problem, penalty: _core.Penalty) -> NDArray[np.bo
 
 
 def rows_of(recording: Recording, other: Recording) -> Recording:
-    """Return the samples of a recording at the other's times."""
+    """Return the samples of a recording at the times of the other recording."""
     kept = np.searchsorted(recording.time, other.time)
     if len(kept) == len(recording):
         return recording

@@ -1,4 +1,4 @@
-"""The balances that a torque and a sensor's reading are held against, window by window."""
+"""Balances that explain the torque and the sensor reading in smooth windows, for the estimation of delays."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ from jointid.problem.own_balance import OwnSignal
 
 Array = NDArray[np.float64]
 
-SMALL = 3e-4  # [s]; a shorter delay of torque or sensor is left alone
-SUSPECT = 0.6  # of what would be long enough: look closer
-REACH = 0.006  # [s] of the search for the least misfit; at slow rates three samples
-_CLEAR = 3  # samples from a reversal, beside half a window
+SMALL = 3e-4  # [s]; a shorter delay of torque or sensor is not corrected
+SUSPECT = 0.6  # share of the shortest corrected delay, from which on the delay is refined
+REACH = 0.006  # [s] longest delay in the search; at low sampling rates three samples
+_CLEAR = 3  # samples between a window and a reversal
 
 
 def reach(period: float) -> float:
-    """The longest delay that is looked for [s]."""
+    """Return the longest delay of the search [s]."""
     return max(REACH, 3.0 * period)
 
 
 def margin(stretch: Stretch) -> int:
-    """Samples that its signals may be shifted by."""
+    """Return by how many samples the signals of a stretch may be shifted."""
     return int(2.0 * reach(stretch.period) / stretch.period) + 2
 
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """Pieces of the recordings, and what their signals are sums of.
+    """Pieces of the recordings with the balances of torque and reading.
 
     Attributes
     ----------
@@ -50,28 +50,30 @@ class Motion:
 
     @functools.cached_property
     def torque(self) -> Balance:
-        """The torque by inertia, gravity and friction."""
+        """Balance of the torque: inertia, gravity and friction."""
         return self.torque_otherwise()
 
     @functools.cached_property
     def first_look(self) -> Shift | None:
-        """The torque's delay, not refined where it is clearly short."""
+        """Delay of the torque, not refined if it is clearly short."""
         return fit_shift(self.torque, least=SUSPECT * SMALL)
 
     @functools.cached_property
     def inertia(self) -> float:
-        """Of drive and link, as the torque says."""
+        """Inertia of drive and link, estimated from the torque."""
         look = self.first_look
         known = None if look is None else look.leading
         return leading_coefficient(self.torque) if known is None else known
 
     def torque_otherwise(self, *, clear: bool = False, varying: bool = False) -> Balance:
-        """The torque's balance without the reversals, or with an inertia that varies with the angle.
+        """Return the torque's balance without reversals, or with an inertia that varies with the angle.
 
         Parameters
         ----------
-        clear, varying : bool
-            Default False.
+        clear : bool
+            Whether to leave out windows near reversals. Default False.
+        varying : bool
+            Whether the inertia may vary with the angle. Default False.
         """
         windows, columns, count = [], [], 0
         for piece in self.pieces:
@@ -99,11 +101,11 @@ class Motion:
 
     @functools.cached_property
     def reading(self) -> Balance:
-        """The sensor's reading by the link's inertia, gravity and a constant."""
+        """Balance of the sensor reading: link inertia, gravity and a constant."""
         return self.reading_otherwise()
 
     def reading_otherwise(self, factor: int = 1, *, varying: bool = False) -> Balance:
-        """The reading's balance over longer windows, or with an inertia that varies with the angle.
+        """Return the reading's balance over longer windows, or with an inertia that varies with the angle.
 
         Parameters
         ----------
@@ -118,8 +120,8 @@ class Motion:
             each = piece.stretch.windows(
                 half, margin=margin(piece.stretch), clear=half + _CLEAR, usable_only=False
             )
-            # Of a control cycle: the reading is taken before the new command acts. Where the torque jumps, the
-            # acceleration is then that of the interval before the sample.
+            # In a control cycle the sensor is read before the new command acts. If the torque jumps at a sample, the
+            # reading shows the acceleration of the interval before it.
             jumps = piece.held and self.inertia > 0.0
             windows.append(each)
             columns.append(
@@ -136,18 +138,18 @@ class Motion:
             windows=windows,
             signals=[piece.sensor for piece in self.pieces if piece.sensor is not None],
             columns=columns,
-            conservative=1,  # apart: a held torque's acceleration, and gravity
+            conservative=1,  # the acceleration of a held torque, apart from gravity
             held=False,
         )
 
     def answer(self) -> float:
-        """What the reading changes by where the torque changes by 1: the link's share of the inertia."""
+        """Return the change of the reading when the torque changes by 1: the link's share of the inertia."""
         return leading_coefficient(self.reading) / self.inertia if self.inertia else 0.0
 
 
 def _series(own: Sequence[OwnSignal], *, friction: bool, taken: bool) -> list[Array]:
-    """Integrals of own terms, whose rates are columns: friction or what is none, with known torques or without.
+    """Return the integrals of own terms, either friction or not, with or without known torques.
 
-    The drive's torque lacks the known torques already.
+    The drive's torque no longer contains the known torques.
     """
     return [each.series for each in own if each.friction == friction and (taken or not each.taken)]

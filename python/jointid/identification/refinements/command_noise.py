@@ -1,8 +1,8 @@
-"""A sensor's delay by its own noise: a controller that feeds the reading back repeats its noise in the torque.
+"""Delay of a sensor from its noise, which a controller with sensor feedback repeats in the torque.
 
-The reading is drowned in noise where the delay of its smooth part is to be found; the same noise in the recorded
-torque tells it to a part of a sample. No controller knows a reading's noise before the sensor shows it, so a torque
-that repeats the noise before the reading does proves that the recorded reading is late.
+Noise may hide the delay of the reading's smooth part. The same noise in the recorded torque shows the delay to a
+fraction of a sample. No controller knows the noise before the sensor measures it. If the torque shows the noise before
+the reading, the recorded reading is late.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Repeated:
     share : float
         Correlation of both noises.
     pieces : sequence of Piece
-        In which it was seen, each with a sensor.
+        Pieces with this noise; each has a sensor.
     """
 
     shift: Shift
@@ -36,19 +36,19 @@ class Repeated:
 
     @property
     def torque_over_reading(self) -> float:
-        """How large the torque's third differences are, over those of the reading."""
+        """Ratio of the torque's third differences to those of the reading."""
         reading = np.mean([_core.roughness(p.sensor) for p in self.pieces if p.sensor is not None])
         torque = np.mean([_core.roughness(piece.torque) for piece in self.pieces])
         return float(torque / reading)
 
 
 def delay_in_command(pieces: Sequence[Piece]) -> Repeated | None:
-    """Return the reading's delay against the torque; None where the torque does not repeat the reading's noise.
+    """Return the reading's delay relative to the torque; None if the torque does not repeat the reading's noise.
 
     Parameters
     ----------
     pieces : sequence of Piece
-        Each with a sensor.
+        Pieces with a sensor.
     """
     found = _core.repeated_noise(
         [(piece.sensor, piece.torque) for piece in pieces if piece.sensor is not None]

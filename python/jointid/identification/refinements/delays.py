@@ -1,9 +1,9 @@
-"""Constant delays of torque, sensor and velocity against the position.
+"""Constant delays of torque, sensor and velocity relative to the position.
 
-Each signal is held against the motion by itself: the velocity against the position's rate, the sensor's
-reading against link inertia and gravity, the torque against inertia, gravity and friction as any function of
-the speed. So no delay is blamed on another signal. A model error may still ask for a shift, but not for the same one
-of every part of the torque; see `_torque`.
+Each signal is compared with the motion separately. The velocity is compared with the rate of the position, the sensor
+reading with link inertia and gravity, and the torque with inertia, gravity and friction as any function of the speed.
+A delay is therefore not attributed to another signal. A model error may also look like a shift, but not like the same
+shift of every part of the torque; see `_torque`.
 """
 
 from __future__ import annotations
@@ -24,43 +24,41 @@ from jointid.problem.problem import Problem
 from jointid.recording.shifting import shifted
 
 _SURE = 5.0  # standard errors
-_SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity and position
-# A torque that is held between samples seems early by about half of one; read so, it leaves half of the squares.
+_SURE_OF_VELOCITY = 8.0  # standard errors; friction does not affect velocity against position
+# A held torque seems early by about half a sample. Treating it as held must halve the sum of squares.
 _HELD, _HELD_GAIN = 0.2, 0.5  # sample periods, and a share
-_VELOCITY = 0.35  # sample periods; a backward difference has 0.5
+_VELOCITY = 0.35  # sample periods; a backward difference has a delay of 0.5
 _LEAST_IN_COMMAND = 0.3  # sample periods
-_BEYOND_ANSWER = 3.0  # times the joint's answer to noise of the torque
-_WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
-_CLEARLY = 4.0  # standard errors: a first look at parts of the motion is enough
-_ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
-_MOST_LEFT = 0.5  # of a signal's variance unexplained: other torques act
+_BEYOND_ANSWER = 3.0  # factor on the joint's response to noise of the torque
+_WITHIN_SAMPLE = 0.06  # sample periods; error because friction and torque jump between samples
+_CLEARLY = 4.0  # standard errors, from which on the result from parts of the motion is enough
+_ALIKE, _BARELY_ALIKE = 0.5, 0.7  # largest difference of two estimates, as a share of the delay
+_MOST_LEFT = 0.5  # largest unexplained share of a signal's variance; above it, other torques act
 _MOST_LEFT_OF_VELOCITY = 0.05
-# The fall of the sum of squares that makes a shift worth it: noise of a reading leaves little to fall.
+# Smallest relative decrease of the sum of squares. With a noisy reading the decrease is small.
 _LEAST_GAIN = {"velocity": 0.01, "sensor": 0.0, "torque": 0.02}
 
 
 def refined_delays(
     problem: Problem, given: Mapping[str, float] | None
 ) -> tuple[Problem, dict[str, Delay]]:
-    """Return the problem with its signals' delays taken away, and the delays by signal.
+    """Return the problem with the delays of its signals removed, and the delays by signal.
 
     Parameters
     ----------
     problem : Problem
         Problem of the unchanged recordings.
     given : mapping of str to float, optional
-        Delays to take away [s], no others. Default: those that are certain and without which the torque
-        balance fits better; never a torque that is early by more than a sample. One that fits better as held
-        between samples, which nobody stated, is taken for that.
+        Delays to remove [s]; no others are removed. Default: remove delays that are certain and improve the fit of the
+        torque balance, but not that of a torque that is early by more than one sample. If the caller sets no hold
+        and the torque fits better as held between samples, it is treated as held.
     """
     choose = given is None
     shift = dict(given or {})
     if shift:
         problem = _shifted(problem, shift)
     found: dict[str, Delay] = {}
-    mended = (
-        problem  # also without what the call leaves: the next signal is held against true motion
-    )
+    mended = problem  # without all certain delays, because the next signal needs the true motion
     motion = Motion(pieces=pieces_of(mended))
     for signal in ("velocity", "sensor", "torque"):
         measured = _measured(signal, motion)
@@ -77,13 +75,13 @@ def refined_delays(
         if certain:
             without = _shifted(mended, {signal: left.value})
             least, smooth = _LEAST_GAIN[signal], signal == "sensor"
-            # The model has no say in what the velocity and the reading show by themselves.
+            # The delays of velocity and reading do not depend on the model.
             sure = SURE if signal == "torque" else 0.0
             fits = fits_better(mended, without, least, sure=sure, reversals=not smooth)
-            # Friction that the model lacks may look like a late torque; the others are measured without it.
+            # Friction that the model lacks may look like a late torque. It does not affect the other signals.
             certain = fits or signal != "torque"
             wrong = signal == "torque" and left.value < -problem.recordings[0].sample_period
-            # A torque does not come before its motion: then the position is late, as a coarse one is.
+            # A torque cannot be early by a sample. The position is then late, for example a coarse one.
             if fits and not (choose and wrong):
                 mended, motion = without, Motion(pieces=pieces_of(without))
                 if choose:
@@ -102,9 +100,9 @@ def refined_delays(
 
 
 def _with_held_torque(problem: Problem, delay: float) -> Problem | None:
-    """The problem with a torque that is held between samples; None where that is not clearly better.
+    """Return the problem with a torque that is held between samples; None if that is not clearly better.
 
-    Such a torque seems early by half a sample, if nobody says that it is held. A shift has to predict less well.
+    A held torque seems early by half a sample if it is interpolated. A shift must predict less well.
     """
     period = problem.recordings[0].sample_period
     if delay > -_HELD * period or problem.states_hold:
@@ -119,7 +117,7 @@ def _with_held_torque(problem: Problem, delay: float) -> Problem | None:
 
 
 def delays_removed(problem: Problem, given: Mapping[str, float]) -> Problem:
-    """Return the problem with delays that are known taken away [s], without a look at others."""
+    """Return the problem with known delays [s] removed, without a search for others."""
     return _shifted(problem, given).changed(shift=dict(given)) if given else problem
 
 
@@ -128,7 +126,10 @@ def _shifted(problem: Problem, shift: Mapping[str, float]) -> Problem:
 
 
 def _measured(signal: str, motion: Motion) -> tuple[Shift, bool] | None:
-    """A signal's delay and whether it is certain; parts of the motion show that the velocity has none."""
+    """Return a signal's delay and whether it is certain.
+
+    For the velocity, parts of the motion may suffice to exclude a delay.
+    """
     if not motion.pieces:
         return None
     if signal == "sensor":
@@ -188,7 +189,7 @@ def _sensor(motion: Motion) -> tuple[Shift, bool] | None:
         told = delay_in_command(pieces)
         late = told is not None and told.shift.value > max(SMALL, _LEAST_IN_COMMAND * period)
         if told is not None and late and (found is None or found.agrees(told.shift, _ALIKE)):
-            # Noise of the torque that the joint answers comes before the reading, too.
+            # The joint's response to torque noise also appears in the torque before the reading.
             answer = motion.answer() * told.torque_over_reading
             if told.share > _BEYOND_ANSWER * abs(answer):
                 return told.shift, True
@@ -199,15 +200,15 @@ def _sensor(motion: Motion) -> tuple[Shift, bool] | None:
 
             by_samples = delay_by_samples(pieces, found, reach(period), motion.inertia)
             if by_samples is not None:
-                # Jumps are those of the acceleration alone: neither a varying inertia nor slow motion has them.
+                # Only the acceleration jumps; a varying inertia and slow motion have no jumps.
                 return by_samples, _is_long(by_samples, SMALL)
     if found is None or found.unexplained > _MOST_LEFT:
         return None
-    # An early reading is one that is not of a control cycle, up to half a sample.
+    # With a held torque, a reading that is not part of a control cycle may seem early by half a sample.
     least = SMALL if found.value > 0.0 or not pieces[0].held else SMALL + 0.6 * period
     if not _is_long(found, least):
         return found, False
-    # A link whose inertia varies with the pose may look like a late reading.
+    # An inertia of the link that varies with the pose may look like a late reading.
     for factor, varying in ((3, False), (1, True)):
         other = _searched(motion.reading_otherwise(factor, varying=varying), period, 0.0)
         if other is None or not found.agrees(other, _ALIKE) or abs(other.value) < least:
@@ -216,11 +217,11 @@ def _sensor(motion: Motion) -> tuple[Shift, bool] | None:
 
 
 def _torque(motion: Motion) -> tuple[Shift, bool] | None:
-    """The torque's delay, and whether it is certain.
+    """Return the torque's delay, and whether it is certain.
 
-    Certain is what conservative torque and friction ask for alike, with and without an inertia that
-    varies, and with and without the reversals: pre-sliding fakes a delay at the reversals only, a varying
-    inertia away from them.
+    A delay is certain if conservative torque and friction show the same delay, with and without a varying inertia, and
+    with and without reversals. Pre-sliding looks like a delay only at reversals, and a varying inertia only away
+    from them.
     """
     period = motion.pieces[0].stretch.period
     look = motion.first_look
@@ -241,7 +242,7 @@ def _torque(motion: Motion) -> tuple[Shift, bool] | None:
 
 
 def _searched(balance: Balance, period: float, least: float) -> Shift | None:
-    """The delay: from no shift, and only where that looks long, from the shift of least misfit."""
+    """Return the delay, starting from 0. If it may be long, start from the shift with the smallest residual."""
     if least > 0.0:
         found = fit_shift(balance, least=SUSPECT * least)
         if _is_short(found, least):
@@ -250,7 +251,7 @@ def _searched(balance: Balance, period: float, least: float) -> Shift | None:
 
 
 def _is_short(found: Shift | None, least: float) -> bool:
-    """Whether a first look is enough."""
+    """Return whether the first estimate is clearly shorter than `least`."""
     return found is not None and abs(found.value) < max(SUSPECT * least, 2.0 * found.stderr)
 
 

@@ -1,9 +1,9 @@
-"""When a coarsely sampled sensor is read, by its single samples.
+"""Sampling instant of a sensor with a low sampling rate, from its single samples.
 
-Sums over windows see a step of the torque only at their two ends. Sample by sample the reading is the link's inertia
-times the acceleration about the sample, gravity, an offset, and a share of the step that the torque takes at that
-sample. A controller that feeds the reading back lets the reading's noise into this step and into the acceleration
-behind it: both are replaced by what the samples before tell of them, which know nothing of that noise.
+Sums over windows show a torque step only at their two ends. At each sample, the reading is the sum of four parts: the
+link's inertia times the acceleration around the sample, gravity, an offset, and a share of the torque step at that
+sample. A controller with sensor feedback puts the noise of the reading into this step and the following acceleration.
+Both are therefore predicted from earlier samples, which are independent of that noise (instrumental variables).
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_COARSE = 1.5e-3  # [s]: half of a shorter step moves a gain by little
-_BEFORE = 3  # steps and accelerations that tell of the next ones
-_SLOW = 0.02  # of the peak speed: slower motion may stick within a sample
+_COARSE = 1.5e-3  # [s] shortest sample period; below it, half a step hardly changes the gain
+_BEFORE = 3  # number of earlier steps and accelerations that predict the next ones
+_SLOW = 0.02  # share of the peak speed; slower motion may stick within a sample
 _FEWEST = 200  # samples
-_SAME = 1e-10  # of the strongest direction of the instruments
-_REFUTED = 4.0  # deviations of the test below from its mean
+_SAME = 1e-10  # weakest used direction of the instruments, relative to the strongest
+_REFUTED = 4.0  # standard deviations of the Sargan test from its mean
 
 
 def by_samples(problem: Problem, half: float) -> tuple[float, float] | None:
@@ -32,15 +32,15 @@ def by_samples(problem: Problem, half: float) -> tuple[float, float] | None:
     Parameters
     ----------
     problem : Problem
-        Problem; it uses the recordings with a held torque, a recorded velocity and a low sampling rate.
+        Problem. Only recordings with a held torque, a recorded velocity and a low sampling rate are used.
     half : float
-        What half a step of 1 N·m changes the reading by; the link's inertia is in it.
+        Change of the reading by half a step of 1 N·m; it contains the link's inertia.
 
     Returns
     -------
     tuple of float, or None
-        None where there are too few samples, or where the samples before tell more of the reading than
-        they can through acceleration and step: then the equation does not hold (Sargan 1958).
+        None if there are too few samples or the Sargan test (1958) rejects the equation. The test rejects it if earlier
+        samples explain more of the reading than acceleration and step allow.
     """
     rows = list(_rows(problem))
     count = sum(map(len, rows))
@@ -54,7 +54,7 @@ def by_samples(problem: Problem, half: float) -> tuple[float, float] | None:
     triangle = triangle / size
     instruments = triangle[:, [*range(_KNOWN), *range(_KNOWN + 2, triangle.shape[1] - 1)]]
     regressors, reading = triangle[:, : _KNOWN + 2], triangle[:, -1]
-    # Motion in one direction makes some of them alike: no direction may be one of rounding.
+    # Motion in one direction makes some instruments equal, so directions that contain only rounding are removed.
     left, strength, _ = np.linalg.svd(instruments, full_matrices=False)
     basis = left[:, strength > _SAME * strength[0]]
     more = basis.shape[1] - regressors.shape[1]
@@ -72,11 +72,11 @@ def by_samples(problem: Problem, half: float) -> tuple[float, float] | None:
     return -float(found[-1]) * scale, float(np.sqrt(variance * spread)) * abs(scale)
 
 
-_KNOWN = 3  # columns that no noise of the reading is in: an offset and gravity
+_KNOWN = 3  # columns without noise of the reading: offset and gravity
 
 
 def _rows(problem: Problem) -> Iterator[Array]:
-    """Known columns, acceleration and step, what tells of both, and the reading; a row a sample."""
+    """Yield one row per sample: known columns, acceleration and step, their instruments, and the reading."""
     for number, recording in enumerate(problem.recordings):
         coarse = recording.sample_period > _COARSE and not recording.velocity_derived
         if not coarse or problem.hold(number) != "zoh":

@@ -1,4 +1,4 @@
-"""The refinements: delays first, since a late signal also looks like slow motion that disagrees."""
+"""Corrections of the data. Delays come first, because a late signal also looks like contradicting slow motion."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from jointid.recording.mending import Mend
 
 @dataclass(frozen=True, kw_only=True)
 class Refinements:
-    """What was found out about the data before the search, and done to them.
+    """Results and corrections of the data before the search.
 
     Attributes
     ----------
     mends : tuple of tuple of Mend
-        What was put right in each recording before all else.
+        Repairs of each recording, made first.
     delays : mapping of str to Delay
     slow_motion : SlowMotion or None
     sensor_instant : SensorInstant or None
-        When the sensor is sampled; None where there is no sensor, or no held torque.
+        Sampling instant of the sensor; None without a sensor or without a held torque.
     """
 
     mends: tuple[tuple[Mend, ...], ...]
@@ -41,19 +41,19 @@ class Refinements:
 def without_delays(
     problem: Problem, shift: Mapping[str, float] | None, *, measure: bool = True
 ) -> tuple[Problem, dict[str, Delay]]:
-    """Return the problem without its signals' delays, and these by signal.
+    """Return the problem without the delays of its signals, and the delays by signal.
 
     Parameters
     ----------
     shift : mapping of str to float or None
-        [s]; None: chosen.
+        Delays to remove [s]; None: chosen from the data.
     measure : bool
-        Whether the delays that `shift` leaves are measured, too. Default True.
+        Whether to estimate the delays that remain after `shift`. Default True.
 
     Raises
     ------
     InputError
-        A shift that these recordings cannot have.
+        A shift that is impossible for these recordings.
     """
     if not measure:
         return delays_removed(problem, shift or {}), {}
@@ -63,12 +63,12 @@ def without_delays(
 def without_creep(
     problem: Problem, windows: Windows, min_speed: float | None
 ) -> tuple[Problem, _core.Penalty, SlowMotion | None]:
-    """Return the problem without slow motion that contradicts, its penalty, and that slow motion.
+    """Return the problem without contradicting slow motion, its penalty, and that slow motion.
 
     Parameters
     ----------
     min_speed : float or None
-        [rad/s or m/s]; None: chosen.
+        Minimum speed [rad/s or m/s]; None: chosen from the data.
 
     Raises
     ------
@@ -88,12 +88,12 @@ def without_creep(
 
 
 def _faster(problem: Problem, windows: Windows, min_speed: float) -> Problem:
-    """The problem without motion that is slower; an error tells what the speed leaves."""
+    """Return the problem without motion slower than `min_speed`; raise an error if too little motion remains."""
     faster = problem.changed(min_speed=min_speed)
     try:
         faster.parts(windows)
     except InputError as error:
-        problem.parts(windows)  # raises where the speed is not to blame
+        problem.parts(windows)  # raises if the minimum speed is not the cause
         unit = "rad/s" if problem.recordings[0].kind == "revolute" else "m/s"
         raise InputError(
             f"it leaves too little motion: the joint moves at up to {problem.peak_speed:.3g} {unit}",

@@ -1,9 +1,9 @@
-"""A sensor's delay sample by sample: what jumps in the motion, such as the acceleration at a reversal.
+"""Delay of a sensor from single samples with jumps in the motion, such as the acceleration at a reversal.
 
-Smooth windows leave out the reversals and blur what is left. Where the velocity is fine enough, the reading is held
-against inertia, gravity and a constant at each sample. The jumps tell the delay to a part of a sample, but only of a
-rigid link: an elastic gear answers a jump late and in swings. So it must be a pure delay: near the jumps it may leave
-no more of the reading than elsewhere.
+Smooth windows leave out reversals and smooth the rest. If the velocity is precise enough, the reading is compared with
+inertia, gravity and a constant at each sample. The jumps show the delay to a fraction of a sample, but only for a
+rigid link: an elastic gear responds to a jump late and with oscillations. The delay must therefore be pure: the
+residual near jumps must not be larger than elsewhere.
 """
 
 from __future__ import annotations
@@ -19,17 +19,16 @@ from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
-_NOISE_SHARE = (
-    0.02  # of the square of the acceleration's changes: more noise pulls the delay to half a sample
-)
+# Largest noise, as a share of the squared changes of the acceleration. More noise biases the delay to half a sample.
+_NOISE_SHARE = 0.02
 _FEW = 200  # samples
-_PARTS = 20  # of a sample, at which the misfit is computed
-_CLIPPED = 4.0  # standard deviations of the reading's noise: what misses by more counts for less
-_ROUNDS = 3  # of weights
+_PARTS = 20  # grid of the residual within a sample
+_CLIPPED = 4.0  # standard deviations of the reading's noise; larger residuals get a smaller weight
+_ROUNDS = 3  # rounds of reweighting
 _JUMP = 1.0  # standard deviations of the reading's noise
 _NEAR = 3  # samples from a jump
-_AS_ELSEWHERE = 1.25  # how much more variance a pure delay may leave near the jumps
-_LEAST_ERROR = 0.05  # samples, beside chance: what changes within a sample
+_AS_ELSEWHERE = 1.25  # largest residual variance near jumps over that elsewhere, for a pure delay
+_LEAST_ERROR = 0.05  # samples; error from changes within a sample, in addition to noise
 _GRID = 4001
 _UNLIKE = 3.5  # standard errors between both estimates
 _RIDGE = 1e-12
@@ -38,14 +37,14 @@ _RIDGE = 1e-12
 def delay_by_samples(
     pieces: Sequence[Piece], smooth: Shift, reach: float, inertia: float
 ) -> Shift | None:
-    """Return the reading's delay; None where the motion's noise, an elastic gear or few samples forbid it.
+    """Return the reading's delay; None if noise of the motion, an elastic gear or too few samples prevent it.
 
     Parameters
     ----------
     pieces : sequence of Piece
-        Each with a sensor.
+        Pieces with a sensor.
     smooth : Shift
-        The delay of the reading's smooth part; its part of friction is gravity's.
+        Delay of the reading's smooth part. Its field `friction` has the delay of gravity.
     reach : float
         Longest delay [s].
     inertia : float
@@ -95,7 +94,7 @@ def delay_by_samples(
 
 
 def _near_over_elsewhere(missed: Array, near: NDArray[np.bool_]) -> float:
-    """What is left near the jumps, over what is left elsewhere: variances, less what chance makes of few samples."""
+    """Return the residual variance near jumps over that elsewhere, reduced by what few samples explain by chance."""
     count, others = int(np.count_nonzero(near)), int(np.count_nonzero(~near))
     if count == 0 or others == 0:
         return 1.0 if count == 0 else np.inf
@@ -104,11 +103,11 @@ def _near_over_elsewhere(missed: Array, near: NDArray[np.bool_]) -> float:
 
 
 def _combined(value: float, stderr: float, smooth: Shift, period: float) -> Shift | None:
-    """The delay that both the samples and gravity ask for; None where no delay does for both.
+    """Return the delay that agrees with both samples and gravity; None if no delay agrees with both.
 
-    A reading that was interpolated spreads a jump over two samples, and so tells any delay. The reading of an
-    instant shows the acceleration of a held torque at a whole sample: the delay is then anywhere up to the next
-    one, and only gravity tells where. Each is as likely beforehand.
+    An interpolated reading spreads a jump over two samples and so shows any delay. An instantaneous reading shows
+    the acceleration of a held torque at a whole sample. The delay is then anywhere up to the next sample, and
+    only gravity shows where. Both kinds of reading have the same prior probability.
     """
     stderr = float(np.hypot(stderr, _LEAST_ERROR * period))
     gravity, error = smooth.friction
@@ -138,7 +137,7 @@ def _shift(value: float, stderr: float, smooth: Shift) -> Shift:
 
 
 class _Samples:
-    """One piece: what explains the reading, at every sample, and the reading of those that can be shifted."""
+    """One piece: regressors at every sample, and the reading at the samples that can be shifted."""
 
     def __init__(self, piece: Piece, most: int, inertia: float) -> None:
         assert piece.sensor is not None
@@ -147,18 +146,18 @@ class _Samples:
         self._most = most + 2
         self._used = slice(self._most, len(velocity) - self._most)
         self.reading = piece.sensor[self._used]
-        # Third differences of white noise; few jumps do not change a median.
+        # Third differences of white noise; a few jumps do not change a median.
         third = median(np.abs(np.diff(self._columns[:, 0], 3)))
         self.noise = (1.4826 * third) ** 2 / 20.0
         self.change = float(np.mean(np.diff(self._columns[:, 0]) ** 2))
 
     def at(self, whole: int) -> Array:
-        """Columns so many samples earlier."""
+        """Return the columns `whole` samples earlier."""
         first = self._used.start - whole
         return np.asarray(self._columns[first : first + len(self.reading)])
 
     def near_jumps(self, delay: float, inertia: float, noise: float) -> NDArray[np.bool_]:
-        """Samples near a jump of the acceleration that the reading shows."""
+        """Return which samples are near a jump of the acceleration that is visible in the reading."""
         acceleration = self.at(int(np.floor(delay)))[:, 0]
         jump = np.abs(np.diff(acceleration, prepend=acceleration[:1])) * abs(inertia)
         counts = np.convolve(jump > _JUMP * noise, np.ones(2 * _NEAR + 1), mode="same")
@@ -166,10 +165,10 @@ class _Samples:
 
 
 def _acceleration(piece: Piece, inertia: float) -> Array:
-    """At each sample, of a held torque at the end of the interval before it.
+    """Return the acceleration at each sample; with a held torque, at the end of the interval before it.
 
-    The velocity's differences are means over intervals. Of both beside a sample, what the torque jumps by is taken
-    away; a change of direction in an interval makes its mean useless.
+    Differences of the velocity are means over intervals. The mean after a sample is corrected by the torque's jump.
+    A reversal in an interval makes its mean useless; the mean of the other side is then used.
     """
     velocity, period = piece.stretch.velocity, piece.stretch.period
     mean = np.diff(velocity) / period
@@ -187,7 +186,7 @@ def _acceleration(piece: Piece, inertia: float) -> Array:
 
 
 class _Neighbours:
-    """Normal equations of the reading on the columns of two neighbouring delays, a sample apart."""
+    """Normal equations of the reading on the columns of two neighboring delays, one sample apart."""
 
     def __init__(
         self, signals: Sequence[_Samples], whole: int, reading: Array, weights: Array
@@ -202,7 +201,7 @@ class _Neighbours:
         self._reading = reading
 
     def _solved(self, part: float) -> tuple[Array, Array]:
-        """Coefficients, and how the columns of both delays make the ones between."""
+        """Return the coefficients, and the interpolation between the columns of both delays."""
         width = self._width
         between = np.zeros((2 * width + 1, width + 1))
         between[:width, :width] = (1.0 - part) * np.eye(width)
@@ -220,11 +219,11 @@ class _Neighbours:
         return float(whole @ self._gram @ whole)
 
     def misfits(self) -> Array:
-        """At even parts of the sample between both."""
+        """Return the residual at an even grid between both delays."""
         return np.array([self._misfit(part) for part in np.linspace(0.0, 1.0, _PARTS + 1)])
 
     def least(self, near: int) -> float:
-        """The part of the sample with the least misfit, by a parabola."""
+        """Return the fraction of the sample with the smallest residual, by a parabola."""
         step = 1.0 / _PARTS
         middle = min(max(near, 1), _PARTS - 1) * step
         before, here, after = (self._misfit(middle + k * step) for k in (-1, 0, 1))
@@ -233,7 +232,10 @@ class _Neighbours:
         return float(np.clip(middle + step * moved, 0.0, 1.0))
 
     def curvature(self, part: float) -> float:
-        """Squares of what the delay alone changes, a sample long: over the noise it is its weight."""
+        """Return the squared change of the reading per sample of delay, at free coefficients.
+
+        Its ratio to the noise variance is the inverse variance of the delay.
+        """
         found, between = self._solved(part)
         width = self._width
         rate = np.concatenate([-found[:width], found[:width], [0.0]])
@@ -245,17 +247,17 @@ class _Neighbours:
         return float(rate @ gram @ rate - (scale * cross) @ np.linalg.solve(scaled, scale * cross))
 
     def missed(self, part: float) -> Array:
-        """What is left of the reading."""
+        """Return the residual of the reading."""
         found, between = self._solved(part)
         return np.asarray(self._reading - self._rows @ (between @ found))
 
     def of_acceleration(self, part: float) -> float:
-        """Of the reading, for an acceleration of 1."""
+        """Return the change of the reading for an acceleration of 1."""
         return float(self._solved(part)[0][0])
 
 
 def _gram(columns: Array, others: Array) -> Array:
-    """columns.T @ others in blocks, so that the threads of a library do not change its last bits."""
+    """Return columns.T @ others, computed in blocks so that the threads of a library do not change the last bits."""
     rows = 256
     whole = len(columns) // rows * rows
     width = columns.shape[1]

@@ -1,8 +1,8 @@
-"""When a torque sensor is sampled: before a held command steps, in its middle, or after it.
+"""Sampling instant of a torque sensor: before the step of a held command, in its middle, or after it.
 
-A held torque steps at the samples, and with it the acceleration of drive and link together. The link's share of that
-is a step in the sensor's reading. A controller reads before it commands, so its samples lack half of the step that a
-reading in the middle would show; integrated over windows that biases the gain, and what it leaves resembles late
+A held torque steps at the samples, and the acceleration of drive and link steps with it. The link's share is a step in
+the sensor reading. A controller reads the sensor before it sends the command. Its samples therefore lack half of the
+step, compared with a reading in the middle. Integrated over windows, this biases the gain. The residual looks like late
 signals, harmonics and friction at low speed.
 """
 
@@ -24,25 +24,26 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 _SURE = 3.0  # standard errors
-_KNOWN = 0.3  # standard error of a share that is worth taking away
-_LEAST = 0.25  # standard error: the friction, too, changes within a sample
-_LOG_ODDS = 3.0  # of one instant against another, where neither is measured sharply: 20 to 1
+_KNOWN = 0.3  # largest standard error of a share that is corrected
+_LEAST = 0.25  # smallest standard error, because friction also changes within a sample
+_LOG_ODDS = 3.0  # log odds between two instants if neither is measured precisely: 20 to 1
 _FEWEST = 50  # windows
 _RESTING = 1e-3  # share of the samples
-_MOVING = 0.02  # of the peak speed
+_MOVING = 0.02  # share of the peak speed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorInstant:
-    """When the sensor is sampled, against the steps of a held torque.
+    """Sampling instant of the sensor relative to the steps of a held torque.
 
     Attributes
     ----------
     share : float
-        1: before the step; 0: in its middle, or where the reading is smooth; -1: after it.
+        1: before the step; 0: in its middle, or with a smooth reading; -1: after it.
     stderr : float
+        Standard error of the share.
     applied : float
-        What was taken away.
+        Share that was corrected.
     """
 
     share: float
@@ -51,7 +52,7 @@ class SensorInstant:
 
     @property
     def unknown(self) -> float:
-        """Standard error of what is left, as a part of half a step; 1 where nothing is known."""
+        """Standard error of the remaining share of half a step; 1 if nothing is known."""
         if self.stderr > _KNOWN and not self.applied:
             return 1.0
         return min(1.0, float(np.hypot(self.share - self.applied, max(self.stderr, _LEAST))))
@@ -60,20 +61,20 @@ class SensorInstant:
 def without_early_reading(
     problem: Problem, penalty: _core.Penalty, windows: Windows
 ) -> tuple[Problem, _core.Penalty, SensorInstant | None]:
-    """Return problem and penalty with the reading in the middle of the torque's steps, where that is certain.
+    """Return problem and penalty with the reading moved to the middle of the torque's steps, if that is certain.
 
     Parameters
     ----------
     problem : Problem
     penalty : Penalty
-        Over `windows`.
+        Penalty over `windows`.
     windows : int, float, str, WindowOptions or None
 
     Notes
     -----
-    The link's equation has no friction: its reading is inertia, gravity and an offset, and the torque's steps are
-    regressed beside them. What a full half step is follows from the inertia that the reading shows and from that
-    which the torque shows, so it needs no known inertia.
+    The link's equation has no friction: the reading is the sum of inertia, gravity and an offset. The torque's steps
+    are an additional regressor. The size of half a step follows from two estimated inertias, one from the reading
+    and one from the torque. It needs no known inertia.
     """
     held = [problem.hold(number) == "zoh" for number in range(len(problem.recordings))]
     late = {"sensor", "torque"} & set(problem.shift)
@@ -98,7 +99,7 @@ def without_early_reading(
 def _measured(
     problem: Problem, penalty: _core.Penalty, held: list[bool]
 ) -> tuple[SensorInstant, float] | None:
-    """The instant, and what half a step of 1 N·m changes the reading by."""
+    """Return the instant, and the change of the reading by half a step of 1 N·m."""
     integrals = _integrals(problem, penalty, held)
     rows = np.asarray(_core.triangle(integrals))
     torque, reading = integrals.shape[1] - 2, integrals.shape[1] - 1
@@ -111,8 +112,8 @@ def _measured(
     half = 0.5 * float(of_reading[0]) / both if both > 0.0 else 0.0
     if half == 0.0:
         return None
-    _, alone = solve(rows, link[:_STEPS], _STEPS)  # what of the steps nothing else is like
-    # A reading that lacks half a step over its window rises by less.
+    _, alone = solve(rows, link[:_STEPS], _STEPS)  # the part of the steps that is independent
+    # A reading that lacks half a step rises less over its window.
     share = -float(of_reading[_STEPS]) / half
     noise = missed / math.sqrt(max(1, len(integrals) - len(link)))
     stderr = noise / alone / abs(half) if alone > 0.0 else math.inf
@@ -124,21 +125,21 @@ def _measured(
             return _by_odds(*finer), half
     least = _SURE * max(stderr, _LEAST)
     certain = _settled(share, stderr)
-    # A controller reads just before it commands: that, unless it is refuted.
+    # A controller reads just before its command. This is assumed unless the data reject it.
     whole = abs(share) + least > 1.0
     applied = (float(np.sign(share)) if whole else share) if certain else 0.0
     return SensorInstant(share=share, stderr=stderr, applied=applied), half
 
 
 def _by_odds(share: float, stderr: float) -> SensorInstant:
-    """Before the step, if that is likelier by far than in its middle, and not refuted."""
+    """Return "before the step" if the data clearly prefer it to the middle of the step and do not reject it."""
     odds = (2.0 * share - 1.0) / (2.0 * stderr**2)
     before = odds > _LOG_ODDS and share < 1.0 + _SURE * max(stderr, _LEAST)
     return SensorInstant(share=share, stderr=stderr, applied=float(before))
 
 
 def _settled(share: float, stderr: float) -> bool:
-    """Whether a share is certain, and one that a reading can lack."""
+    """Return whether a share is certain and possible for a reading."""
     return stderr < _KNOWN and _SURE * stderr < abs(share) < 1.0 + _SURE * max(stderr, _LEAST)
 
 
@@ -146,9 +147,9 @@ _STEPS = 4  # column of the torque's steps
 
 
 def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Array:
-    """Window integrals, a column each: of the link's motion, the torque's steps and friction; the torque; the reading.
+    """Return window integrals, one column each: link motion, torque steps, friction, torque and reading.
 
-    Angle and speed are those of each window's middle, because all but the reading and the steps is smooth enough.
+    Angle and speed are those of each window's middle, because all signals except reading and steps are smooth enough.
     """
     periods = [
         recording.sample_period if held[number] else 0.0
@@ -162,24 +163,24 @@ def _integrals(problem: Problem, penalty: _core.Penalty, held: list[bool]) -> Ar
 
 
 def _rests_on_a_limit(recording: Recording) -> bool:
-    """Whether the reading may be clipped: what it lacks there is no half step."""
+    """Return whether the reading may be saturated. The part it then lacks is not half a step."""
     reading, speed = np.asarray(recording.sensor), np.abs(recording.velocity)
     fastest = max(map(abs, recording.ranges["velocity"]))
-    moving = speed > _MOVING * fastest  # at rest a clean reading stays, too
+    moving = speed > _MOVING * fastest  # at rest, a clean reading is also constant
     most = _RESTING * np.count_nonzero(moving)
     for limit in recording.ranges["sensor"]:
         there = reading == limit
-        # First all of them, which is a single count.
+        # The first count is cheap and usually decides.
         if np.count_nonzero(there) > most and np.count_nonzero(there & moving) > most:
             return True
     return False
 
 
 def _with_step(problem: Problem, number: int, step: float) -> Recording:
-    """A recording with so much of each step of the torque added to its reading."""
+    """Return a recording with `step` times each torque step added to its reading."""
     recording, torque = problem.recordings[number], problem.output_torque(number)
     usable = problem.usable(number)
-    # Where friction is set-valued, it answers the step.
+    # At standstill, friction responds to the step.
     used = np.append(usable, 0) | np.append(0, usable)
     change = np.diff(torque, prepend=torque[0]) * (used > 0)
     change[[gap.index + 1 for gap in recording.gaps]] = 0.0

@@ -1,4 +1,4 @@
-"""The shift of one signal that a balance under smooth windows asks for."""
+"""Shift of one signal that fits a balance in smooth windows best."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Balance:
-    """Rows of a balance: a signal's window means are a sum of columns.
+    """Rows of a balance, in which a signal's window means are a linear combination of columns.
 
     Attributes
     ----------
     windows : list of _core.SmoothWindows
         Windows of each stretch.
     signals : list of ndarray
-        The signal of each stretch, sample by sample.
+        Samples of the signal in each stretch.
     columns : list of ndarray, each of shape (windows, columns)
-        Over the used windows of each stretch.
+        Columns over the used windows of each stretch.
     conservative : int
-        Number of columns, the first ones, that have nothing to do with friction.
+        Number of leading columns without friction.
     held : bool
-        Whether the signal is held between samples: it then stands for the middle of the interval.
+        Whether the signal is held between samples. A sample then belongs to the middle of the interval.
     """
 
     windows: list[_core.SmoothWindows]
@@ -40,25 +40,25 @@ class Balance:
 
     @cached_property
     def matrix(self) -> Array:
-        """The columns over the windows of all stretches in turn."""
+        """Columns over the windows of all stretches, one stretch after the other."""
         return self.columns[0] if len(self.columns) == 1 else np.concatenate(self.columns)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shift:
-    """The delay of a signal.
+    """Delay of a signal.
 
     Attributes
     ----------
     value, stderr : float
-        [s]
+        Delay and its standard error [s].
     conservative, friction : tuple of float
-        Value and standard error that each part of the signal asks for by itself [s]: what has nothing to
-        do with friction, and friction. Without friction the first only, twice.
+        Delay and standard error from each part of the signal alone [s]: the part without friction, and friction.
+        Without friction both are equal.
     unexplained : float
-        Variance that the columns leave, over that of the signal.
+        Share of the signal's variance that the columns do not explain.
     leading : float or None
-        As `leading_coefficient` returns it, where that was a step on the way.
+        Result of `leading_coefficient`, if the fit computed it.
     """
 
     value: float
@@ -69,13 +69,13 @@ class Shift:
     leading: float | None = field(default=None, compare=False, repr=False)
 
     def agrees(self, other: Shift, share: float) -> bool:
-        """Whether another estimate is within three standard errors or a share of this delay."""
+        """Return whether another estimate is within three standard errors or a share of this delay."""
         apart = abs(self.value - other.value)
         errors = 3.0 * float(np.hypot(self.stderr, other.stderr))
         return apart <= max(errors, share * abs(self.value))
 
     def is_of_all(self, share: float) -> bool:
-        """Whether both parts of the signal ask for the same delay."""
+        """Return whether both parts of the signal show the same delay."""
         apart = abs(self.conservative[0] - self.friction[0])
         errors = 3.0 * float(np.hypot(self.conservative[1], self.friction[1]))
         return apart <= max(errors, share * abs(self.value))
@@ -84,21 +84,22 @@ class Shift:
 def fit_shift(
     balance: Balance, *, reach: float = 0.0, robust: bool = True, least: float = 0.0
 ) -> Shift | None:
-    """Return the delay of the balance's signal; None where the rows are too few or say nothing.
+    """Return the delay of the balance's signal; None if the rows are too few or contain no information.
 
-    The signal's window means, shifted, are regressed on the columns and on their own rate of change, which
-    is taken from the fitted columns: an instrument without the signal's noise, so that neither that noise
-    nor the interpolation pulls the delay to a whole or a half sample.
+    The shifted window means of the signal are regressed on the columns and on their own rate of change. This rate comes
+    from the fitted columns. It is an instrument without the signal's noise, so neither noise nor interpolation
+    biases the delay to a whole or half sample.
 
     Parameters
     ----------
     balance : Balance
     reach : float
-        Search from the shift of least misfit up to this [s]. Default 0: from no shift.
+        Longest shift in a search for the smallest residual, from which the fit starts [s]. Default 0: start from no
+        shift.
     robust : bool
-        Whether windows that miss by far count for less. Default True.
+        Whether windows with a large residual get a smaller weight. Default True.
     least : float
-        A delay that is clearly shorter after one step is not refined [s]. Default 0.
+        Shortest delay of interest [s]. A delay that is clearly shorter after one step is not refined. Default 0.
     """
     found = _core.fit_shift(
         balance.windows,
@@ -126,7 +127,7 @@ def fit_shift(
 
 
 def leading_coefficient(balance: Balance) -> float:
-    """Of the first column, in least squares of the signal, not shifted, on the columns."""
+    """Return the coefficient of the first column in a least-squares fit of the unshifted signal."""
     return _core.leading_coefficient(
         balance.windows, balance.signals, balance.matrix, held=balance.held
     )

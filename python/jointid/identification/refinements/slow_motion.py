@@ -1,7 +1,7 @@
-"""Slow motion that contradicts the friction of faster motion: creep, and what to leave out of it.
+"""Slow motion (creep) that contradicts the friction of faster motion, and its exclusion.
 
-A joint that creeps for long below a few per cent of its peak speed shows friction that varies by position and
-history. A motion that only passes through slow speeds holds little of it, and keeps it.
+A joint that creeps for a long time below a few percent of its peak speed shows friction that depends on position and
+history. A motion that only passes through low speeds contains little creep, and nothing is excluded.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_SPEEDS = (0.01, 0.015, 0.02, 0.025, 0.03, 0.04, 0.05)  # of the peak speed
-_DWELL = 3.0  # times the share of time that an oscillation spends below a speed
-_LEAST_SHARE, _LARGEST_SHARE = 0.05, 0.35  # of the time
+_SPEEDS = (0.01, 0.015, 0.02, 0.025, 0.03, 0.04, 0.05)  # shares of the peak speed
+_DWELL = 3.0  # multiple of the time share that a sinusoidal motion spends below a speed
+_LEAST_SHARE, _LARGEST_SHARE = 0.05, 0.35  # shares of the time
 _CONTRADICTS = 3.0  # standard errors of independent windows
-_WEIGHTY = 0.25  # of the dry friction
+_WEIGHTY = 0.25  # share of the dry friction
 
 
 def slow_disagreement(
@@ -34,14 +34,14 @@ def slow_disagreement(
     speed: float,
     coulomb: int,
 ) -> SlowMotion | None:
-    """Return how windows slower than a speed disagree with the faster ones; None if none are slow.
+    """Return the disagreement of windows slower than a speed with the faster ones; None if too few are slow.
 
-    Least squares over all windows, in which the slow ones have a dry friction of their own.
+    This is a least-squares fit over all windows with a separate dry friction for the slow ones.
 
     Parameters
     ----------
     columns : ndarray, shape (windows, p)
-        Window integrals of the terms, at the shapes of the estimate.
+        Window integrals of the terms, at the estimated shapes.
     target : ndarray, shape (windows,)
         Integrals of the torque.
     velocity : ndarray, shape (windows,)
@@ -49,9 +49,9 @@ def slow_disagreement(
     duration : ndarray, shape (windows,)
         Integrated time [s].
     one_way : ndarray of bool, shape (windows,)
-        Windows without a reversal: only these can be slow.
+        Windows without a reversal; only these can be slow.
     speed : float
-        [rad/s or m/s]
+        Speed limit [rad/s or m/s].
     coulomb : int
         Column of the dry friction.
     """
@@ -60,7 +60,7 @@ def slow_disagreement(
         return None
     weight = 1.0 / np.sqrt(duration)
     own = np.where(slow, np.sign(velocity) * duration, 0.0)
-    # The triangle has all that least squares needs; BLAS on tall matrices changes the last bits with its threads.
+    # Least squares needs only the triangle. BLAS on tall matrices changes the last bits with its threads.
     tall = np.column_stack([columns, own, target]) * weight[:, None]
     both = np.asarray(_core.triangle(tall))
     sizes = np.linalg.norm(both[:, :-1], axis=0)
@@ -84,11 +84,11 @@ def slow_disagreement(
 
 
 def contradicting(problem: Problem, penalty: _core.Penalty) -> SlowMotion | None:
-    """Return the slow motion that contradicts, at the least speed that holds it; None if there is none.
+    """Return the contradicting slow motion at the lowest speed that shows it; None if there is none.
 
-    Slow motion contradicts when the joint dwells in it, three times longer than an oscillation does, and its
-    dry friction differs by more than three standard errors and a quarter of that of the faster windows.
-    Models whose friction depends on slow motion, and cumulative windows, are not asked.
+    Slow motion contradicts if two conditions hold. The joint moves slowly three times longer than a sinusoidal motion
+    does. The dry friction differs from that of the faster windows by more than three standard errors and by more
+    than a quarter. Models with friction terms for slow motion, and cumulative windows, are not tested.
     """
     names = list(penalty.names)
     if len(names) > penalty.coefficients or penalty.cumulative or "coulomb" not in names:

@@ -1,8 +1,8 @@
-"""The torque balance under smooth windows: the rows from which delays are estimated.
+"""Torque balance in smooth windows, for the estimation of delays.
 
-A window with edges takes the velocity at its edges, whose noise spoils short windows. Under a smooth weight
-that is zero at both ends (a modulating function) the acceleration is the velocity, or the position itself,
-summed with the weight's derivatives: noise averages out, and neighbouring windows overlap by half.
+A window with edges uses the velocity at its edges, and noise there makes short windows useless. A smooth window has a
+weight that is zero at both ends (a modulating function). The mean acceleration is then a sum of the velocity, or of the
+position, with the weight's derivatives. Noise averages out, and neighboring windows overlap by half.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Stretch:
-    """A stretch of a recording without a gap.
+    """Stretch of a recording without a gap.
 
     Attributes
     ----------
@@ -45,18 +45,18 @@ class Stretch:
     def windows(
         self, half: int, *, margin: int, clear: int = 0, usable_only: bool = True
     ) -> _core.SmoothWindows:
-        """Smooth windows over the stretch, half a window from one to the next.
+        """Return smooth windows over the stretch, half a window apart.
 
         Parameters
         ----------
         half : int
             Half the length of a window, in samples.
         margin : int
-            Samples that a signal may be shifted by.
+            Number of samples by which a signal may be shifted.
         clear : int
-            No window has its middle nearer than this to a change of direction, in samples; 0: no such rule.
+            Smallest distance of a window's middle from a reversal, in samples. Default 0: no limit.
         usable_only : bool
-            Whether windows that touch an unusable sample are left out.
+            Whether windows with an unusable sample are left out. Default True.
         """
         return _core.SmoothWindows(
             self.time,
@@ -76,7 +76,7 @@ class Stretch:
         Parameters
         ----------
         by_position : bool
-            Whether the acceleration is taken from the position, as that of a derived velocity is.
+            Whether to take the acceleration from the position, as for a derived velocity. Default False.
         """
         position = by_position or self.derived
         signal = self.position if position else self.velocity

@@ -1,4 +1,4 @@
-"""The stretches of a problem's recordings on which delays are estimated: uniform, without gaps, not too many."""
+"""Stretches of the recordings for the estimation of delays: uniformly sampled, without gaps, not too many."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ Array = NDArray[np.float64]
 
 _SHORTEST = 250  # samples
 _PIECE = 12_000  # samples
-_MOST = 60_000  # samples of all pieces: an hour of motion says it no better
-_PART, _PARTS = 1200, 2  # samples, and number, of the parts for a first look
-_UNEVEN = 1e-3  # of the period
+_MOST = 60_000  # samples of all pieces; more do not improve the delay
+_PART, _PARTS = 1200, 2  # length in samples, and number, of the parts for a first estimate
+_UNEVEN = 1e-3  # largest deviation from an even grid, as a share of the sample period
 
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """A stretch with its signals.
+    """Stretch of a recording with its signals.
 
     Attributes
     ----------
     stretch : Stretch
     angle : ndarray
-        The position as an angle; of a prismatic axis, its travel as half a turn.
+        Position as an angle. For a prismatic axis, the travel is scaled to half a revolution.
     torque : ndarray
-        Torque of the drive at the output.
+        Torque of the drive on the joint side, without known torques.
     sensor : ndarray or None
     held : bool
         Whether the torque is held between samples.
@@ -63,7 +63,7 @@ class Piece:
 
 
 def pieces_of(problem: Problem) -> list[Piece]:
-    """Return stretches of all recordings, evenly chosen where there is more than a minute's worth."""
+    """Return pieces of all recordings; if there are too many samples, only evenly chosen pieces."""
     spans = []
     for number, recording in enumerate(problem.recordings):
         edges = [0, *(gap.index + 1 for gap in recording.gaps), len(recording)]
@@ -82,7 +82,7 @@ def pieces_of(problem: Problem) -> list[Piece]:
 
 
 def few_of(stretches: Sequence[Stretch]) -> list[Stretch] | None:
-    """Return short parts of stretches, evenly chosen, for a first look; None where there is little to leave out."""
+    """Return short, evenly chosen parts of stretches for a first estimate; None if that saves too little."""
     cuts = [
         (stretch, first)
         for stretch in stretches

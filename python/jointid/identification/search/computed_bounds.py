@@ -1,4 +1,4 @@
-"""Bounds of the search that are computed from the recordings, for parameters without stated bounds."""
+"""Search bounds computed from the recordings, for parameters without bounds."""
 
 from collections.abc import Iterator, Mapping
 
@@ -12,13 +12,14 @@ from jointid.identification.search.gain_domain import GainGuess, guess_gain
 from jointid.joint.parameters import Parameter
 from jointid.problem.inner_products import size
 
-# A coefficient's bound is this many times the value at which its term alone would make up the torque.
+# Bound of a coefficient, as a multiple of the value at which its term alone explains the torque.
 _GENEROUS = 10.0
-# The Stribeck velocity lies between these shares of the peak speed: outside them hardly any data show it. (At 0.02 one
-# in twenty simulated joints of clean fast motion lay beyond it, with static friction up to 32 % off.)
+# The Stribeck velocity lies between these shares of the peak speed. Outside them, hardly any data determine it. A
+# lower share of 0.02 excludes one in twenty simulated joints with clean fast motion and makes their static friction up
+# to 32 % wrong.
 _SLOWEST_STRIBECK = 0.01
 _FASTEST_STRIBECK = 0.5
-# Shapes at which a gain is searched, in logarithms between their bounds; fewer on long recordings.
+# Shapes at which a gain is searched, as logarithmic positions between their bounds; fewer for long recordings.
 _SHARES = (0.25, 0.5, 0.75, 1.0)
 _LONG = 500_000
 
@@ -26,9 +27,9 @@ Array = NDArray[np.float64]
 
 
 def shape_bounds(name: str, peak_speed: float) -> tuple[float, float]:
-    """Return the bounds of a shape parameter for a recording's largest speed [rad/s or m/s].
+    """Return the bounds of a shape parameter for a recording's peak speed [rad/s or m/s].
 
-    A name that the core's table does not have is a bug.
+    The name must be in the core's table.
     """
     shape = _core.shape(name)
     if shape.speed_power == 0.0:
@@ -41,7 +42,7 @@ def shape_bounds(name: str, peak_speed: float) -> tuple[float, float]:
 
 
 def shape_range(parameter: Parameter, peak_speed: float) -> tuple[float, float]:
-    """Return the range of a shape parameter: as stated, else from the data."""
+    """Return the range of a shape parameter: as the caller sets it, otherwise from the data."""
     if not parameter.vary and parameter.value is not None:
         return parameter.value, parameter.value
     low, high = shape_bounds(parameter.name, peak_speed)
@@ -52,7 +53,7 @@ def shape_range(parameter: Parameter, peak_speed: float) -> tuple[float, float]:
 
 
 class ComputedBounds:
-    """Bounds of coefficients from the size of the penalty's columns; each column is computed once.
+    """Bounds of coefficients from the size of the penalty's columns. Each column is computed once.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ class ComputedBounds:
 
     @property
     def guessed_sign(self) -> bool:
-        """Whether a gain was estimated, and its sign is not clear."""
+        """Whether a gain was estimated and its sign is not clear."""
         return self._gain is not None and not self._gain.clear
 
     def of_coefficient(self, index: int, fixed: Mapping[str, float]) -> tuple[float, float]:
@@ -92,7 +93,7 @@ class ComputedBounds:
         Raises
         ------
         InputError
-            The recordings say nothing about the coefficient.
+            The recordings contain no information about the coefficient.
         """
         penalty = self.penalty
         term, name = penalty.terms[index], penalty.names[index]
@@ -120,13 +121,13 @@ class ComputedBounds:
 
     @property
     def _lowest(self) -> Array:
-        """The columns at the shapes' lower bounds."""
+        """Columns at the lower bounds of the shapes."""
         if self._columns is None:
             self._columns = self.penalty.columns(np.array([low for low, _ in self._shapes]))
         return self._columns
 
     def _gain_for(self, fixed: Mapping[str, float]) -> GainGuess:
-        """The sensor's gain, by least squares at several shapes between the bounds."""
+        """Return the sensor gain by least squares at several shapes between the bounds."""
         if self._gain is None:
             self._gain = guess_gain(self.penalty, self._shaped(), fixed, self._signs)
         return self._gain
@@ -141,7 +142,7 @@ class ComputedBounds:
             )
 
     def _offset_bounds(self, scale: float, fixed: Mapping[str, float]) -> tuple[float, float]:
-        """Bounds that contain the torque's level and the mean reading times any likely gain."""
+        """Return bounds that contain the torque's level and the mean reading times any likely gain."""
         penalty = self.penalty
         reading = self._lowest[:, penalty.names.index("sensor_gain")]
         mean = float(reading.sum() / penalty.usable_duration.sum())

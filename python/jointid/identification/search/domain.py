@@ -1,4 +1,4 @@
-"""The search domain: stated bounds, and bounds from the data where none are stated."""
+"""The search domain: bounds from joint and call, otherwise from the data."""
 
 from collections.abc import Mapping, Sequence
 
@@ -29,7 +29,7 @@ class SearchDomain:
     from_data : tuple of str
         Parameters with at least one bound that was computed from the data.
     guessed_sign : bool
-        Whether only one sign of the sensor's gain is searched although the other fits as well.
+        Whether the search covers only one sign of the sensor gain although the other sign fits equally well.
     """
 
     names: tuple[str, ...]
@@ -57,18 +57,18 @@ def domain_for(
     ----------
     penalty : Penalty
     joint : Joint or None
-        Its known values fix parameters, its parameter table gives bounds.
+        Joint. Its known values fix parameters, and its parameter table gives bounds.
     changes : mapping or None
-        Argument `parameters` of the call; a number fixes.
+        Argument `parameters` of the call. A number fixes a parameter.
     peak_speed : float
         Largest speed in the recordings [rad/s or m/s].
     known : sequence of Parameter, optional
-        What joint and call state of each parameter. Default: found here.
+        Value and bounds of each parameter, set by joint and call. Default: computed here.
 
     Raises
     ------
     InputError
-        A parameter that the model does not have, or bounds that cannot be used.
+        A parameter that is not in the model, or invalid bounds.
     """
     names = tuple(penalty.names)
     lower = np.empty(len(names))
@@ -120,7 +120,7 @@ def domain_for(
 
 
 def _signs(known: Sequence[Parameter]) -> tuple[float, ...]:
-    """Return the signs of the sensor's gain that its stated bounds allow."""
+    """Return the signs of the sensor gain that its bounds allow."""
     for each in known:
         if each.name == "sensor_gain":
             if each.min is not None and each.min >= 0.0:

@@ -1,4 +1,4 @@
-"""Bounds of a sensor's gain without stated bounds: its sign and size, by least squares with either sign."""
+"""Bounds of a sensor gain when the caller sets none: sign and size by least squares with either sign."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from jointid.balance.least_squares import bounded_minima
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 
-# A gain lies within this factor of the least-squares value, which may be far off in a motion that is
-# mostly friction, where no shape is quite right ...
+# A gain lies within this factor of the least-squares value, which may be very wrong in a motion with mostly
+# friction, where no shape fits well ...
 _ROOM = 100.0
-# ... or between these multiples of the gain at which the sensor's swing equals the torque's.
+# ... or between these multiples of the gain that makes the sensor's standard deviation equal to the torque's.
 _LEAST, _MOST = 0.001, 10.0
 # Wrong signs occurred up to a contrast of 1.023 (motions of 2 and 5 degrees, mostly friction).
 _CLEAR = 1.03
@@ -25,18 +25,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GainGuess:
-    """A gain by least squares.
+    """Sensor gain by least squares.
 
     Attributes
     ----------
     value : float
-        With its sign; 0 if no gain of either sign improves the fit.
+        Gain with its sign; 0 if no gain of either sign improves the fit.
     sign : float
         1 or -1.
     swing : float
-        The gain at which the sensor's swing equals the torque's.
+        Gain that makes the sensor's standard deviation equal to the torque's.
     contrast : float
-        Misfit of the best gain of the other sign over the misfit of this one; infinite if only one sign
+        Residual of the best gain with the other sign over the residual of this gain; infinite if only one sign
         is allowed.
     """
 
@@ -60,7 +60,7 @@ class GainGuess:
 
 
 def around(value: float) -> tuple[float, float]:
-    """Return bounds around a gain that is stated without bounds."""
+    """Return bounds around a gain that the caller sets without bounds."""
     ends = sorted((value / _ROOM, value * _ROOM))
     return ends[0], ends[1]
 
@@ -71,25 +71,25 @@ def guess_gain(
     fixed: Mapping[str, float],
     signs: tuple[float, ...] = (1.0, -1.0),
 ) -> GainGuess:
-    """Return the gain of either sign that fits best with friction coefficients of 0 or more.
+    """Return the gain, of either sign, that fits best with friction coefficients of 0 or more.
 
-    A sensor's zero and polarity are arbitrary, so neither the raw product of reading and torque nor the
-    size of the reading determines the gain. In a small motion a gain of the wrong sign fits with negative
-    friction, which is therefore excluded. The reading is regressed on the torque, whose noise is the smaller
-    one; but where it is projected on instruments the torque is regressed on it, as in the fit: in a small
-    motion the reading is so small a part of the balance that an error of the other terms reverses the sign of
-    the other regression.
+    The zero and polarity of a sensor are arbitrary. Therefore neither the product of reading and torque nor the
+    size of the reading determines the gain. In a small motion, a gain with the wrong sign fits if friction is
+    negative; negative friction is therefore excluded. The reading is regressed on the torque, because the torque has
+    less noise. If the reading is projected on instruments, the torque is regressed on the reading, as in the
+    fit. In a small motion the reading is a small part of the balance, and an error of the other terms can reverse
+    the sign of the other regression.
 
     Parameters
     ----------
     penalty : Penalty
-        With a sensor.
+        Penalty with a sensor.
     columns : iterable of ndarray, shape (windows, coefficients)
-        The terms' integrals, for some shapes of the Stribeck term.
+        Integrals of the terms, for some shapes of the Stribeck term.
     fixed : mapping of str to float
         Values of the fixed coefficients.
     signs : tuple of float
-        Signs that the stated bounds allow. Default: both.
+        Signs that the bounds allow. Default: both.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def _swing(penalty: _core.Penalty, columns: Array) -> float:
 
 
 def _projected(penalty: _core.Penalty) -> Array:
-    """Return the reading's projection, which has no shape; `columns` has the reading itself."""
+    """Return the projected reading, which does not depend on a shape; `penalty.columns` has the original reading."""
     columns = penalty.linear_columns(np.ones(len(penalty.names)))
     return np.array(columns[:, penalty.names.index("sensor_gain")])
 
@@ -144,7 +144,7 @@ def _fitted(
     fixed: Mapping[str, float],
     sign: float,
 ) -> tuple[float, float]:
-    """Return misfit and gain; friction is not negative, the gain has this sign or is 0."""
+    """Return residual and gain. Friction is not negative; the gain has this sign or is 0."""
     names = penalty.names[: penalty.coefficients]
     of_gain = names.index("sensor_gain")
     torque = np.array(penalty.target)
@@ -160,7 +160,7 @@ def _fitted(
     reading = columns[:, of_gain] if projected is None else projected
     reversed_roles = penalty.residual != _core.Residual.torque and projected is None
     if reversed_roles:
-        # reading = (torque - the other terms) / gain: linear in 1 / gain, and in the rest over it.
+        # reading = (torque - other terms) / gain: linear in 1 / gain and in the other coefficients / gain.
         sides, target = [sign * torque, *(-sign * columns[:, i] for i in signed)], reading
     else:
         sides, target = [sign * reading, *(columns[:, i] for i in signed)], torque

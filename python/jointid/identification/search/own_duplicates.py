@@ -1,4 +1,4 @@
-"""Own terms that say the same as another term: refused by name, because nothing divides the torque between them."""
+"""Refusal of own terms that duplicate another term, because the data cannot divide the torque between them."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-# Of a column's squares that another column, or all others together, leave. Two ways to differentiate one signal, and
-# intervals with a reversal, leave about 1e-5; a coefficient that rests on less than this rests on them.
+# Share of a column's squares that other columns do not explain; below it, the column is a duplicate. Two methods to
+# differentiate one signal, and intervals with a reversal, leave about 1e-5, which must not determine a coefficient.
 _SAME = 1e-4
-_NOISE = 4.0  # times the squares of what measuring once more changes
-_NAMED = 0.01  # of the largest part in a sum
-_NOTHING = 1e-12  # of the torque's size
+_NOISE = 4.0  # factor on the squared change of a column in a repeated measurement
+_NAMED = 0.01  # smallest named part of a sum, relative to the largest part
+_NOTHING = 1e-12  # smallest size of a column, relative to the torque
 
 
 def refuse_duplicates(
     penalty: _core.Penalty, domain: SearchDomain, own: OwnTerms, again: Callable[[], Problem]
 ) -> None:
-    """Refuse an own term with a free coefficient whose column is that of another one, or a sum of others.
+    """Refuse an own term with a free coefficient if its column equals another column or a sum of others.
 
-    The same is what the noise of the data cannot tell apart: measured once more, the columns differ by as much. What is
-    fixed is alike whatever it is: the torques of a link and of its payload are both taken away.
+    Columns count as equal if a repeated measurement with its noise changes them as much as they differ. Fixed terms may
+    be equal, because their torques are only subtracted.
 
     Parameters
     ----------
@@ -38,12 +38,12 @@ def refuse_duplicates(
     domain : SearchDomain
     own : OwnTerms
     again : callable
-        Returns the problem with signals that were measured once more.
+        Function that returns the problem with the noise of a repeated measurement.
 
     Raises
     ------
     InputError
-        Names both.
+        Two terms are equal; the error names both.
     """
     if not own.each:
         return
@@ -88,7 +88,7 @@ def refuse_duplicates(
 
 
 def _columns_again(problem: Problem, penalty: _core.Penalty, shapes: Array) -> Array | None:
-    """The penalty's columns from signals with noise of their own size once more; None where its windows are others."""
+    """Return the penalty's columns from a repeated measurement; None if its windows differ."""
     options = _core.WindowOptions(
         duration=penalty.window_duration, cumulative=bool(penalty.cumulative)
     )

@@ -1,4 +1,4 @@
-"""The estimate by either side of the regression: what the instruments stand between."""
+"""Estimates by either side of the regression, which bracket the estimate by instruments."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ Array = NDArray[np.float64]
 
 
 def by_either_side(penalty: _core.Penalty, best: Array, free: Sequence[int]) -> dict[str, Array]:
-    """Return all parameters by the residuals "sensor" and "torque", at the shapes found and without bounds.
+    """Return all parameters by the residuals "sensor" and "torque", at the estimated shapes and without bounds.
 
-    Noise of the reading makes the gain too small by "torque"; noise of the torque, and friction that the
-    model lacks, too large by "sensor". Either difference from the estimate by instruments bounds what the
-    choice of a side would cost; it is not an error of that estimate.
+    With the residual "torque", noise of the reading makes the gain too small. With "sensor", noise of the torque and
+    friction that the model lacks make it too large. The differences from the estimate by instruments bound the effect
+    of choosing a side. They are not errors of that estimate.
 
     Parameters
     ----------
     penalty : Penalty
-        With a sensor's gain among its coefficients.
+        Penalty with a sensor gain among its coefficients.
     best : ndarray, shape (p,)
         All parameters, in the order of `penalty.names`.
     free : sequence of int
-        The parameters that vary; shapes among them keep their values.
+        Indices of the free parameters; shapes among them keep their values.
 
     Returns
     -------
     dict
-        Empty without a free gain, or where the windows do not determine the coefficients.
+        Parameters by residual; empty without a free gain, or if the windows do not determine the coefficients.
     """
     count = penalty.coefficients
     names = list(penalty.names[:count])
@@ -57,7 +57,7 @@ def by_either_side(penalty: _core.Penalty, best: Array, free: Sequence[int]) -> 
         if rank < matrix.shape[1] or found[-1] == 0.0:
             return {}
         found *= sizes[-1] / sizes[:-1]
-        if side == "sensor":  # reading = torque / gain - the other terms / gain
+        if side == "sensor":  # reading = torque / gain - other terms / gain
             found = np.append(-found[:-1] / found[-1], 1.0 / found[-1])
         values = best.copy()
         values[[*linear, gain]] = found

@@ -1,4 +1,4 @@
-"""Run a search for the minimum of the penalty: genetic, random or separable; checkpoints of long searches."""
+"""Search for the minimum of the penalty: genetic, random or separable; with checkpoints for long searches."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from jointid.problem.inner_products import inner
 Array = NDArray[np.float64]
 
 
-# Largest error of the compressed penalty: as a share of the penalty, and of the target's square.
+# Largest error of the compressed penalty, as a share of the penalty and of the squared target.
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-13
-_KEPT = 50_000  # windows
+_KEPT = 50_000  # largest number of windows for which the balance is kept
 
 # Penalty, residuals, their derivatives, and columns.
 Balance = tuple[float, Array, Array, Array]
@@ -32,12 +32,12 @@ Balance = tuple[float, Array, Array, Array]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """The result of a search; generations and evaluations are those before the polish.
+    """Result of a search. Generations and evaluations do not include the polish.
 
     Attributes
     ----------
     balance : tuple or None
-        The direct sum at `best`, where the search has verified itself by it over few windows.
+        Direct sum at `best`, if the search was verified by it and has few windows.
     """
 
     best: Array
@@ -51,14 +51,14 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Engine:
-    """The penalty that a search evaluates: compressed if that is exact, else the direct sum.
+    """Penalty that a search evaluates: compressed if that is exact, otherwise the direct sum.
 
     Attributes
     ----------
     direct : Penalty
-        The sum over all samples; every result is verified against it.
+        Sum over all samples, which verifies every result.
     form : PenaltyFunction
-        The penalty that the search evaluates.
+        Penalty that the search evaluates.
     reason : str
         Why compression failed; empty otherwise.
     threads : int
@@ -72,7 +72,7 @@ class Engine:
 
     @classmethod
     def of(cls, penalty: _core.Penalty, domain: SearchDomain, threads: int) -> Engine:
-        """Return an engine; it compresses the penalty if that saves time and is exact but for rounding.
+        """Return an engine. It compresses the penalty if that saves time and is exact except for rounding.
 
         Parameters
         ----------
@@ -89,8 +89,8 @@ class Engine:
     def polished(self, domain: SearchDomain, start: Array) -> tuple[Array, int, bool]:
         """Return the optimum over the shapes' ranges and near a start, the number of steps, and whether it converged.
 
-        With one free shape and the direct sum: near the start only. Two shapes: by projection, where that is at
-        least as good as the start.
+        With at most one free shape and the direct sum, it searches only near the start. With two shapes it uses
+        projection, if the result is at least as good as the start.
         """
         shapes = free_shapes(self.direct, domain)
         if self.form is self.direct and shapes < 2:
@@ -111,7 +111,7 @@ class Engine:
         return last.best, near.evaluations + last.iterations, last.converged
 
     def verified(self, outcome: Outcome, domain: SearchDomain) -> Outcome:
-        """Verify an outcome against the direct sum; where they disagree, return a polish by the direct sum."""
+        """Verify an outcome by the direct sum. If they disagree, return a polish by the direct sum."""
         if self.form is self.direct:
             because = f", by the direct sum because {self.reason}" if self.reason else ""
             return replace(outcome, message=outcome.message + because)
@@ -119,7 +119,7 @@ class Engine:
         gain = 1.0
         if direct.residual == _core.Residual.sensor:
             gain = float(best[direct.names.index("sensor_gain")])
-        # Of hours of motion the arrays are not kept beside all that follows.
+        # For hours of motion the arrays are not kept, to save memory.
         balance = direct.balance_at(best) if direct.window_count <= _KEPT else None
         expected = direct(best) if balance is None else balance[0]
         size = inner(direct.target, direct.target) / gain**2
@@ -142,7 +142,7 @@ def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> 
     Raises
     ------
     InputError
-        A checkpoint that cannot be read, or of another search.
+        A checkpoint is unreadable or belongs to another search.
     KeyboardInterrupt
         Ctrl-C.
     """
@@ -162,8 +162,8 @@ def separable(
 ) -> Outcome:
     """Search by elimination of the linear parameters, and return the outcome.
 
-    The projected search sums over the samples a dozen times and needs no engine. Where it cannot be sure of the
-    optimum, the engine's penalty is searched, and the outcome is verified.
+    The projected search sums over the samples about twelve times and needs no engine. If it cannot guarantee the
+    optimum, the engine's penalty is searched and the outcome is verified.
     """
     lower, upper = domain.lower, domain.upper
     projected = _core.minimise_projected(penalty, lower, upper, threads=search.threads)
@@ -198,7 +198,7 @@ def concluded(
     result: _core.GaResult | _core.TrialResult,
     generations: int,
 ) -> Outcome:
-    """Return the verified outcome of a genetic or random search, polished if the settings ask for it."""
+    """Return the verified outcome of a genetic or random search, polished if the settings require it."""
     best, status, message = _finished(search, engine, domain, result, generations)
     outcome = Outcome(
         best=best,
@@ -309,7 +309,7 @@ def _read_state(path: Path) -> _core.GaState:
         ) from error
     except InputError as error:
         raise InputError(error.reason, argument="resume", place=str(path)) from error
-    except ValueError as error:  # of what the core checks whenever it is made, e.g. bounds
+    except ValueError as error:  # from the checks of the core, for example of bounds
         raise InputError(
             f"the checkpoint is damaged: {reason_of(error)}", argument="resume", place=str(path)
         ) from error
@@ -323,7 +323,7 @@ def _read_state(path: Path) -> _core.GaState:
 
 
 def free_shapes(penalty: _core.Penalty, domain: SearchDomain) -> int:
-    """Return how many shapes are searched."""
+    """Return the number of shapes that are searched."""
     shapes = slice(penalty.coefficients, None)
     ranges = zip(domain.lower[shapes].tolist(), domain.upper[shapes].tolist(), strict=True)
     return sum(low < high for low, high in ranges)

@@ -1,4 +1,4 @@
-"""The settings of a search: method, budget, seed, checkpoint."""
+"""Settings of a search: method, budget, seed, checkpoint."""
 
 from __future__ import annotations
 
@@ -35,28 +35,29 @@ class Search:
     Parameters
     ----------
     method : {"separable", "ga", "random"}, optional
-        "separable": the linear parameters are eliminated exactly and only the shapes are searched. "ga":
-        genetic algorithm, then a local polish; `identify` takes seven times as long by it with the model
-        "stribeck_general" (12,000 samples). "random": random search with the genetic algorithm's budget and
-        no polish, for comparison. Default: "ga" where `ga`, `callback`, `checkpoint` or `resume` is given,
-        which "separable" does not use; else "separable".
+        "separable" eliminates the linear parameters exactly and searches only the shapes. "ga" runs a genetic
+        algorithm, then a local polish; with the model "stribeck_general" and 12,000 samples, `identify` then takes
+        seven times as long. "random" is a random search for comparison, with the budget of the genetic algorithm and
+        no polish. Default: "ga" if `ga`, `callback`, `checkpoint` or `resume` is set, because "separable" does
+        not use them; otherwise "separable".
     ga : GaOptions or {"default", "thesis", "thesis_code"}, optional
         Settings of the genetic algorithm. Default "default".
     seed : int
-        The same seed gives the same bits for any number of threads. Default 0.
+        Random seed. The same seed gives bit-identical results for any number of threads. Default 0.
     threads : int
-        0 (default): all.
+        Number of threads; 0 (default): all.
     callback : callable, optional
-        Called with each `Generation`; returning True stops the search. "separable" has none, and does not call it.
+        Function that is called with each `Generation`; if it returns True, the search stops. "separable" has no
+        generations and does not call it.
     checkpoint : path, optional
-        File for the state of the genetic search; it is replaced every 50 generations and at the end.
+        File for the state of the genetic search. It is replaced every 50 generations and at the end.
     resume : path, optional
-        A checkpoint to continue from; the result has the same bits as an uninterrupted search.
+        Checkpoint to continue from. The result is bit-identical to that of an uninterrupted search.
 
     Raises
     ------
     InputError
-        A field that cannot be used, or a checkpoint with another method than "ga".
+        An invalid field, or a checkpoint with a method other than "ga".
 
     Examples
     --------
@@ -106,7 +107,7 @@ class Search:
 
     @classmethod
     def of(cls, value: object) -> Search:
-        """Return a search from a search, a method's name, or None.
+        """Return a search from a search, the name of a method, or None.
 
         Parameters
         ----------
@@ -115,21 +116,21 @@ class Search:
         Raises
         ------
         InputError
-            Something else, or an unknown method.
+            Another type, or an unknown method.
         """
         if isinstance(value, Search):
             return value
         if value is None:
             return cls()
         if isinstance(value, str):
-            return cls(cast("Method", value))  # checked there
+            return cls(cast("Method", value))  # the constructor checks it
         raise InputError(
             "a Search or the name of a method is expected", argument="search", value=value
         )
 
     @property
     def chosen_method(self) -> Method:
-        """The method that runs: "ga" where none is stated but something that "separable" does not use."""
+        """Method that runs: "ga" if no method is set but a field that "separable" does not use."""
         if self.method is not None:
             return self.method
         stated = (self.ga, self.callback, self.checkpoint, self.resume)
@@ -137,6 +138,6 @@ class Search:
 
     @property
     def genetic(self) -> _core.GaOptions:
-        """Settings of the genetic algorithm; a preset's settings if `ga` is its name."""
+        """Settings of the genetic algorithm; those of the preset if `ga` is a name."""
         ga = self.ga or "default"
         return PRESETS[ga]() if isinstance(ga, str) else ga

@@ -1,4 +1,4 @@
-"""Bounds and fixed values of parameters that the joint or the call states."""
+"""Bounds and fixed values of parameters from the joint and the call."""
 
 from collections.abc import Mapping
 
@@ -13,7 +13,9 @@ def known_parameters(
     joint: Joint | None,
     changes: Mapping[str, float | Mapping[str, object] | Parameter] | None,
 ) -> list[Parameter]:
-    """Return what joint and call state of each parameter; one recording's own has that of the shared one.
+    """Return value and bounds of each parameter, set by joint and call.
+
+    A parameter of one recording, such as `sensor_offset[1]`, takes those of the shared parameter.
 
     Raises
     ------
@@ -31,7 +33,7 @@ def parameter_bounds(
     joint: Joint | None,
     changes: Mapping[str, float | Mapping[str, object] | Parameter] | None,
 ) -> dict[str, Parameter]:
-    """Return what joint and call state of the parameters `names`, and of others that the joint has.
+    """Return value and bounds, set by joint and call, of the parameters `names` and of others in the joint.
 
     Parameters
     ----------
@@ -44,7 +46,7 @@ def parameter_bounds(
     Raises
     ------
     InputError
-        The call names a parameter that is not among them, or bounds that contradict each other.
+        The call names a parameter that is not in `names`, or the bounds contradict each other.
     """
     gains = {n: Parameter(name=n, value=1.0, vary=False) for n in names if is_fixed(n)}
     table = merge(gains | known_values(joint), joint.parameters if joint is not None else {})
@@ -62,7 +64,7 @@ def parameter_bounds(
 
 
 def known_values(joint: Joint | None) -> dict[str, Parameter]:
-    """Return parameters that the joint's data fix: known inertia, and gravity when it is known."""
+    """Return the parameters that the joint fixes: known inertia and known gravity."""
     values: dict[str, Parameter] = {}
     if joint is None:
         return values
@@ -82,7 +84,7 @@ def known_values(joint: Joint | None) -> dict[str, Parameter]:
 def _freed(
     table: Mapping[str, Parameter], name: str, entry: float | Mapping[str, object] | Parameter
 ) -> float | Mapping[str, object] | Parameter:
-    """Return a call's entry; bounds for a parameter that the joint fixes make it free."""
+    """Return the entry of a call. Bounds make a parameter free that the joint fixes."""
     fixed = name in table and not table[name].vary
     if (
         fixed

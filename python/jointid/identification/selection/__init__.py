@@ -1,1 +1,1 @@
-"""The choice of a model that nobody named: candidates, held-out scores, the parsimonious winner."""
+"""Choice of a model when the caller names none: candidates, held-out scores, and the most parsimonious good model."""

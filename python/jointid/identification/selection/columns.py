@@ -1,4 +1,4 @@
-"""The window columns of a penalty at many shapes at a time: one matrix, and how models are made of it."""
+"""Window columns of a penalty at many shapes in one matrix, from which all models are made."""
 
 from __future__ import annotations
 
@@ -17,27 +17,29 @@ from jointid.problem.terms import TermChoice
 
 Array = NDArray[np.float64]
 
-# Shapes between the bounds, in equal ratios, and then between the neighbours of the best of them.
+# Number of shapes between the bounds, in equal ratios, and then between the neighbors of the best shape.
 _COARSE, _FINE = 12, 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShapedColumns:
-    """Columns of one penalty; those that have a shape once for each shape, and the torque last.
+    """Columns of one penalty. A column that depends on a shape occurs once for each shape; the torque is last.
 
     Attributes
     ----------
     matrix : ndarray, shape (windows, columns)
     shapes : ndarray, shape (shapes,)
-        In ascending order; a single one if it is fixed, or if no column has one.
+        Shapes in ascending order; only one if the shape is fixed or no column depends on a shape.
     free_shape : bool
         Whether the shape is free.
     keys : tuple of str
         Key of the term of each coefficient.
     first : tuple of int
-        First column of each coefficient; a coefficient with a shape has as many as there are shapes.
+        First column of each coefficient. A coefficient with a shape has one column for each shape.
+    shaped : tuple of bool
+        Whether each coefficient's column depends on a shape.
     known : tuple of Parameter
-        What is stated of each coefficient.
+        Value and bounds of each coefficient, set by joint and call.
     """
 
     matrix: Array
@@ -61,7 +63,7 @@ class ShapedColumns:
         Parameters
         ----------
         known : sequence of Parameter
-            What is stated of each parameter of the penalty.
+            Value and bounds of each parameter of the penalty, set by joint and call.
         """
         count = penalty.coefficients
         stated = known[count:]
@@ -112,11 +114,11 @@ class ShapedColumns:
         )
 
     def stated(self, known: Sequence[Parameter]) -> ShapedColumns:
-        """Return the same columns where other coefficients are known; shapes stay."""
+        """Return the same columns with other known coefficients and the same shapes."""
         return replace(self, known=tuple(known[: len(self.keys)]))
 
     def free(self, choice: TermChoice | None) -> list[int]:
-        """Return the free coefficients of a model; of all terms if None."""
+        """Return the free coefficients of a model, or of all terms if None."""
         return [
             index
             for index, key in enumerate(self.keys)
@@ -131,12 +133,12 @@ class ShapedColumns:
         )
 
     def combined(self, choice: TermChoice | None) -> Array:
-        """Return how a model's regressors and its target are made of the columns, at every shape.
+        """Return the combinations of columns that give a model's regressors and its target, at every shape.
 
         Returns
         -------
         ndarray, shape (shapes, columns, p + 1)
-            The target, last, is the torque less the terms of known size.
+            The last combination is the target: the torque minus the terms with known coefficients.
         """
         free = self.free(choice)
         shapes = len(self.shapes) if self.shapes_of(choice) else 1
@@ -154,7 +156,7 @@ class ShapedColumns:
 
 
 def _at(penalty: _core.Penalty, shapes: Array) -> list[Array]:
-    """Return the columns without a shape, and those that have one at each shape."""
+    """Return the columns without a shape, then those with a shape at each shape."""
     shaped = [bool(term.shapes) for term in penalty.terms[: penalty.coefficients]]
     count = len(penalty.names) - penalty.coefficients
     made: list[Array] = []

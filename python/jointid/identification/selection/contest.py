@@ -1,4 +1,4 @@
-"""Held-out scores of candidates, and what speaks against one of them."""
+"""Held-out scores of candidate models, and reasons to refuse a candidate."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from jointid.problem.block_sums import BlockSums, Fitted
 
 Array = NDArray[np.float64]
 
-# Blocks that are held out in turn; each is made of pieces from all over the recordings, because a motion may
-# be slow in one part only. A piece has at least so many windows.
+# Number of held-out blocks, pieces per block, and fewest windows per piece. The pieces of a block are spread over the
+# recordings, because a motion may be slow in one part only.
 _BLOCKS, _PIECES, _FEWEST = 10, 4, 4
-# A coefficient below so many of its standard errors is not significant; the finding model_too_rich has the same rule.
+# A coefficient below this number of its standard errors is not significant, as in the finding model_too_rich.
 _SIGNIFICANT = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """One candidate in the contest.
+    """Held-out score of one candidate.
 
     Attributes
     ----------
     candidate : Candidate
     parameters : int
-        Free ones, shapes included.
+        Number of free parameters, including shapes.
     missed : ndarray, shape (blocks,)
         Sum of squared residuals of each held-out block.
     refused : str
-        Why the candidate cannot win; empty if it can.
+        Why the candidate must not be chosen; empty if it may.
     """
 
     candidate: Candidate
@@ -42,7 +42,7 @@ class Entry:
 
 
 def held_out(windows: int) -> list[NDArray[np.int64]]:
-    """Return the windows of each block that is held out in turn; fewer than two blocks if there are few windows."""
+    """Return the windows of each block that is held out in turn; fewer than two blocks for few windows."""
     pieces = min(_BLOCKS * _PIECES, windows // _FEWEST)
     blocks = min(_BLOCKS, pieces)
     ends = np.linspace(0, windows, pieces + 1).round().astype(np.int64)
@@ -53,11 +53,11 @@ def held_out(windows: int) -> list[NDArray[np.int64]]:
 
 
 def entry_of(candidate: Candidate, columns: ShapedColumns, sums: BlockSums) -> Entry:
-    """Fit a candidate without each block in turn, and predict that block."""
+    """Fit a candidate without each block in turn, predict that block, and return the score."""
     choice = candidate.choice
     fitted = sums.fitted(columns.combined(choice))
     blocks = np.arange(fitted.missed.shape[1])
-    nearest = np.argmin(fitted.training, axis=0)  # each block's shape is fitted to the others
+    nearest = np.argmin(fitted.training, axis=0)  # each block's shape is fitted to the other blocks
     free = columns.free(choice)
     return Entry(
         candidate=candidate,
@@ -68,7 +68,7 @@ def entry_of(candidate: Candidate, columns: ShapedColumns, sums: BlockSums) -> E
 
 
 def _refusal(fitted: Fitted, columns: ShapedColumns, candidate: Candidate) -> str:
-    """Return why the data do not support a model with a static excess."""
+    """Return why the data do not support a model with Stribeck friction; empty if they do."""
     choice = candidate.choice
     if not columns.shapes_of(choice):
         return ""

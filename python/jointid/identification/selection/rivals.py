@@ -1,4 +1,4 @@
-"""The models that are compared where nobody names one."""
+"""Candidate models when the caller names none."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.recording.recording import Recording
 
 NAMES = ("coulomb_viscous", "stribeck")
-"""Of the friction models that compete; richer ones are proposed by findings."""
+"""Names of the candidate friction models; findings propose richer ones."""
 
 _GRAVITY_ORDER = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
-    """A model that competes.
+    """Candidate model.
 
     Attributes
     ----------
     model : Model
-        The call's fields, with the name and gravity of this candidate.
+        Fields of the call, with the name and gravity of this candidate.
     choice : TermChoice
     """
 
@@ -39,23 +39,23 @@ class Candidate:
 def candidates(
     runs: Sequence[Recording], joint: Joint | None, request: Request, parameters: object
 ) -> tuple[Candidate, ...]:
-    """Return the models that compete, the simplest first; the last one has the terms of all.
+    """Return the candidate models, the simplest first; the last one has the terms of all.
 
-    Gravity competes where it is not stated and where only the drive's torque shows it: on a revolute
-    joint without a torque sensor, without a harmonic of order 1, and without an own term that is a torque: who
-    states a model's torque has stated its gravity. Of a described link the weight competes as it is described, too.
+    Candidates with gravity exist if the caller does not set gravity and only the drive's torque shows it. The joint is
+    then revolute, without torque sensor, harmonic of order 1, or own torque term, which may already contain gravity.
+    If the joint describes a link, the described weight is a further candidate.
 
     Parameters
     ----------
     request : Request
-        Its model may lack a name.
+        Request of the call; its model may lack a name.
     parameters : mapping or None
-        As in `identify`: a model that lacks one of them does not compete, unless every model does.
+        Parameters of the call, as in `identify`. A model that lacks one of them is no candidate, unless all do.
 
     Raises
     ------
     InputError
-        Terms that cannot be used with these recordings; `parameters` is no mapping from names.
+        The recordings do not support the terms, or `parameters` is not a mapping from names.
     """
     stated = request.model if joint is None else request.model.over(joint.model)
 
@@ -67,7 +67,7 @@ def candidates(
     gravities: tuple[Gravity | None, ...] = (stated.gravity,)
     simplest = candidate(NAMES[0], stated.gravity)
     if stated.gravity is None and _may_load(runs, stated, simplest.choice):
-        # Who describes a link need not have thought of its weight; on an upright axis it has none.
+        # A described link need not cause a gravity torque, for example on a vertical axis.
         described = joint is not None and joint.link is not None
         gravities = ("none", "known", "free") if described else ("none", "free")
     made = tuple(candidate(name, gravity) for gravity in gravities for name in NAMES)

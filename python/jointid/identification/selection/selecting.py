@@ -1,4 +1,4 @@
-"""`select_model`: which of the usual models predicts the held-out torque, by the most parsimonious rule."""
+"""`select_model`: choose the simplest usual model that predicts the held-out torque."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from jointid.problem.windows import Windows
 
 Array = NDArray[np.float64]
 
-# A simpler model wins unless its held-out errors are larger than the best one's by more than so many standard errors
-# of their difference, which is far smaller than the error of a score: both models predict the same blocks.
-# With 1, gravity was given to 9 of 40 simulated joints without it; with 2, to none.
+# A simpler model is chosen unless its held-out errors exceed those of the best model by more than this number of
+# standard errors of the difference. This error is much smaller than that of a score, because both models predict the
+# same blocks. With 1, 9 of 40 simulated joints without gravity get gravity; with 2, none does.
 _MARGIN = 2.0
 
 
@@ -37,41 +37,40 @@ def select_model(
     windows: Windows,
     unfit: Mapping[str, str] | None = None,
 ) -> tuple[Problem, Selection]:
-    """Choose the model of a problem that nobody named.
+    """Choose the model of a problem when the caller names none.
 
     Parameters
     ----------
     problem : Problem
-        With any choice of terms.
+        Problem with any choice of terms.
     request : Request
         Request of the call.
     parameters, windows
-        As in `identify`.
+        Arguments of the call, as in `identify`.
     unfit : mapping of str to str, optional
-        Models that cannot win, by text, and why. Default: none.
+        Models that must not be chosen, by text, with the reason. Default: none.
 
     Returns
     -------
     problem : Problem
-        With the terms of the chosen model.
+        Problem with the terms of the chosen model.
     selection : Selection
 
     Raises
     ------
     InputError
-        Input that cannot be used.
+        Invalid input.
     """
     rivals = candidates(problem.recordings, problem.joint, request, parameters)
     entries: list[Entry] = []
     energy = 0.0
     if len(rivals) > 1:
-        # The torque is what all predict, whatever the residual compares.
+        # All candidates predict the torque, for any choice of residual.
         widest = replace(problem, choice=replace(rivals[-1].choice, residual="torque"))
         try:
             penalty = widest.penalty(None if windows == "cumulative" else windows)
-        except (
-            InputError
-        ):  # fewer windows than parameters; or the simplest model has the same fault, and says so
+        except InputError:
+            # Fewer windows than parameters; or the simplest model has the same fault and raises it later.
             pass
         else:
             blocks = held_out(penalty.window_count)
@@ -94,7 +93,7 @@ def select_model(
 def simplest_model(
     problem: Problem, request: Request, parameters: Mapping[str, Any] | None
 ) -> Problem:
-    """Return the problem with the simplest of the models that compete; arguments as in `select_model`."""
+    """Return the problem with the simplest candidate model; arguments as in `select_model`."""
     return _with(problem, candidates(problem.recordings, problem.joint, request, parameters)[0])
 
 
@@ -112,7 +111,7 @@ def _unless(unfit: Mapping[str, str], entry: Entry) -> Entry:
 
 
 def _weighs(candidate: Candidate) -> bool:
-    """Whether a candidate has the weight of the joint's link as described."""
+    """Return whether a candidate uses the described weight of the joint's link."""
     return candidate.model.gravity == "known"
 
 
@@ -123,7 +122,7 @@ def _alone(candidate: Candidate) -> tuple[Candidate, Selection]:
 
 
 def _judged(entries: Sequence[Entry], energy: float) -> tuple[Candidate, Selection]:
-    """Return the candidate with the fewest parameters that is not worse than the best by more than chance."""
+    """Return the candidate with the fewest parameters that is not significantly worse than the best."""
     able = [each for each in entries if not each.refused] or list(entries[:1])
     first, chosen = preferred(
         [float(each.missed.sum()) for each in able],
@@ -153,11 +152,11 @@ def _judged(entries: Sequence[Entry], energy: float) -> tuple[Candidate, Selecti
 
 
 def excess(missed: Array, best: Array) -> float:
-    """Return by how much a model's held-out errors are larger than the best one's, in standard errors.
+    """Return the difference between the held-out errors of a model and of the best model, in standard errors.
 
-    The larger of two answers, over the blocks: of the logarithms' difference, because a few slow blocks may
-    hold nearly all of a wrong model's squares; and of the squares' difference, because a misfit that both
-    models have makes the ratios of the quiet blocks arbitrary.
+    This is the larger of two results over the blocks. The difference of logarithms counts because a few slow blocks may
+    contain nearly all squares of a wrong model. The difference of squares counts because a residual that both
+    models share makes the ratios of quiet blocks arbitrary.
     """
     floor = 1e-30 * float(best.sum() + missed.sum()) + 1e-300
     ratio = np.log((missed + floor) / (best + floor))

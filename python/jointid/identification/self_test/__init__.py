@@ -1,1 +1,1 @@
-"""The self-test: known parameters in the user's own motion, identified again."""
+"""Self-test: simulate known parameters in the user's motion and identify them again."""

@@ -1,4 +1,4 @@
-"""A recording as it would be with known parameters: the recorded motion, and the torque that it then needs."""
+"""Simulated recordings with known parameters: the recorded motion with the torque that these parameters need."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Run:
-    """One recording's true signals, and the noise to add to them."""
+    """True signals of one recording, and the noise to add to them."""
 
     true: Recording
     position: SignalNoise
@@ -35,7 +35,7 @@ class _Run:
 
 
 class Injection:
-    """Makes recordings with known parameters from the motion and the noise of recorded ones.
+    """Simulator of recordings with known parameters, from the motion and noise of real recordings.
 
     Parameters
     ----------
@@ -46,11 +46,11 @@ class Injection:
     names : sequence of str
         Names of the parameters, in the penalty's order.
     theta : ndarray, shape (p,)
-        The estimate.
+        Estimated values of the parameters.
     table : WindowTable
-        Windows of the estimate; their residuals are the part of the log that the model lacks.
+        Windows of the estimate. Their residuals are the part of the torque that the model lacks.
     rng : Generator
-        Random generator of the noise in a trial without a disturbance.
+        Random generator of the noise in a trial without disturbance.
     """
 
     def __init__(
@@ -80,9 +80,9 @@ class Injection:
             for index, term in enumerate(self._fine.terms)
             if term.name in ("sensor_gain", "sensor_offset")
         ]
-        # The torque at the sensor is the same whatever the sensor's parameters are.
+        # The torque at the sensor does not depend on the sensor's parameters.
         self._sensed = np.einsum("ij,j->i", shapes[:, self._reading], theta[self._reading])
-        # The noise of position, velocity and sensor explains a part of the residuals; the torque has the rest.
+        # Noise of position, velocity and sensor explains part of the residuals; the torque gets the rest.
         self._share = 0.0
         trial = replace(problem, recordings=self.recordings(theta, rng))
         quiet = trial.table(trial.penalty(windows), theta)
@@ -133,12 +133,12 @@ class Injection:
         return 0.0
 
     def recordings(self, theta: Array, rng: np.random.Generator) -> tuple[Recording, ...]:
-        """Return the recordings as they would be with these parameters.
+        """Return simulated recordings with these parameters.
 
         Parameters
         ----------
         theta : ndarray, shape (p,)
-            In the order of the names.
+            Parameters in the order of the names.
         rng : Generator
             Random generator of the noise.
         """
@@ -156,7 +156,7 @@ class Injection:
         return tuple(made)
 
     def sizes(self, theta: Array) -> Array:
-        """Return the change of the torque for one unit of each parameter, as a share; infinite for shapes."""
+        """Return the relative change of the torque for one unit of each parameter; infinite for shapes."""
         columns = self._fine.columns(theta[self._fine.coefficients :])
         level = float(
             np.sqrt(
@@ -169,7 +169,7 @@ class Injection:
         return sizes
 
     def _torque(self, run: _Run, bounds: NDArray[np.int64], needed: Array) -> Array:
-        """Return a torque at the samples with these integrals; where there are none, the recorded one."""
+        """Return a torque at the samples with these integrals; outside them, the recorded torque."""
         time, recorded = run.true.time, run.true.torque
         assert recorded is not None
         mean_of = np.full(time.size, np.nan)
@@ -184,7 +184,7 @@ class Injection:
         return np.where(np.isnan(mean_of), recorded, mean_of)
 
     def _moving(self, number: int) -> NDArray[np.bool_]:
-        """Return at which samples of a recording the model applies."""
+        """Return which samples of a recording the model covers."""
         bounds = self._fine.windows[np.asarray(self._fine.recording_of) == number]
         steps = np.zeros(len(self._problem.recordings[number]) + 1)
         np.add.at(steps, bounds[:, 0], 1.0)
@@ -194,9 +194,9 @@ class Injection:
     def _recorded(
         self, run: _Run, torque: Array, theta: Array, number: int, rng: np.random.Generator
     ) -> Recording:
-        """Return the true signals as they would be recorded."""
+        """Return the true signals with noise, as a recording."""
         true, recorded = run.true, self._problem.recordings[number]
-        # Where the joint stands, even the smallest noise would be a motion.
+        # At standstill, even the smallest noise would look like motion.
         moving = self._moving(number)
         position = np.where(moving, run.position.added(true.position, rng), recorded.position)
         velocity = None
@@ -228,7 +228,7 @@ def _counted(lengths: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _drawn(run: _Run, rng: np.random.Generator) -> Array:
-    """Return a disturbance torque at the samples: blocks of the residuals in another order and with other signs."""
+    """Return a disturbance torque at the samples: blocks of the residuals in random order with random signs."""
     count = run.residual.size
     length = max(1, round(np.sqrt(count)))
     blocks = -(-count // length)

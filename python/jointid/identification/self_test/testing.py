@@ -1,4 +1,4 @@
-"""`self_test`: inject known parameters into the recorded motion, identify again, and compare."""
+"""`self_test`: simulate known parameters in the recorded motion, identify them again, and compare."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-# A draw stays in the 95 % interval, and within this factor of an estimate whose interval is wider than itself.
+# Drawn values stay within this number of standard errors and within this factor of the estimate.
 _WITHIN, _FACTOR = 1.96, 2.0
-# A value is close within this share of the truth, or if its error changes the torque by less than the second.
+# A value is close if its error is below the first share of the truth or changes the torque by less than the second.
 _CLOSE, _HARMLESS = 0.05, 0.005
 
 
@@ -35,14 +35,14 @@ def self_test(
     trials: int,
     seed: int,
 ) -> SelfTest:
-    """Answer `Estimate.selftest`.
+    """Return the result of `Estimate.selftest`.
 
     Parameters
     ----------
     problem, domain, windows
-        What the estimate was made from.
+        Input of the estimate.
     again : callable
-        Returns the estimate from other recordings, with the same settings.
+        Function that returns the estimate from other recordings, with the same settings.
     """
     theta = np.array([estimate.parameters[name].value for name in domain.names])
     stream = np.random.SeedSequence(seed).spawn(trials + 1)
@@ -69,7 +69,7 @@ def self_test(
 def _drawn(
     estimate: EstimateRecord, domain: SearchDomain, theta: Array, rng: np.random.Generator
 ) -> Array:
-    """Return parameters from the intervals of the estimate, correlated as its errors are."""
+    """Return random parameters from the intervals of the estimate, with the correlation of its errors."""
     truth = theta.copy()
     errors = np.sqrt(np.diag(estimate.covariance))
     known = np.flatnonzero(np.isfinite(errors) & (errors > 0.0))
