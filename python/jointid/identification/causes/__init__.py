@@ -1,1 +1,1 @@
-"""Causes of a structured residual, by name: what the model lacks, out of sample and at several scales."""
+"""Named causes of a structured residual, tested on held-out data and at several time scales."""

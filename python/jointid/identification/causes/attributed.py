@@ -1,4 +1,4 @@
-"""A candidate that explains part of a misfit, and what it does to the values."""
+"""A candidate that explains part of the residual, and its effect on the parameters."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Attributed:
-    """A candidate that explains part of the misfit.
+    """Candidate that explains part of the residual.
 
     Attributes
     ----------
     candidate : Candidate
     share : float
-        Share of the residual at its best scale, out of sample.
+        Share of the held-out residual at the best scale.
     factor : int
-        That scale: neighbouring windows summed.
+        Best scale, as the number of neighboring windows in one sum.
     coefficients : ndarray, shape (m,)
-        Coefficients of its columns.
+        Coefficients of the candidate's columns.
     shifts : ndarray
-        Change of the free parameters by this cause, after those found before it.
+        Change of the free parameters by this cause, in addition to the causes before it.
     alike : tuple of str
         Names of other families that explain nearly as much.
     """

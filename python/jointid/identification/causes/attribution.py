@@ -1,4 +1,4 @@
-"""Attribution: which candidates explain the misfit of a fit, out of sample, and what they do to its values."""
+"""Attribution: find the candidates that explain the held-out residual of a fit, and their effect on the values."""
 
 from __future__ import annotations
 
@@ -21,24 +21,22 @@ from jointid.problem.inner_products import inner
 Array = NDArray[np.float64]
 
 SCALES = (1, 4, 16, 64)
-_MOST = 3  # causes, one after the other
-_SHARE = 0.12  # of the misfit, at least, at one scale
-_SHARE_OF_ALL = 0.05  # of the misfit before any cause was found
+_MOST = 3  # largest number of causes
+_SHARE = 0.12  # smallest explained share of the residual at one scale
+_SHARE_OF_ALL = 0.05  # smallest explained share of the residual before any cause was found
 _SURE = 3.0  # mean improvement of a block over its error
-_FEWEST = 5  # blocks that hold the misfit
-_LEFT = (
-    0.2  # of a column's sum of squares: with less in the faster windows they do not tell its value
-)
-_GONE = 0.3  # of the misfit may be left without the windows on the limit of the torque
-_ALIKE = 1.1  # ratio of misfits that blocks do not tell apart
-_HARDLY = 0.9  # a runner-up explains so much of what the winner does, in logarithms of the misfit
+_FEWEST = 5  # smallest number of blocks with most of the residual
+_LEFT = 0.2  # smallest share of a column's squares in the fast windows that determines its value
+_GONE = 0.3  # largest remaining share of the residual without the windows at the torque limit
+_ALIKE = 1.1  # ratio of residuals that blocks cannot distinguish
+_HARDLY = 0.9  # share of the best candidate's log improvement, from which another one is similar
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Score:
-    """How much some columns take from the misfit, out of sample."""
+    """Reduction of the held-out residual by some columns."""
 
-    total: float  # mean logarithm of the reduction of the misfit, over the scales
+    total: float  # mean logarithm of the residual's reduction over the scales
     share: float
     factor: int
     sure: bool
@@ -47,18 +45,18 @@ class Score:
 def attribute(
     fit: FittedBalance, tried: list[Candidate], whole: FittedBalance | None = None
 ) -> tuple[Attributed, ...] | None:
-    """Return the candidates that explain the misfit, one after the other.
+    """Return the candidates that explain the residual, one after the other.
 
     Parameters
     ----------
     whole : FittedBalance, optional
-        All of a recording of which `fit` has stretches. Those tell which candidates explain the misfit; events,
-        sizes and what they move are taken from all of it. Default: `fit` has everything.
+        Fit of the whole recording if `fit` has only stretches of it. The stretches decide which candidates explain the
+        residual. Events, sizes and shifts come from the whole recording. Default: `fit` is complete.
 
     Returns
     -------
     tuple of Attributed or None
-        None where windows stand out, of an event or of slow motion, that stretches do not show as they are.
+        None if an event or slow motion stands out in the whole recording, which the stretches may not show.
     """
     count = fit.jacobian.shape[1]
     places, at = [], count
@@ -112,14 +110,14 @@ def attribute(
         reached = reached + found[-1].shifts
         if everywhere is not None:
             found[-1] = everywhere.attributed(found[-1])
-    # Where friction at low speed is amiss, what happens while the joint hardly moves is part of it.
+    # If low-speed friction is wrong, an event during slow motion is probably part of it.
     if slow_event and any(_family(each.candidate) == "slow_motion" for each in found):
         found.sort(key=lambda each: each.candidate.name == "disturbance")
     return tuple(found)
 
 
 def shares(fit: FittedBalance, tried: list[Candidate]) -> list[float]:
-    """Return the shares of the misfit that candidates explain, each by itself, of those that surely do."""
+    """Return the share of the residual that each candidate explains alone; only significant candidates count."""
     base = list(range(fit.jacobian.shape[1]))
     found = []
     for each in tried:
@@ -132,7 +130,7 @@ def shares(fit: FittedBalance, tried: list[Candidate]) -> list[float]:
 
 
 def _of_the_limit(fit: FittedBalance, base: Array, residual: Array) -> bool:
-    """Whether the misfit is gone from the other windows once those on the torque's limit are left out."""
+    """Return whether leaving out the windows at the torque limit removes most of the residual."""
     kept = fit.trusted
     if kept.all():
         return False
@@ -146,7 +144,7 @@ def _of_the_limit(fit: FittedBalance, base: Array, residual: Array) -> bool:
 def _of_event(
     fit: FittedBalance, matrix: Array, base: list[int], event: LocalEvent, reached: Array
 ) -> Attributed:
-    """The shifts when the event is left out."""
+    """Return the event as a cause, with the shifts when it is left out."""
     steps = fit.solve(matrix[:, base], matrix[:, -1])
     return Attributed(
         candidate=Candidate(name="disturbance", columns=np.zeros((0, 1)), detail=event.text),
@@ -158,7 +156,7 @@ def _of_event(
 
 
 def _of_slow_rows(fit: FittedBalance, matrix: Array, slow: SlowRows) -> Attributed:
-    """The shifts when slow motion is left out, of what is known without it."""
+    """Return slow motion as a cause, with the shifts of the parameters that are known without it."""
     kept = np.where(slow.rows[:, None], 0.0, matrix)
     number = ("speed", slow.speed, "/s")
     return Attributed(
@@ -176,13 +174,13 @@ def _of_slow_rows(fit: FittedBalance, matrix: Array, slow: SlowRows) -> Attribut
 
 
 def _without_slow(fit: FittedBalance, kept: Array, matrix: Array) -> Array:
-    """Steps without the slow windows; none for what only these windows show."""
+    """Return the steps without the slow windows; 0 for parameters that only these windows determine."""
     count = len(fit.start)
     left = np.einsum("ni,ni->i", kept[:, :count], kept[:, :count])
     whole = np.einsum("ni,ni->i", matrix[:, :count], matrix[:, :count])
     known = np.flatnonzero(left > _LEFT * whole)
     steps = np.zeros(count)
-    # Without what `solve` adds to the first columns, which these are not.
+    # `solve` cannot be used, because it adds the start values to the first columns.
     size = np.sqrt(left[known])
     scaled = kept[:, known] / size
     square = np.einsum("ni,nj->ij", scaled, scaled) + 1e-12 * np.eye(len(known))
@@ -195,7 +193,7 @@ def _family(candidate: Candidate) -> str:
 
 
 def at_scales(fit: FittedBalance, matrix: Array) -> list[tuple[int, Folds]]:
-    """Return the folds of columns and residual, its last column, for sums of 1, 4, 16 and 64 windows."""
+    """Return the folds of a matrix for sums of 1, 4, 16 and 64 windows; its last column is the residual."""
     scaled = []
     for factor in SCALES:
         rows, _ = summed(matrix, fit.neighbours, factor)
@@ -208,16 +206,16 @@ def at_scales(fit: FittedBalance, matrix: Array) -> list[tuple[int, Folds]]:
 def score_of(
     scaled: list[tuple[int, Folds]], base: list[int], columns: list[int], whole: dict[int, float]
 ) -> Score:
-    """Return what columns explain beyond others, at the scale where it is most.
+    """Return how much `columns` explain in addition to `base`, with the share at the best scale.
 
     Parameters
     ----------
     scaled : list
-        As `at_scales` returns it.
+        Folds from `at_scales`.
     base, columns : list of int
-        Columns that are fitted anyway, and those in question.
+        Columns that are always fitted, and columns to score.
     whole : dict
-        Scale → misfit before any cause was found.
+        Squared residual before any cause was found, by scale.
     """
     total, best, at, sure = 0.0, 0.0, 1, False
     for factor, folds in scaled:
@@ -235,11 +233,10 @@ def score_of(
 
 
 def _steady(before: Array, after: Array) -> bool:
-    """Whether the misfit falls in most blocks, not by luck in one.
+    """Return whether the residual decreases in most blocks, not by chance in one.
 
-    The logarithms of the blocks' ratios count blocks alike, their differences count them by their
-    misfit. A cause at reversals is silent in the blocks without one: the loud blocks must then fall
-    together.
+    The logarithms of the ratios count all blocks equally. The differences count blocks by their residual. A cause at
+    reversals has no effect in blocks without a reversal. The blocks with a large residual must then all decrease.
     """
     if any(errors > _SURE for errors in _each_steadiness(before, after)):
         return True
@@ -249,12 +246,12 @@ def _steady(before: Array, after: Array) -> bool:
 
 
 def steadiness(before: Array, after: Array) -> float:
-    """Return how many errors the mean fall of the blocks' misfit is from none; the larger of two ways to count."""
+    """Return the mean decrease of the blocks' residual over its standard error; the larger of two measures."""
     return max(_each_steadiness(before, after))
 
 
 def _each_steadiness(before: Array, after: Array) -> Iterator[float]:
-    """Both ways to count, one after the other: the first mostly decides."""
+    """Yield both measures one after the other, because the first usually decides."""
     floor = 1e-12 * before.sum()
     yield _errors_from_none(np.log((before + floor) / (after + floor)))
     yield _errors_from_none(before - after)
@@ -269,7 +266,7 @@ def _errors_from_none(values: Array) -> float:
 
 
 def _parsimonious(scores: dict[int, Score], tried: list[Candidate]) -> int:
-    """The candidate with the fewest columns among those as good as the best."""
+    """Return the candidate with the fewest columns among those nearly as good as the best."""
     top = max(score.total for score in scores.values())
     near = [index for index, score in scores.items() if score.total > top - np.log(_ALIKE)]
     return min(near, key=lambda index: (tried[index].columns.shape[1], -scores[index].total))
@@ -284,7 +281,7 @@ def _attributed(
     scores: dict[int, Score],
     reached: Array,
 ) -> Attributed:
-    """The winner's coefficients, and the shifts of the parameters with all causes so far in the model."""
+    """Return the chosen candidate with its coefficients, and the shifts with all causes so far in the model."""
     count, own = fit.jacobian.shape[1], tried[winner].columns.shape[1]
     solution = fit.solve(matrix[:, base], matrix[:, -1])
     score = scores[winner]

@@ -1,4 +1,4 @@
-"""What a model may lack as integrals over the windows: one function for each row in the table of `families`."""
+"""Candidates for effects that a model lacks, as integrals over windows: one function for each row of `families`."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from jointid.recording.order_statistics import quantile_of_sizes
 
 Array = NDArray[np.float64]
 
-_PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
-_OF_TYPICAL = (0.05, 0.2, 0.6)  # of a fast speed: speeds by which a friction's shape is scaled
-_MOST_RUNS = 3  # recordings of which each is tried by itself
+_PERIOD = np.pi  # [rad] smallest phase of a harmonic that the motion must cover
+_OF_TYPICAL = (0.05, 0.2, 0.6)  # shares of a fast speed that scale the shape of a friction term
+_MOST_RUNS = 3  # largest number of single recordings to test
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Candidate:
-    """One regressor or a few that belong together.
+    """One regressor, or a few that belong together.
 
     Attributes
     ----------
@@ -32,16 +32,16 @@ class Candidate:
     columns : ndarray, shape (windows, m)
         Integrals of torque for a coefficient of 1.
     detail : str
-        Which of its kind, e.g. the order of a harmonic.
+        Variant of the cause, for example the order of a harmonic. "@" stands for the unit of length.
     numbers : tuple
-        Name, value and unit behind the length of the numbers in `detail`, where @ is the unit of length.
+        Numbers in `detail`: name, value, and the part of the unit after "@".
     unit : str
-        Unit of its coefficient, if that is its size: for a revolute joint, then after a bar for a prismatic one.
-        Default: not shown.
+        Unit of the coefficient if the coefficient is the size: for a revolute joint, and after a bar for a prismatic
+        one. Default: not shown.
     family : str
-        Causes that a recording hardly separates share one.
+        Common name of causes that a recording hardly separates. Default: the cause's own name.
     finest : bool
-        Whether only the windows as they are can show it.
+        Whether only single windows, not sums of windows, can show it.
     """
 
     name: str
@@ -54,14 +54,14 @@ class Candidate:
 
 
 def nothing(_: FittedBalance) -> Iterator[Candidate]:
-    """No columns: it is found otherwise."""
+    """Return no candidates, for a cause that is found without columns."""
     return iter(())
 
 
 def gravity(fit: FittedBalance) -> Iterator[Candidate]:
-    """Without a sensor, which feels the link's: beside one it would take the place of a wrong gain.
+    """Yield gravity, but not with a torque sensor: it would hide a wrong sensor gain.
 
-    Also beside the weight of a link as described, which may be described wrongly.
+    It is also a candidate if gravity is known from a described link, because the description may be wrong.
     """
     free = {fit.names[index] for index in fit.free}
     there = fit.knows_link or "sensor_gain" in fit.names or {"gravity_cos", "gravity_sin"} & free
@@ -70,7 +70,7 @@ def gravity(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def inertia_varies(fit: FittedBalance) -> Iterator[Candidate]:
-    """From Lagrange's equation of an inertia M(q): M a + M' v² / 2, integrated without the acceleration."""
+    """Yield an inertia M(q) by Lagrange's equation, M a + M' v² / 2, integrated so that it needs no acceleration."""
     if fit.knows_link or not _revolute(fit):
         return
     parts = {}
@@ -86,7 +86,7 @@ def inertia_varies(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def _mean_of_basis(fit: FittedBalance, order: float) -> Array:
-    """Means of cosine and sine of a multiple of the angle over all samples."""
+    """Return the means of cosine and sine of a multiple of the angle over all samples."""
     sums, count = np.zeros(2), 0
     for run in fit.runs:
         for part in all_samples(run):
@@ -104,12 +104,12 @@ def _centrifugal(_: int, run: Samples, order: float) -> Array:
 
 
 def inertia_basis(fit: FittedBalance, order: float) -> Array:
-    """Cosine and sine of a multiple of the angle at all samples, shape (samples, 2)."""
+    """Return cosine and sine of a multiple of the angle at all samples, shape (samples, 2)."""
     return np.concatenate([_pair(order * run.position) for run in fit.runs])
 
 
 def load_friction(fit: FittedBalance) -> Iterator[Candidate]:
-    """With the load from the sensor, or from the model's gravity and inertia; never from the drive's torque."""
+    """Yield friction of a load from the sensor or from the model's gravity and inertia, not from the drive's torque."""
     if "load_friction" in fit.names:
         return
     if fit.load is not None:
@@ -130,13 +130,13 @@ def load_friction(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def _against_motion(fit: FittedBalance, load: Array) -> Array:
-    """Size of a load times the direction."""
+    """Return the absolute value of a load times the direction of motion."""
     turned = fit.integral_of_each(lambda _, run: np.sign(run.velocity)) / fit.duration
     return np.asarray(np.abs(load) * turned)
 
 
 def drift(fit: FittedBalance) -> Iterator[Candidate]:
-    """Coefficients that change evenly with time."""
+    """Yield each coefficient with a linear change over time."""
     middle = fit.integral_of_each(lambda _, run: run.time - run.begin) / fit.duration
     progress = middle - np.average(middle, weights=fit.duration)
     for index, term in enumerate(fit.terms):
@@ -153,18 +153,18 @@ def drift(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def harmonic(fit: FittedBalance) -> Iterator[Candidate]:
-    """Of orders of which the motion covers enough; the first is gravity's, or of a wrong centre of mass."""
+    """Yield harmonics of each order that the motion covers, from order 2; order 1 is gravity."""
     if not (_revolute(fit) and fit.has_torque):
         return
     reach = max(float(np.ptp(run.position)) for run in fit.runs)
     for order in range(2, 7):
-        # Less than half a period is a slope, which other candidates are, too.
+        # Less than half a period looks like a slope, as other candidates do.
         if order * reach > _PERIOD and not _has_order(fit, "position", float(order)):
             yield Candidate(name="harmonic", columns=_angle(fit, float(order)), detail=str(order))
 
 
 def ripple(fit: FittedBalance) -> Iterator[Candidate]:
-    """Over longer windows only the ripple at reversals is left, which any cause at reversals resembles."""
+    """Yield ripple of each order, but not over sums of windows, where only the ripple at reversals remains."""
     gear = fit.gear_ratio
     if gear == 1.0 or not _revolute(fit) or fit.group > 1:
         return
@@ -175,9 +175,9 @@ def ripple(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def delay(fit: FittedBalance) -> Iterator[Candidate]:
-    """To first order, the integral of a signal that is late changes by its rise over the window.
+    """Yield the delay of each signal; to first order, it changes an integral by the signal's rise over the window.
 
-    If the delay of a signal was measured directly, that measurement says more than the residual of the balance.
+    A directly measured delay has priority, because it is more reliable than the residual of the balance.
     """
     for signal in LATE:
         change = fit.late(signal)
@@ -186,9 +186,9 @@ def delay(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def other_laws() -> list[_core.Term]:
-    """Return the terms of friction of the speed alone that no other cause stands for.
+    """Return the speed-dependent friction terms that no other cause covers.
 
-    Friction that is there at rest is dry, or low-speed friction; so is dry friction that rises with the speed.
+    Not among them are dry and low-speed friction, which exist at rest, and dry friction that rises with speed.
     """
     of_speed = [t for t in _core.terms() if t.friction and not (t.needs_load or t.side)]
     dry = [term for term in of_speed if term.at_rest or term.settles]
@@ -196,7 +196,7 @@ def other_laws() -> list[_core.Term]:
 
 
 def other_law(fit: FittedBalance) -> Iterator[Candidate]:
-    """Friction of the core's table that the model lacks; with a shape in proportion to a power of usual speeds."""
+    """Yield the friction terms of the core that the model lacks, with shapes from typical speeds."""
     present = {term.basis for term in fit.terms if term is not None and term.friction}
     speeds = typical_speed(fit) * np.array(_OF_TYPICAL)
     for term in other_laws():
@@ -219,7 +219,7 @@ def _of_term(_: int, run: Samples, term: _core.Term, shapes: tuple[float, ...]) 
 
 
 def asymmetry(fit: FittedBalance) -> Iterator[Candidate]:
-    """In proportion to the speed: half the difference of constant friction is an offset."""
+    """Yield viscous friction that differs between directions; a difference of constant friction is an offset."""
     if fit.is_asymmetric:
         return
     speed = fit.integral_of_each(lambda _, run: np.abs(run.velocity))
@@ -227,20 +227,20 @@ def asymmetry(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def offset(fit: FittedBalance) -> Iterator[Candidate]:
-    """Where the model has none."""
+    """Yield an offset if the model has none."""
     if not {"torque_offset", "sensor_offset"} & set(fit.names):
         yield Candidate(name="offset", columns=fit.duration[:, None])
 
 
 def wrong_scale(fit: FittedBalance) -> Iterator[Candidate]:
-    """A given inertia that does not fit the torque's scale; one at its bound was not given."""
+    """Yield a correction of a fixed inertia that does not match the scale of the torque."""
     if "inertia" in fit.given:
         column = fit.columns[:, fit.names.index("inertia")]
         yield Candidate(name="wrong_scale", columns=column[:, None])
 
 
 def other_signal(fit: FittedBalance) -> Iterator[Candidate]:
-    """Signals beside those of the model, and the friction's change with them."""
+    """Yield each signal that the model does not use, and its rate of change."""
     for name, values in fit.further_signals.items():
         level = values - values.mean()
 
@@ -258,7 +258,7 @@ def other_signal(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def other_run(fit: FittedBalance) -> Iterator[Candidate]:
-    """Values of its own of one recording; of many recordings those that are most likely to have them."""
+    """Yield separate values for one recording; with many recordings, only the most likely ones."""
     runs = fit.runs
     if len(runs) == 1:
         return
@@ -294,7 +294,7 @@ def _slope(angle: Array) -> Array:
 
 
 def _angle(fit: FittedBalance, order: float) -> Array:
-    """Cosine and sine without their means, so that they leave an offset where it is."""
+    """Return integrals of cosine and sine, without their means if the model has an offset."""
     columns = fit.integral_of_each(lambda _, run: _pair(order * run.position))
     if not {"torque_offset", "sensor_offset"} & set(fit.names):
         return columns
@@ -304,6 +304,6 @@ def _angle(fit: FittedBalance, order: float) -> Array:
 
 def typical_speed(fit: FittedBalance) -> float:
     """Return a fast speed of the joint."""
-    # Of a joint that rests nearly all the time it is that of the little motion.
+    # If the joint rests nearly all the time, use its largest speed.
     usual = max(quantile_of_sizes(run.velocity, 0.9) for run in fit.runs)
     return usual or max(float(np.abs(run.velocity).max()) for run in fit.runs)

@@ -1,4 +1,4 @@
-"""The finding of a cause, whatever its balance is of."""
+"""Finding of a cause, for any fitted balance."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from jointid.identification.causes.families import BY_NAME
 def finding_of_cause(
     cause: Cause, parameters: tuple[str, ...], joint: str = "", kind: FindingType | None = None
 ) -> Finding:
-    """Return the warning of a cause that moves values, in the words of a single joint.
+    """Return the finding of a harmful cause, with the same text as for a single joint.
 
     Parameters
     ----------
     joint : str
-        In front of the title. Default: nothing.
+        Name of the joint before the title. Default: none.
     kind : FindingType, optional
-        Default: that of the cause.
+        Type of the finding. Default: that of the cause.
     """
     of = f"{joint}: " if joint else ""
     title = cause.titled(TITLE - len(of))

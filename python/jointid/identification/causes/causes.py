@@ -1,4 +1,4 @@
-"""`find_causes`: the causes of a misfit, with what they move and what to do about them."""
+"""`find_causes`: find the causes of the residual, the parameters that they change, and advice against them."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_MOST = 60_000  # windows of an attribution: stretches of a long recording say the same
-_LATE = 2.0  # standard errors of a delay that is none
-_NOTICED = 0.8  # of that: a first-order shift may be so much too small
-_LEAST_SCALE = 0.02  # of a given inertia: it is seldom known better
-_KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
-# Shares of a value: a smaller change matters to nobody, however many errors it is. A cause that is measured by
-# itself is more than a guess from the misfit.
+_MOST = 60_000  # largest number of windows; stretches of a longer recording give the same result
+_LATE = 2.0  # standard errors; a smaller delay counts as 0
+_NOTICED = 0.8  # share of the harm limit; a shift to first order may be too small by this factor
+_LEAST_SCALE = 0.02  # smallest relevant share of a fixed inertia, which is rarely known better
+_KNOWN = 3e-4  # [s]; largest standard error of a delay that decides whether a delay matters
+# Smallest relevant shares of a value, for any number of standard errors. A directly measured cause is more certain than
+# a cause from the residual.
 _LEAST, _LEAST_OF_MEASURED = 0.003, 0.002
-_FAINT = 1e-3  # of the friction: what sampling leaves of a log without noise
+_FAINT = 1e-3  # share of the friction that sampling leaves as residual without noise
 
 
 def find_causes(
@@ -46,22 +46,22 @@ def find_causes(
     delays: Mapping[str, Delay],
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
-    """Attribute the misfit of an estimate.
+    """Find the causes of an estimate's residual.
 
     Parameters
     ----------
     problem : Problem
     penalty : Penalty
-        Over the windows used.
+        Penalty over the windows of the fit.
     parameters : mapping of str to ParameterEstimate
     torque_level : float
-        Root mean square of the torque [N·m or N]; what an offset is held against.
+        Root mean square of the torque [N·m or N], as the reference of an offset.
     delays : mapping of str to Delay
-        Delays of the signals against the position, estimated before.
+        Estimated delays of the signals relative to the position.
     signals : mapping of str to ndarray, optional
-        Further signals of the first recording, one value a sample.
+        Further signals of the first recording, one value per sample.
     """
-    from jointid.identification.causes.attribution import attribute  # of a misfit: not of every fit
+    from jointid.identification.causes.attribution import attribute  # not needed for every fit
 
     late = "velocity" in delays and delays["velocity"].certain
     given = (problem, penalty, parameters, signals, _prompt(delays), late, _MOST)
@@ -79,7 +79,7 @@ def find_causes(
 def causes_of(
     fit: FittedBalance, parameters: Mapping[str, ParameterEstimate], torque_level: float
 ) -> Causes:
-    """Attribute the misfit of any balance; arguments as for `find_causes`."""
+    """Find the causes of any balance's residual; arguments as for `find_causes`."""
     from jointid.identification.causes.attribution import attribute
 
     tried = listed_candidates(fit)
@@ -94,7 +94,7 @@ def _causes(
     torque_level: float,
     delays: Mapping[str, Delay],
 ) -> Causes:
-    """What was attributed, with what it moves, harmful or not."""
+    """Return the attributed causes with their effects, divided into harmful and harmless ones."""
     found: list[Cause] = []
     harmless: list[Cause] = []
     errors = np.inf if fit.is_faint(_FAINT) else ERRORS
@@ -115,12 +115,12 @@ def share_of(
 ) -> float:
     """Return the largest share of the residual that one candidate of a family explains alone; 0 if none does.
 
-    It is 1 for a recording so long that its causes come from stretches: these need the whole recording first.
+    Return 1 for a recording that is too long for this test, so that the caller makes the full attribution.
 
     Parameters
     ----------
     name : str
-        Name of the family, e.g. "drift".
+        Name of the family, for example "drift".
     """
     from jointid.identification.causes.attribution import shares
 
@@ -141,19 +141,19 @@ def cause_of(
     size: float | None = None,
     removed: bool = False,
 ) -> Cause | None:
-    """Return what a cause that is known from elsewhere does to the values; None of one without a candidate.
+    """Return the effect of a known cause on the values; None if it has no candidate.
 
     Parameters
     ----------
     name, detail : str
-        Name and detail of the cause, e.g. "ripple", "2", or "delay", "torque".
+        Name and detail of the cause, for example "ripple", "2", or "delay", "torque".
     share : float
-        Share of a misfit that it explains.
+        Share of the residual that it explains.
     size : float, optional
-        Its coefficient where that is known, too. Default: fitted.
+        Coefficient of the cause, if known. Default: fitted.
     removed : bool
-        Whether the values are those without it. What it moved is then held against the errors that they
-        would have had with it.
+        Whether the cause was removed before the fit. Its effect is then compared with the errors that the values
+        would have with the cause.
     """
     fit = _fitted(problem, penalty, parameters)
     for each in listed_candidates(fit, name):
@@ -202,14 +202,14 @@ def attributed(
     signals: Mapping[str, ArrayLike],
     times: Array,
 ) -> Causes:
-    """Attribute the misfit of an estimate, with further signals of its recording.
+    """Find the causes of an estimate's residual, with further signals of its recording.
 
-    They have a value at each of `times` [s], the recorded ones, or at each that was fitted.
+    Each signal has one value for each of `times`, the recorded times [s], or for each fitted sample.
 
     Raises
     ------
     InputError
-        Signals for several recordings, or one with another number of values.
+        The estimate has several recordings, or a signal has the wrong number of values.
     """
     if signals and len(problem.recordings) > 1:
         raise InputError(
@@ -217,7 +217,7 @@ def attributed(
             argument="signals",
             value=list(signals),
         )
-    fitted = problem.recordings[0].time  # without samples at the edges where a delay is taken away
+    fitted = problem.recordings[0].time  # a removed delay removes samples at the edges
     length, kept = len(times), np.searchsorted(times, fitted)
     found = {}
     for name, values in signals.items():
@@ -248,10 +248,11 @@ def attributed(
 
 
 def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
-    """Signals that are not late, or no longer: much resembles a delay, and its own estimate says more.
+    """Return the signals without a delay, or without one after its removal, so that delay is no candidate for them.
 
-    A torque of which only some parts seem late is not late: something else is amiss there. Nor is a velocity
-    that the position's rate shows to be late by too little to matter, however certain that little is.
+    Many effects look like a delay, and a direct estimate of the delay is more reliable. If only some parts of the
+    torque seem late, the torque is not late but something else is wrong. A velocity with a negligible delay counts as
+    not late, even if the delay is significant.
     """
     found = set()
     for each in delays.values():

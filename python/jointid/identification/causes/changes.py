@@ -1,4 +1,4 @@
-"""Changes of values in words, where a share of the value says nothing or says the wrong thing."""
+"""Texts for changes of values, where a share of the value is meaningless or misleading."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import signed_percent
 
-_MOST = 10.0  # of a value: a larger share is no size
+_MOST = 10.0  # largest meaningful change, as a multiple of the value
 
 
 def from_to(
@@ -17,14 +17,14 @@ def from_to(
     errors: Mapping[str, float],
     before: bool = False,
 ) -> dict[str, str]:
-    """Return the words of changes of values near zero: "from 0 to 0.12 N·m".
+    """Return texts for changes of values near zero, such as "from 0 to 0.12 N·m".
 
-    A value is near zero if it is at a bound or less than its error, or if the change is many times the value.
+    A value is near zero if it is at a bound, smaller than its error, or much smaller than the change.
 
     Parameters
     ----------
     before : bool
-        Whether the values are those after the change. Default: those before it.
+        Whether the values are those after the change. Default False: those before it.
     """
     words = {}
     for name, shift in shifts.items():
@@ -42,14 +42,14 @@ def of_a_scale(
     shifts: Mapping[str, float],
     share: float,
 ) -> str:
-    """Return what a given inertia that does not fit does, as sentence parts: it is wrong, or the torque is.
+    """Return the effect of a wrong fixed inertia as a clause: either the inertia is wrong, or the torque.
 
     Parameters
     ----------
     shifts : mapping of str to float
-        Shifts of the values, with the inertia from the torque.
+        Shifts of the values with the inertia that the torque shows.
     share : float
-        By which the torque shows a larger inertia.
+        Relative difference of the inertia that the torque shows from the fixed one.
     """
     inertia = parameters["inertia"]
     shown = (1.0 + share) * inertia.value
@@ -63,6 +63,6 @@ def of_a_scale(
         return f"if the torque is wrong, the friction changes by {signed_percent(-share / (1.0 + share))}"
     text = f"with the {shown:.3g} {inertia.unit} that the torque shows instead"
     text += f", {', '.join(moved).replace(' by ', ' changes by ', 1)}"
-    # A torque that is wrong by a factor has everything else wrong by it.
+    # A wrong factor of the torque scales all other values by it.
     scale = f"; if the torque is wrong instead, the friction changes by {signed_percent(-share / (1.0 + share))}"
     return text + (scale if shown > 0.0 else "")

@@ -1,4 +1,4 @@
-"""A disturbance: a misfit that a few short stretches of time hold."""
+"""Disturbances: residuals that are concentrated in a few short stretches of time."""
 
 from __future__ import annotations
 
@@ -11,30 +11,32 @@ from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
 
-_LENGTH = 0.03  # of the windows, a stretch
-_MOST = 3  # stretches
-_ALONE, _TOGETHER = 0.6, 0.8  # share of the misfit in one, or in several
+_LENGTH = 0.03  # length of a stretch, as a share of the windows
+_MOST = 3  # largest number of stretches
+_ALONE, _TOGETHER = 0.6, 0.8  # smallest share of the residual in one stretch, or in several
 _OTHER, _MORE = 0.3, 0.3
-_SLOW = 0.2  # of the windows, the slowest
-_ROUNDS = 3  # what a disturbance does to the fit hides part of it
+_SLOW = 0.2  # share of the windows that count as slow
+_ROUNDS = 3  # refits, because the effect of a disturbance on the fit hides part of it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LocalEvent:
-    """Stretches of time that hold most of the misfit.
+    """Stretches of time with most of the residual.
 
     Attributes
     ----------
     rows : ndarray of bool, shape (windows,)
+        Windows of the event.
     share : float
-        Share of the residual.
+        Share of the squared residual in these windows.
     torque : float
-        Largest mean torque of a window there [N·m or N].
+        Largest mean torque of such a window [N·m or N].
     text : str
-        When.
+        Times of the stretches.
     stretches : int
+        Number of stretches.
     slow : bool
-        Whether most of the misfit there is of windows in which the joint hardly moves.
+        Whether most of the residual there comes from windows in which the joint hardly moves.
     """
 
     rows: NDArray[np.bool_]
@@ -45,20 +47,20 @@ class LocalEvent:
     slow: bool
 
     def stands_out(self, share: float) -> bool:
-        """Whether it says more than a cause that explains this share of the misfit at other times, too."""
+        """Return whether the event explains clearly more than a cause with this share of the whole residual."""
         if self.stretches > 1:
             return share < _OTHER
         return self.share > share + _MORE * (1.0 - share)
 
 
 def local_event(fit: FittedBalance, base: Array, residual: Array) -> LocalEvent | None:
-    """Return the stretches that hold most of what is left of the residual; None where it is spread."""
+    """Return the stretches with most of the remaining residual; None if it is spread out."""
     length = max(3, round(_LENGTH * len(residual)))
     if len(residual) < 20 * length:
         return None
     keep = np.ones(len(residual), dtype=bool)
     left = residual
-    for _ in range(_ROUNDS):  # refit without what was found, look again
+    for _ in range(_ROUNDS):  # refit without the stretches, then search again
         steps = fit.solve(np.where(keep[:, None], base, 0.0), np.where(keep, residual, 0.0))
         steps[: len(fit.start)] -= fit.start
         left = residual + base @ steps
@@ -88,7 +90,7 @@ def _is_slow(fit: FittedBalance, power: Array) -> bool:
 
 
 def _stretches(power: Array, length: int) -> list[tuple[int, int]]:
-    """The stretches with the most power: one if it holds enough, else a few."""
+    """Return the stretches with the most power: one if it has enough, otherwise a few, or none."""
     found: list[tuple[int, int]] = []
     left = power.copy()
     total = float(power.sum())

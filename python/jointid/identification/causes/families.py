@@ -1,6 +1,7 @@
-"""The table of causes that a misfit may have: each is one row, for a joint, a robot's joint and a servo alike.
+"""Table of the causes of a residual, one row each, for a joint, a robot's joint and a servo.
 
-A new cause is a row here and a function in `candidates`: its name, meaning, size and advice follow everywhere.
+A new cause needs a row here and a function in `candidates`. All other code takes name, meaning, size and advice from
+this table.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from jointid.identification.causes.fitted_balance import FILTERED, FittedBalance
 if TYPE_CHECKING:
     from jointid.identification.causes.attributed import Attributed
 
-_HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
+_HALF = 0.2  # sample periods; a torque that is early by 0.5 ± this is probably held between samples
 _HELD = Action(
     "call", {"torque_hold": "zoh"}, text="if the torque is a command that is held between samples"
 )
@@ -36,21 +37,22 @@ class Family:
     Attributes
     ----------
     name : str
-        Also the code of its finding.
+        Name of the cause, and code of its finding.
     meaning : str
-        As the beginning of a sentence.
+        Description of the cause, as the beginning of a sentence.
     remedy : str
-        What to do in general, for tables of findings.
+        General advice for tables of findings.
     candidates : callable
-        Yields what of it a model may lack; nothing where the balance cannot show it. Causes that share a function
-        are told apart by the names of its candidates. Default: it is found without columns.
+        Function that yields the candidates of the cause; none if the balance cannot show it. Several causes may share a
+        function; the names of its candidates distinguish them. Default: the cause is found without columns.
     advice : callable
-        Actions against a cause that was found.
+        Function that returns actions against a found cause.
     size : callable
-        Its `Size`, with the delays that are known by themselves. Default: by the candidate's unit.
+        Function that returns the `Size` of the cause, with the directly measured delays. Default: by the
+        candidate's unit.
     changes : callable
-        Values that it is itself a change of, by their names: a coefficient that is no constant moves by half its
-        range. Default: none.
+        Function that returns parameters that the cause changes directly, with their shifts: a coefficient that varies
+        shifts by half its range. Default: none.
     """
 
     name: str
@@ -63,7 +65,7 @@ class Family:
 
     @property
     def finding_type(self) -> FindingType:
-        """What its code stands for."""
+        """Finding type of the cause."""
         return FindingType(
             code=self.name,
             meaning=f"{self.meaning} explains the residual, also on held-out data. Info: it is harmless",
@@ -73,45 +75,45 @@ class Family:
 
 
 def _always(*actions: Action) -> Callable[..., tuple[Action, ...]]:
-    """Return a remedy that is the same for every fit."""
+    """Return an advice function with the same actions for every fit."""
     return lambda *_: actions
 
 
 def _with_order(fit: FittedBalance, field: str, cause: Attributed) -> tuple[Action, ...]:
-    """Identify with one order more."""
+    """Advise to identify with one more order."""
     orders = (*fit.orders.get(field, ()), float(cause.candidate.detail))
     return fit.identified_with(**{field: orders})
 
 
 def _against_another_law(fit: FittedBalance, cause: Attributed) -> tuple[Action, ...]:
-    """Compare with the first model that has the term."""
+    """Advise to compare with the first model that has the term."""
     of_it = [term.key for term in of.other_laws() if term.meaning == cause.candidate.detail]
     models = [model.name for model in _core.models() if set(of_it) & set(model.terms)]
     return fit.compared_with(name=models[0]) if models else ()
 
 
 def _against_asymmetry(fit: FittedBalance, _: Attributed) -> tuple[Action, ...]:
-    """Compare, where no sensor's offset looks like it."""
+    """Advise to compare with an asymmetric model, unless a sensor offset looks the same."""
     if "sensor_offset" in fit.names:
         return (Action("inspect", text="the friction in each direction"),)
     return fit.compared_with(asymmetric=True)
 
 
 def against_delay(fit: FittedBalance, cause: Attributed) -> tuple[Action, ...]:
-    """State that the torque is held, or look for the delay."""
+    """Advise to set that the torque is held, or to inspect the delay."""
     detail = cause.candidate.detail
     if detail == FILTERED:
         return (Action("call", {"columns": {"velocity": None}}, function="load"),)
     early = -float(cause.coefficients[0]) / fit.sample_period
     look = Action("inspect", text=f"when the {detail} is sampled and logged")
-    if detail == "torque" and early > 0.0:  # a torque does not come before its motion
+    if detail == "torque" and early > 0.0:  # a torque cannot be early
         look = Action("inspect", text=_EARLY)
     unheld = detail == "torque" and not fit.torque_held
     return (_HELD, look) if unheld and abs(early - 0.5) < _HALF else (look,)
 
 
 def _against_slow_motion(fit: FittedBalance, _: Attributed) -> tuple[Action, ...]:
-    """Compare with the next richer law of friction, where there is one."""
+    """Advise to compare with the next richer friction model, if there is one."""
     name = fit.model_name
     richer = {"coulomb_viscous": "stribeck", "stribeck": "stribeck_general"}.get(name)
     if richer is None or (richer == "stribeck_general" and fit.is_asymmetric):
@@ -282,7 +284,7 @@ FAMILIES: tuple[Family, ...] = (
         ),
         size=sizes.constant,
     ),
-    # Of a table in which other causes stand for all friction there is none.
+    # This row does not exist if other causes cover all friction terms.
     *((OTHER_LAW,) if of.other_laws() else ()),
 )
 
@@ -290,14 +292,14 @@ BY_NAME = {family.name: family for family in FAMILIES}
 
 
 def listed_candidates(fit: FittedBalance, only: str = "") -> list[Candidate]:
-    """Return all candidates that the model lacks and the recordings can show, or those of one cause's function."""
+    """Return all candidates that the model lacks and the recordings can show, or only those of one cause."""
     families = FAMILIES if only == "" else (BY_NAME[only],)
     makers = dict.fromkeys(family.candidates for family in families)
     return [each for maker in makers for each in maker(fit) if each.columns.any()]
 
 
 def same_candidate(fit: FittedBalance, wanted: Candidate) -> Candidate | None:
-    """Return a candidate for another fit of the same recordings; None of a ripple, which sums do not show."""
+    """Return the same candidate for another fit of the same recordings; None for ripple in sums of windows."""
     of_its_name = (
         each for each in BY_NAME[wanted.name].candidates(fit) if each.name == wanted.name
     )

@@ -1,4 +1,4 @@
-"""The fit of one joint as the attribution sees it: of a problem and its penalty."""
+"""Fitted balance of one joint, from a problem and its penalty."""
 
 from __future__ import annotations
 
@@ -24,33 +24,33 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_OFTEN = 0.005  # share of the samples on a limit
-_EQUAL = 1e-9  # of the torque's range
+_OFTEN = 0.005  # smallest share of the samples at a limit
+_EQUAL = 1e-9  # share of the torque's range
 _MOST_RESTING = 0.5
-_STRETCH = 1024  # windows; a multiple of the largest sum that is looked at
+_STRETCH = 1024  # windows; a multiple of the largest sum
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fitted(FittedBalance):
-    """A minimum of the penalty.
+    """Fitted balance at a minimum of the penalty.
 
-    The residual is on the torque's side; derivatives by the sensor's gain are by what the motion says of its reading,
-    so that its noise counts for nothing.
+    The residual is a torque. The derivative by the sensor gain uses the reading that the motion explains, so that noise
+    of the reading has no effect.
 
     Attributes
     ----------
     problem : Problem
     penalty : Penalty
     chosen : ndarray of int, or None
-        The penalty's windows that are looked at; None: all of them.
+        Indices of the penalty's windows to use; None: all.
     beside : Fitted, optional
-        Another fit of the same recordings, whose integration times are taken: they have a value a sample.
+        Another fit of the same recordings; its integration times are shared, because they need one value per sample.
     signals : mapping of str to ndarray
-        Further signals of the first recording, one value a sample.
+        Further signals of the first recording, one value per sample.
     prompt : frozenset of str
-        Signals that are known not to be late.
+        Signals that are known to have no delay.
     filtered : bool
-        Whether the velocity was late against the position: a filter does more than that.
+        Whether the velocity was late relative to the position, so that it may be filtered.
     """
 
     problem: Problem
@@ -73,7 +73,7 @@ class Fitted(FittedBalance):
 
     @functools.cached_property
     def neighbours(self) -> NDArray[np.int64]:
-        """Number of each window's row of neighbours: of its recording, or of its stretch of one."""
+        """Index of each window's group of neighbors: its recording, or its stretch of a recording."""
         if self.chosen is None:
             return self.run
         ends = (np.diff(self.chosen) != 1) | (np.diff(self.run) != 0)
@@ -81,7 +81,7 @@ class Fitted(FittedBalance):
 
     @functools.cached_property
     def spans(self) -> Array:
-        """First and last instant of each window."""
+        """Start and end time of each window [s], shape (windows, 2)."""
         every = self._windows
         last = np.append(self._firsts[1:], len(every)) - 1
         found = np.column_stack([every[self._firsts, 0], every[last, 1]])
@@ -93,17 +93,17 @@ class Fitted(FittedBalance):
 
     @functools.cached_property
     def terms(self) -> Sequence[_core.Term]:
-        """Those of the penalty."""
+        """Terms of the penalty."""
         return tuple(self.penalty.terms)
 
     @property
     def window_duration(self) -> float:
-        """That of the penalty."""
+        """Duration of the penalty's windows [s]."""
         return float(self.penalty.window_duration)
 
     @property
     def runs(self) -> Sequence[Recording]:
-        """The recordings."""
+        """Recordings of the problem."""
         return self.problem.recordings
 
     @property
@@ -113,18 +113,18 @@ class Fitted(FittedBalance):
 
     @property
     def kind(self) -> Literal["revolute", "prismatic"]:
-        """That of the recordings."""
+        """Kind of the joint."""
         return self.problem.recordings[0].kind
 
     @property
     def gear_ratio(self) -> float:
-        """That of the joint."""
+        """Absolute gear ratio of the joint; 1 without a joint."""
         joint = self.problem.joint
         return abs(joint.gear_ratio) if joint is not None else 1.0
 
     @property
     def further_signals(self) -> Mapping[str, Array]:
-        """The given ones, and the temperature."""
+        """Further signals, and the temperature."""
         signals, first = dict(self.signals), self.problem.recordings[0]
         if len(self.problem.recordings) == 1 and first.temperature is not None:
             signals.setdefault("temperature", first.temperature)
@@ -132,37 +132,37 @@ class Fitted(FittedBalance):
 
     @property
     def sample_period(self) -> float:
-        """That of the first recording."""
+        """Sample period of the first recording [s]."""
         return self.problem.recordings[0].sample_period
 
     @property
     def torque_held(self) -> bool:
-        """Whether the problem takes it so."""
+        """Whether the torque is held between samples."""
         return self.problem.hold(0) == "zoh"
 
     @property
     def model_name(self) -> str:
-        """That of the resolved model."""
+        """Name of the resolved friction model."""
         return str(self.problem.choice.model.resolved.name)
 
     @property
     def orders(self) -> Mapping[str, tuple[float, ...]]:
-        """Those of the resolved model."""
+        """Orders of harmonics and ripple in the resolved model."""
         model = self.problem.choice.model.resolved
         return {"harmonics": model.harmonics, "ripple": model.ripple}
 
     def identified_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `identify`; the text of the model has every field that is stated."""
+        """Return a call of `identify` with these fields of the model; the other fields stay as set."""
         return (Action("call", {"model": str(self.problem.choice.model.replace(**changes))}),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `compare`."""
+        """Return a call that compares the model with a changed one."""
         model = self.problem.choice.model
         models = (str(model), str(model.replace(**changes)))
         return (Action("call", {"models": models}, function="compare_models"),)
 
     def late(self, signal: str) -> Array | None:
-        """Of torque, sensor and velocity, and of a velocity behind a filter."""
+        """Return the change of the residual by a delay of torque, sensor or velocity, or by a velocity filter."""
         recorded = not self.problem.recordings[0].velocity_derived
         if signal == FILTERED and self.filtered and recorded:
             inertia = self.value("inertia")
@@ -183,7 +183,7 @@ class Fitted(FittedBalance):
         return None
 
     def summed(self, values: Array) -> Array:
-        """Sums of what the penalty's windows have over the windows here."""
+        """Return sums of the values of the penalty's windows over the windows of this fit."""
         return self._grouped(self._of_chosen(np.asarray(values)))
 
     def _of_chosen(self, values: NDArray[Any]) -> NDArray[Any]:
@@ -194,7 +194,7 @@ class Fitted(FittedBalance):
 
     @functools.cached_property
     def _windows(self) -> NDArray[np.int64]:
-        """First and last sample of the penalty's windows that are looked at."""
+        """First and last sample of the used windows of the penalty."""
         return self._of_chosen(np.asarray(self.penalty.windows, dtype=np.int64))
 
     @functools.cached_property
@@ -217,9 +217,9 @@ class Fitted(FittedBalance):
 
     @functools.cached_property
     def trusted(self) -> NDArray[np.bool_]:
-        """Windows in which the torque does not rest on a limit: there the record may be less than the torque.
+        """Windows without saturated torque, because a saturated record may be smaller than the torque.
 
-        All of them, if most windows would be lost.
+        All windows count if most would be lost.
         """
         joint = self.problem.joint
         limited = [_on_a_limit(output_torque(run, joint)) for run in self.problem.recordings]
@@ -231,7 +231,7 @@ class Fitted(FittedBalance):
 
     @functools.cached_property
     def weights(self) -> list[Array]:
-        """Integration time of each sample interval of each recording, 0 where it is left out [s]."""
+        """Integration time of each sample interval of each recording; 0 for unused intervals [s]."""
         if self.beside is not None:
             return self.beside.weights
         problem = self.problem
@@ -241,14 +241,14 @@ class Fitted(FittedBalance):
         ]
 
     def errors_beside(self, torque: Array) -> dict[str, float]:
-        """Return the errors that a further torque adds to those of the values.
+        """Return the errors of the values that a further torque adds.
 
-        It is no noise, which neighbouring windows do not share, so its sums over blocks of time count.
+        The torque is not noise: neighboring windows share it. Therefore its sums over blocks of time count.
 
         Parameters
         ----------
         torque : ndarray, shape (windows,)
-            Its integrals.
+            Integrals of the torque.
         """
         steps = self.solve(self.jacobian, torque) - self.start
         beside = torque + self.jacobian @ steps
@@ -262,19 +262,19 @@ class Fitted(FittedBalance):
         return {self.names[k]: float(e) for k, e in zip(self.free, errors, strict=True)}
 
     def integral(self, signal: Callable[[int, Recording], Array]) -> Array:
-        """Integral over each window of a signal of the samples, shape (samples,) or (samples, m)."""
+        """Return the integral over each window of a signal with shape (samples,) or (samples, m)."""
         return self._by_window(signal, rise=False)
 
     def rise(self, signal: Callable[[int, Recording], Array]) -> Array:
-        """How far a signal rises over the integrated part of each window."""
+        """Return the rise of a signal over the integrated part of each window."""
         return self._by_window(signal, rise=True)
 
     def integral_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """As `integral`, of some samples at a time."""
+        """Return the same as `integral`, computed from blocks of samples."""
         return self._by_samples(signal, rise=False)
 
     def rise_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """As `rise`, of some samples at a time."""
+        """Return the same as `rise`, computed from blocks of samples."""
         return self._by_samples(signal, rise=True)
 
     @classmethod
@@ -291,14 +291,15 @@ class Fitted(FittedBalance):
         given: frozenset[str] = frozenset(),
         beside: Fitted | None = None,
     ) -> Fitted:
-        """Return the fit at a minimum, on the torque's side whatever the penalty compares.
+        """Return the fit at a minimum; its residual is a torque for any residual of the penalty.
 
         Parameters
         ----------
         most : int, optional
-            Windows at most, of which there are more with `beside`. Default: as many as there are.
+            Largest number of windows. Default: no limit.
         beside : Fitted, optional
-            A fit of all of the recordings: some stretches of time are looked at. Default: neighbours are summed.
+            Fit of the whole recordings. If set, the fit uses stretches of single windows. Default: the fit sums
+            neighboring windows.
         """
         _, residual, jacobian = penalty.linearised(best)
         jacobian = np.array(jacobian[:, list(free)])
@@ -331,7 +332,7 @@ class Fitted(FittedBalance):
         if gain not in free or "load_friction" in names:
             return fit
         place, reading = free.index(gain), fit.columns[:, gain]
-        # With the noise in the reading, the least squares of the torque would blame the motion for it.
+        # Noise in the reading would bias the least squares, so the derivative uses the explained reading.
         jacobian[:, place] = -_explained(fit, reading)
         start = fit.solve(jacobian, fit.residual)
         actual = jacobian.copy()
@@ -350,7 +351,7 @@ class Fitted(FittedBalance):
         return self._grouped(np.concatenate(parts))
 
     def _own_bounds(self, number: int) -> NDArray[np.int64]:
-        """First and last sample of the penalty's windows of one recording that are looked at."""
+        """Return first and last sample of the used windows of one recording."""
         mine = slice(*np.searchsorted(self._every_run, (number, number + 1)))
         return self._windows[mine]
 
@@ -365,14 +366,14 @@ class Fitted(FittedBalance):
 
 
 def _stretches(count: int, most: int) -> NDArray[np.int64]:
-    """Indices of `most` of `count` windows: stretches of neighbours, evenly over the whole."""
+    """Return the indices of `most` of `count` windows, in stretches of neighbors at even distances."""
     length = min(most, _STRETCH)
     first = np.linspace(0, count - length, most // length).astype(np.int64)
     return np.asarray((first[:, None] + np.arange(length)).ravel())
 
 
 def _on_a_limit(torque: Array) -> NDArray[np.bool_]:
-    """Where the torque is its largest or its smallest value, if that is so often."""
+    """Return which samples of the torque are saturated: equal to the largest or smallest value, if that is frequent."""
     resting = np.zeros(len(torque), dtype=bool)
     lowest, highest = float(torque.min()), float(torque.max())
     near = _EQUAL * (highest - lowest)
@@ -383,7 +384,7 @@ def _on_a_limit(torque: Array) -> NDArray[np.bool_]:
 
 
 def _explained(fit: Fitted, reading: Array) -> Array:
-    """The part of the reading that a rigid link's motion explains: its acceleration and its gravity."""
+    """Return the part of the reading that the motion of a rigid link explains: acceleration, gravity and offset."""
     motion = [fit.rise_of_each(lambda _, run: run.velocity), fit.duration]
     if fit.kind == "revolute":
         motion += [

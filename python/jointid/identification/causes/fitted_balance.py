@@ -1,7 +1,7 @@
-"""A fitted balance as the attribution sees it: of one joint, of a robot's joint, or of a servo.
+"""Interface of a fitted balance for the attribution: of a joint, a robot's joint, or a servo.
 
-The candidates ask this class only. What a balance does not have, it answers with nothing, and the candidates that need
-it are then left out.
+The candidates use only this class. If a balance lacks something, it returns nothing, and the candidates that need it
+are left out.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ Whole = NDArray[np.int64]
 
 FILTERED = "velocity, which is not the position's derivative"
 LATE = ("torque", "sensor", "velocity", FILTERED)
-"""Signals that may be late; a velocity behind a filter is late by no one time."""
+"""Signals that may be late; a filtered velocity has no single delay."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FittedBalance(ABC):
-    """Least squares at their minimum, with a row for each window, in the order of time.
+    """Least-squares fit at its minimum, with one row per window in the order of time.
 
     Attributes
     ----------
     best : ndarray
-        Parameters, in the order of `names`.
+        Parameters in the order of `names`.
     free : tuple of int
-        Those that vary and that no bound holds.
+        Indices of the free parameters that are not on a bound.
     residual : ndarray, shape (windows,)
-        Torque that the model lacks, integrated [N·m·s].
+        Integrated torque that the model lacks [N·m·s].
     jacobian : ndarray, shape (windows, free)
         Derivatives of the residuals by the free parameters.
     start : ndarray, shape (free,)
-        What has been added to the parameters in `residual`.
+        Steps of the free parameters that `residual` already contains.
     given : frozenset of str
-        Parameters that were not searched for.
+        Names of the fixed parameters.
     group : int
-        Windows of the fit that one window here is the sum of.
+        Number of windows of the original fit in one window here.
     """
 
     best: Array
@@ -66,7 +66,7 @@ class FittedBalance(ABC):
     @property
     @abstractmethod
     def terms(self) -> Sequence[_core.Term | None]:
-        """Term in the core's table of each of the first parameters, the coefficients; None of one that has none."""
+        """Term of each coefficient in the core's table, in the order of `names`; None if it has no term."""
 
     @property
     @abstractmethod
@@ -85,13 +85,13 @@ class FittedBalance(ABC):
 
     @property
     def neighbours(self) -> Whole:
-        """Number of each window's row of neighbours: of its recording, or of a stretch of one."""
+        """Index of each window's group of neighbors: its recording, or its stretch of a recording."""
         return self.run
 
     @property
     @abstractmethod
     def spans(self) -> Array:
-        """First and last instant of each window, in the time of its recording [s], shape (windows, 2)."""
+        """Start and end of each window on the clock of its recording [s], shape (windows, 2)."""
 
     @property
     @abstractmethod
@@ -101,7 +101,7 @@ class FittedBalance(ABC):
     @property
     @abstractmethod
     def runs(self) -> Sequence[Run]:
-        """The joint's motion in each recording."""
+        """Motion of the joint in each recording."""
 
     @property
     def duration_of_recording(self) -> float:
@@ -116,36 +116,36 @@ class FittedBalance(ABC):
     @property
     @abstractmethod
     def kind(self) -> Literal["revolute", "prismatic"]:
-        """How the joint moves."""
+        """Kind of the joint."""
 
     @property
     @abstractmethod
     def gear_ratio(self) -> float:
-        """Turns of the motor per turn of the joint; 1 where it is not known."""
+        """Revolutions of the motor per revolution of the joint; 1 if unknown."""
 
     @property
     def knows_link(self) -> bool:
-        """Whether inertia and gravity of what the joint moves are described, so that they are not looked for."""
+        """Whether inertia and gravity of the moved link are known, so that they are no candidates."""
         return False
 
     @property
     def has_torque(self) -> bool:
-        """Whether torque was recorded; otherwise its scale is that of a known load over the angle."""
+        """Whether torque was recorded; otherwise a known load over the angle gives the scale."""
         return True
 
     @property
     def load(self) -> Array | None:
-        """Integrals of the torque through the gear; None where motion and sensor have to tell it."""
+        """Integrals of the torque through the gear; None if only motion and sensor can show it."""
         return None
 
     @property
     def further_signals(self) -> Mapping[str, Array]:
-        """Signals of the only recording besides those of the model, one value a sample."""
+        """Signals of the only recording that the model does not use, one value per sample."""
         return {}
 
     @property
     def trusted(self) -> NDArray[np.bool_]:
-        """Windows in which the torque does not rest on a limit."""
+        """Windows without saturated torque."""
         return np.ones(len(self.residual), dtype=bool)
 
     @property
@@ -155,38 +155,38 @@ class FittedBalance(ABC):
 
     @property
     def torque_held(self) -> bool:
-        """Whether the torque is known to hold from its sample to the next one."""
+        """Whether the torque is known to be held between samples."""
         return False
 
     def late(self, signal: str) -> Array | None:  # noqa: ARG002
-        """Return by how much a signal that is 1 s late changes the residual, to first order.
+        """Return the change of the residual to first order if a signal is late by 1 s.
 
-        None where the balance does not have the signal, or knows that it is not late.
+        Return None if the balance lacks the signal or knows that it is not late.
         """
         return None
 
     @abstractmethod
     def integral_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """Integral over each window of a signal that depends on each sample alone: of some samples at a time.
+        """Return the integral over each window of a signal, computed from blocks of samples.
 
-        Its values have the shape (samples,) or (samples, m).
+        Each value of the signal depends on one sample only. The values have the shape (samples,) or (samples, m).
         """
 
     @abstractmethod
     def rise_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """How far such a signal rises over the integrated part of each window."""
+        """Return the rise of such a signal over the integrated part of each window."""
 
     @abstractmethod
     def identified_with(self, **changes: Any) -> tuple[Action, ...]:
-        """Advice to identify with these fields of the model."""
+        """Return advice to identify with these fields of the model."""
 
     def with_offset(self) -> tuple[Action, ...]:
-        """Advice against a constant torque that the model lacks."""
+        """Return advice against a constant torque that the model lacks."""
         return (Action("call", {"torque_offset": True}, function="Joint"),)
 
     @abstractmethod
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
-        """Advice to compare with such a model, which the recordings may not determine."""
+        """Return advice to compare with such a model, which the recordings may not determine."""
 
     @property
     @abstractmethod
@@ -195,7 +195,7 @@ class FittedBalance(ABC):
 
     @property
     def orders(self) -> Mapping[str, tuple[float, ...]]:
-        """Orders of the model's torques over the joint's angle, "harmonics", and the motor's, "ripple"."""
+        """Orders of the model's torques over the joint angle, "harmonics", and over the motor angle, "ripple"."""
         return {}
 
     @property
@@ -205,7 +205,7 @@ class FittedBalance(ABC):
 
     @functools.cached_property
     def friction(self) -> list[int]:
-        """Places of the coefficients of friction that does not depend on a load."""
+        """Indices of the friction coefficients that do not depend on a load."""
         return [
             index
             for index, term in enumerate(self.terms)
@@ -213,11 +213,11 @@ class FittedBalance(ABC):
         ]
 
     def value(self, name: str) -> float:
-        """Value of a parameter; 0 without it."""
+        """Return the value of a parameter; 0 if the model lacks it."""
         return float(self.best[self.names.index(name)]) if name in self.names else 0.0
 
     def is_faint(self, least: float) -> bool:
-        """Whether the misfit is less than a part of the friction: sampling alone leaves as much."""
+        """Return whether the residual is less than this share of the friction, which sampling alone may cause."""
         left = self.residual + self.jacobian @ (
             self.solve(self.jacobian, self.residual) - self.start
         )
@@ -227,12 +227,12 @@ class FittedBalance(ABC):
         return float(np.sum(left**2)) < least**2 * float(np.sum(friction**2))
 
     def at_own_minimum(self) -> Self:
-        """Return the fit at the minimum of these rows alone: the step to it from that of more rows is no cause's."""
+        """Return the fit at the minimum of these rows, so that the step from another minimum belongs to no cause."""
         step = self.solve(self.jacobian, self.residual)
         return replace(self, residual=self.residual + self.jacobian @ step)
 
     def solve(self, columns: Array, residual: Array) -> Array:
-        """Return the least-squares steps along columns that take the residual away; the first are parameters."""
+        """Return the least-squares steps of columns that reduce the residual; the first columns are parameters."""
         size = np.sqrt(np.einsum("ij,ij->j", columns, columns))
         size = np.where(size > 0.0, size, 1.0)
         scaled = columns / size

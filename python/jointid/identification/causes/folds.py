@@ -1,4 +1,4 @@
-"""Out-of-sample misfit of the model with some further columns, over blocks of time, at several scales."""
+"""Held-out residual of the model with further columns, over blocks of time, at several scales."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from jointid.recording.order_statistics import distinct
 Array = NDArray[np.float64]
 
 BLOCKS = 20
-_FEWEST = 4  # sums of windows a block
+_FEWEST = 4  # smallest number of rows per block
 
 
 def summed(values: Array, run: NDArray[np.int64], factor: int) -> tuple[Array, NDArray[np.int64]]:
-    """Return sums over `factor` neighbouring windows of one recording, and their recordings."""
+    """Return sums over `factor` neighboring windows of one recording, and the recording of each sum."""
     if factor == 1:
         return values, run
     first = first_windows(run, factor)
@@ -27,7 +27,7 @@ def summed(values: Array, run: NDArray[np.int64], factor: int) -> tuple[Array, N
 
 
 def first_windows(run: NDArray[np.int64], factor: int) -> NDArray[np.int64]:
-    """Return the first of every `factor` neighbouring windows of one recording."""
+    """Return the first of every `factor` neighboring windows of one recording."""
     if factor == 1 or run[0] == run[-1]:
         return np.arange(0, len(run), factor)
     edges = np.searchsorted(run, [*distinct(run), run[-1] + 1])
@@ -48,12 +48,12 @@ class Folds:
 
     @classmethod
     def of(cls, columns: Array, residual: Array) -> Folds | None:
-        """Cut the rows into blocks; None with too few of them."""
+        """Return the rows in blocks; None if there are too few rows."""
         return cls.of_rows(np.column_stack([columns, residual]))
 
     @classmethod
     def of_rows(cls, rows: Array) -> Folds | None:
-        """Do the same with rows whose last column is the residual."""
+        """Return rows in blocks, as `of`; the last column is the residual."""
         blocks = min(BLOCKS, len(rows) // _FEWEST)
         if blocks < 5:
             return None
@@ -61,23 +61,23 @@ class Folds:
 
     @functools.cached_property
     def _known(self) -> dict[tuple[int, ...], Array]:
-        """Misfits that were asked for: what is fitted anyway is compared with many candidates."""
+        """Cache of `misfit`, because the same base columns are compared with many candidates."""
         return {}
 
     @functools.cached_property
     def _totals(self) -> dict[tuple[int, ...], float]:
-        """Their sums over the blocks."""
+        """Cache of `total`."""
         return {}
 
     def total(self, columns: list[int]) -> float:
-        """Sum of `misfit` over all blocks."""
+        """Return the sum of `misfit` over all blocks."""
         asked = tuple(columns)
         if asked not in self._totals:
             self._totals[asked] = float(self.misfit(columns).sum())
         return self._totals[asked]
 
     def misfit(self, columns: list[int]) -> Array:
-        """Sum of squares of the residual in each block, with these columns fitted to the other blocks."""
+        """Return the sum of squared residuals in each block, with these columns fitted to the other blocks."""
         asked = tuple(columns)
         if asked not in self._known:
             self._known[asked] = np.asarray(self.blocks.misfit(columns))

@@ -1,4 +1,4 @@
-"""What a cause does to a value: its shift held against the value, its error and what nobody would notice."""
+"""Harm of a cause to a value: its shift compared with the value, its error, and a negligible share."""
 
 from __future__ import annotations
 
@@ -10,30 +10,32 @@ import numpy as np
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.statistics import ParameterEstimate
 
-ERRORS = 2.0  # standard errors from which a cause does harm
-MOVED = 0.05  # share of a value, the same
-_NORMAL = 1.959964  # standard errors of half a 95 % interval
-_NEGATIVE = 1.5  # of a value: what a shift may take from it
-_UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
+ERRORS = 2.0  # smallest harmful shift, in standard errors
+MOVED = 0.05  # smallest harmful shift, as a share of the value
+_NORMAL = 1.959964  # standard errors in half a 95 % interval
+_NEGATIVE = 1.5  # largest possible decrease of a non-negative value, as a share of the value
+_UNKNOWN, _CLEARLY = 0.5, 2.0  # above this relative error, a shift must exceed this many errors
 
 
 def harm_of(
     error: float, shift: float, share: float, left: float, least: float, errors: float
 ) -> float:
-    """The shift over the least one that does harm.
+    """Return the shift over the smallest harmful shift.
 
     Parameters
     ----------
     error : float
         Standard error of the value.
+    shift : float
+        Shift of the value by the cause.
     share : float
-        The shift as a share of what it is held against.
+        Shift as a share of its reference.
     left : float
-        Share of the misfit that is left with the cause in the model: the error falls with it.
+        Share of the squared residual that remains with the cause in the model; the error decreases with it.
     least : float
-        Share below which a number of errors says nothing.
+        Share below which a shift is harmless for any number of standard errors.
     errors : float
-        Standard errors from which a small shift does harm, too.
+        Number of standard errors from which a small shift is also harmful.
     """
     moved = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
@@ -47,7 +49,7 @@ def harm_of(
 def error_of(p: ParameterEstimate, more: Mapping[str, float] | None = None) -> float:
     """Return the error of a value with its systematic part, so that a shift within the interval does not count.
 
-    The interval does not cover a removed effect: there the error is random, plus `more` from the removed effect.
+    The interval does not cover a removed effect. The error is then the random error plus `more` from that effect.
     """
     if more is not None:
         return float(np.hypot(p.stderr or 0.0, more.get(p.name, 0.0)))
@@ -57,7 +59,7 @@ def error_of(p: ParameterEstimate, more: Mapping[str, float] | None = None) -> f
 def scale_of(
     p: ParameterEstimate, parameters: Mapping[str, ParameterEstimate], level: float
 ) -> float:
-    """What a shift is held against: an offset, or one phase of a harmonic, may be zero."""
+    """Return the reference of a shift, which is not only the value, because an offset or a phase may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), level)
     for one, other in (("_cos", "_sin"), ("_sin", "_cos")):
@@ -68,7 +70,7 @@ def scale_of(
 
 
 def possible(causes: Causes, parameters: Mapping[str, ParameterEstimate]) -> Causes:
-    """Return causes without those that would make a value clearly negative that cannot be: something else is amiss."""
+    """Return causes without the impossible ones: those that make a non-negative value clearly negative."""
 
     def is_possible(cause: Cause) -> bool:
         return all(

@@ -1,4 +1,4 @@
-"""What a velocity that is late changes, at the samples of a recording."""
+"""Torque that depends on the velocity at the samples of a recording, for the effect of a late velocity."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ Array = NDArray[np.float64]
 
 
 def rate(run: Recording) -> Array:
-    """Return the rate of the position."""
+    """Return the derivative of the position [rad/s or m/s]."""
     return np.asarray(np.gradient(run.position, run.time))
 
 
 def by_velocity(fit: FittedBalance, run: Recording) -> Array:
-    """Return the torque of the terms that the velocity enters: inertia and friction, but for what the travel gives."""
+    """Return the torque of the terms that depend on the velocity: inertia, and friction without its viscous part."""
     total = fit.value("inertia") * np.gradient(run.velocity, run.time)
     return np.asarray(total + friction_at(fit, run.velocity))
 
 
 def friction_at(fit: FittedBalance, velocity: Array) -> Array:
-    """Return the friction at a velocity, without its viscous part: over a window that is the travel's."""
+    """Return the friction at a velocity without its viscous part, because the travel gives the integral of that."""
     total = -fit.value("viscous") * velocity
     for index in fit.friction:
         term = fit.terms[index]

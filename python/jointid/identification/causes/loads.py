@@ -1,8 +1,8 @@
-"""Friction that grows with the load, as integrals over the windows: of a load that only motion and sensor tell.
+"""Friction that grows with the load, as integrals over windows, for a load from motion or sensor.
 
-Which share of the inertia lies behind the gear is not known without a sensor, so several shares are tried. The fitted
-gravity has taken up part of this friction, and beside an offset it may be unknown; so the load is that of a fit which
-has the friction in its model, and of gravity's parts also each one alone.
+Without a sensor, the share of the inertia behind the gear is unknown, so several shares are tried. The fitted gravity
+contains part of this friction, and with an offset it may be undetermined. Therefore the load comes from a fit with this
+friction in the model, and each part of gravity is also tried alone.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from jointid.identification.causes.fitted_balance import FittedBalance
 
 Array = NDArray[np.float64]
 
-_ROUNDS = 4  # of a load and of the fit with its friction
-_SHARES = (0.0, 0.05, 0.1, 0.2, 0.4, 1.0)  # of the inertia that may lie behind the gear
+_ROUNDS = 4  # iterations of load and fit
+_SHARES = (0.0, 0.05, 0.1, 0.2, 0.4, 1.0)  # shares of the inertia behind the gear
 _GRAVITY = (
     ("gravity_cos", "gravity_sin"),
     ("gravity_cos", "gravity_sin", "torque_offset"),
@@ -27,13 +27,13 @@ _GRAVITY = (
 
 
 def load_friction_of_sensor(fit: FittedBalance) -> Array | None:
-    """Return the size of the sensed load times the direction; None without an offset of the sensor."""
+    """Return the absolute sensed load times the direction of motion; None without gain and offset of the sensor."""
     names = ("sensor_gain", "sensor_offset")
     return _of_load(fit, names, 0.0) if set(names) <= set(fit.names) else None
 
 
 def load_frictions_of_motion(fit: FittedBalance) -> Iterator[Array]:
-    """Yield the same of each load that gravity may be, with the share of the inertia that fits best."""
+    """Yield the same for each possible load from gravity, with the share of the inertia that fits best."""
     shares = _SHARES if "inertia" in fit.names else (0.0,)
     parts = [names for names in _GRAVITY if set(names) <= set(fit.names)]
     for names in parts:
@@ -44,7 +44,7 @@ def load_frictions_of_motion(fit: FittedBalance) -> Iterator[Array]:
 
 
 def _of_load(fit: FittedBalance, names: tuple[str, ...], share: float) -> Array:
-    """Size of a load times the direction, the load being fitted with this friction in the model."""
+    """Return the absolute load times the direction of motion; the load is fitted with this friction in the model."""
     turned = fit.integral_of_each(lambda _, run: np.sign(run.velocity)) / fit.duration
     places = [fit.names.index(name) for name in names]
     free = [(k, fit.free.index(place)) for k, place in enumerate(places) if place in fit.free]

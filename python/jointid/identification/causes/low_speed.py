@@ -1,4 +1,4 @@
-"""What a model may lack at low speed: another decay of friction, a rise, or the position since the last reversal."""
+"""Candidates at low speed: friction that decays differently, rises with speed, or builds up after a reversal."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from jointid.identification.causes.samples import Samples, WaySinceReversal
 
 Array = NDArray[np.float64]
 
-# Of a fast speed: speeds by which dry friction rises (slower rises look like viscous friction), and how many times such
-# a speed it has risen.
+# Shares of a fast speed over which dry friction rises; slower rises look like viscous friction. Friction has risen at
+# `_RISEN` times such a speed.
 _OF_RISES = tuple(0.01 * 1.4**k for k in range(10))
-_FINER = ((1.0,), (0.85, 0.92, 1.0, 1.09, 1.18))  # factors: the best of all, then the best about it
+_FINER = ((1.0,), (0.85, 0.92, 1.0, 1.09, 1.18))  # factors of a coarse, then of a fine search
 _RISEN = 2.0
-_ENOUGH = 0.8  # of what several columns explain
+_ENOUGH = 0.8  # share of what several columns explain that is enough for one column
 
 
 def slow_motion(fit: FittedBalance) -> Iterator[Candidate]:
-    """Friction at low speed: another decay, or the position since the last reversal."""
+    """Yield friction at low speed that decays with speed, or with the distance since the last reversal."""
     fast = typical_speed(fit)
     reach = max(float(np.ptp(run.position)) for run in fit.runs)
     speeds = fast * np.array([0.02, 0.05, 0.1, 0.2, 0.4])
@@ -44,7 +44,7 @@ def slow_motion(fit: FittedBalance) -> Iterator[Candidate]:
     less = _signed_gains(fit, linear) < 0.0
     for k, speed in enumerate(speeds):
         if less[k] and _may_rise(fit):
-            continue  # friction that is less at low speed is `smooth_friction`
+            continue  # friction that is smaller at low speed is `smooth_friction`
         yield Candidate(
             name="stribeck_exponent" if known else "slow_motion",
             columns=linear[:, k : k + 1],
@@ -63,19 +63,19 @@ def slow_motion(fit: FittedBalance) -> Iterator[Candidate]:
     every = np.hstack([linear[:, ::2], since])
     smooth = [each.columns for each in smooth_friction(fit)]
     if smooth and _explained(fit, smooth[0]) > _ENOUGH * _explained(fit, every):
-        return  # one column says nearly as much
+        return  # one column explains nearly as much
     yield Candidate(name="slow_motion", columns=every, family=family)
 
 
 def smooth_law() -> tuple[str, _core.Term]:
-    """Return the model of dry friction that rises with the speed, and its term."""
+    """Return the name of the model with dry friction that rises with speed, and its term."""
     rising = {term.key: term for term in _core.terms() if term.settles and not term.at_rest}
     model, key = next((m.name, key) for m in _core.models() for key in m.terms if key in rising)
     return model, rising[key]
 
 
 def smooth_friction(fit: FittedBalance) -> Iterator[Candidate]:
-    """Dry friction that is less at low speed, over the speed that explains most; beside no other low-speed friction."""
+    """Yield dry friction that is smaller at low speed, with the best speed; not with other low-speed friction."""
     if not _may_rise(fit):
         return
     _, law = smooth_law()
@@ -107,13 +107,13 @@ def smooth_friction(fit: FittedBalance) -> Iterator[Candidate]:
 
 
 def _may_rise(fit: FittedBalance) -> bool:
-    """Whether the model has dry friction, and no other low-speed friction."""
+    """Return whether the model has dry friction and no other low-speed friction."""
     terms = [term for term in fit.terms if term is not None and term.friction]
     return any(t.settles for t in terms) and not any(t.shapes or t.side for t in terms)
 
 
 def _explained(fit: FittedBalance, columns: Array) -> float:
-    """Squared residual that columns explain together."""
+    """Return the squared residual that columns explain together."""
     sizes = np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
     basis = np.linalg.qr(fit.jacobian / sizes)[0]
     rest = columns - basis @ (basis.T @ columns)
@@ -122,7 +122,7 @@ def _explained(fit: FittedBalance, columns: Array) -> float:
 
 
 def _signed_gains(fit: FittedBalance, columns: Array) -> Array:
-    """Length of the residual that each column by itself explains, with the sign of its coefficient."""
+    """Return the size of the residual that each column explains alone, with the sign of its coefficient."""
     sizes = np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
     basis = np.linalg.qr(fit.jacobian / sizes)[0]
     rest = columns - basis @ (basis.T @ columns)

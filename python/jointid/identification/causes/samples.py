@@ -1,4 +1,4 @@
-"""Neighbouring samples of a recording: what depends on single samples alone is computed a part of it at a time."""
+"""Blocks of neighboring samples of a recording, for signals that depend on single samples."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ from jointid.base.values import dataclass
 
 Array = NDArray[np.float64]
 
-# Samples at a time: their arrays stay in the processor's cache, and Ctrl-C is answered between two parts.
+# Samples per block. Their arrays fit in the processor's cache, and Ctrl-C takes effect between two blocks.
 AT_A_TIME = 1 << 15
 
 
 class Run(Protocol):
-    """The motion of one joint in a recording, in SI units; each signal has the shape (samples,)."""
+    """Motion of one joint in a recording, in SI units; each signal has the shape (samples,)."""
 
     @property
     def time(self) -> Array:
-        """[s]."""
+        """Time [s]."""
 
     @property
     def position(self) -> Array:
-        """[rad or m]."""
+        """Position [rad or m]."""
 
     @property
     def velocity(self) -> Array:
-        """[rad/s or m/s]."""
+        """Velocity [rad/s or m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Motion:
-    """A run of which a fit holds nothing but the motion of one joint."""
+    """Run that consists only of the motion of one joint."""
 
     time: Array
     position: Array
@@ -48,10 +48,10 @@ class Samples:
     Attributes
     ----------
     cut : slice
-        Which of the run's they are.
+        Place of the samples in the run.
     time, position, velocity : ndarray, shape (samples,)
     begin : float
-        First instant of the run [s].
+        Start time of the run [s].
     """
 
     cut: slice
@@ -73,19 +73,19 @@ class Samples:
 
 
 def all_samples(run: Run) -> Iterator[Samples]:
-    """Yield all samples of a run, so many at a time."""
+    """Yield all samples of a run in blocks."""
     count = len(run.time)
     for first in range(0, count, AT_A_TIME):
         yield Samples.of(run, slice(first, min(count, first + AT_A_TIME)))
 
 
 def span_of(run: Run) -> float:
-    """Return how long a run lasts [s]."""
+    """Return the duration of a run [s]."""
     return float(run.time[-1] - run.time[0])
 
 
 def window_blocks(bounds: NDArray[np.int64]) -> Iterator[tuple[slice, slice]]:
-    """Yield neighbouring windows, and the samples that they need.
+    """Yield blocks of neighboring windows, and the samples that they need.
 
     Parameters
     ----------
@@ -96,16 +96,16 @@ def window_blocks(bounds: NDArray[np.int64]) -> Iterator[tuple[slice, slice]]:
     while begin < len(bounds):
         first = int(bounds[begin, 0])
         end = int(np.searchsorted(bounds[:, 1], first + AT_A_TIME, side="right"))
-        end = max(end, begin + 1)  # one window may be longer
+        end = max(end, begin + 1)  # a single window may be longer than a block
         yield slice(begin, end), slice(first, int(bounds[end - 1, 1]) + 1)
         begin = end
 
 
 class WaySinceReversal:
-    """Way since the last change of direction.
+    """Distance since the last reversal.
 
-    A stop between two directions is a reversal, too, and so is one between two of the same. Of all of a long
-    recording there is no array: what is asked for is summed up from where the last block before it ended.
+    Each stop also counts as a reversal. For a long recording there is no array of all samples: a request sums from the
+    end of the last known block.
 
     Parameters
     ----------
@@ -114,11 +114,11 @@ class WaySinceReversal:
 
     def __init__(self, run: Run) -> None:
         self._run = run
-        # Of each block of samples: all of the way before it, and of that what was gone at the last reversal.
+        # For each block of samples: the total distance before it, and the distance at the last reversal.
         self._before = [(0.0, 0.0)]
 
     def of(self, cut: slice) -> Array:
-        """Return the way at each of these samples [rad or m]."""
+        """Return the distance since the last reversal at each of these samples [rad or m]."""
         size = AT_A_TIME
         first = min(cut.start // size, len(self._before) - 1)
         found = []
@@ -131,14 +131,14 @@ class WaySinceReversal:
 
     def _block(self, block: int, cut: slice) -> Array:
         way, reached = self._before[block]
-        first = max(cut.start - 1, 0)  # the sample before, for the step to the first one
+        first = max(cut.start - 1, 0)  # the previous sample gives the step to the first one
         turned = np.sign(self._run.velocity[first : cut.stop])
         steps = np.abs(np.diff(self._run.position[first : cut.stop]))
         ways = np.cumsum(np.concatenate([[way], steps]))
         change = turned == 0.0
         change[1:] |= turned[1:] * turned[:-1] < 0.0
         change[0] |= cut.start == 0
-        # Ways grow: the largest of those at a change is that of the last change.
+        # The distance never decreases, so its largest value at a reversal is that at the last reversal.
         last = np.maximum.accumulate(np.where(change, ways, reached))
         if block + 1 == len(self._before):
             self._before.append((float(ways[-1]), float(last[-1])))

@@ -1,4 +1,4 @@
-"""How large a cause is: its size as a text and as numbers, and the values that it is itself a change of."""
+"""Size of a cause as text and numbers, and the parameters that it changes directly."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Size:
-    """How large a cause is, as a text and as numbers, and which of its kind where the candidate's text is no words."""
+    """Size of a cause as text and numbers; `detail` replaces the candidate's detail if that is not a text."""
 
     text: str = ""
     numbers: Mapping[str, Measured] = field(default_factory=dict)
@@ -43,13 +43,13 @@ def _torque_unit(fit: FittedBalance) -> str:
 
 
 def amplitude(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
-    """Return the size of a cosine and a sine together."""
+    """Return the amplitude of a cosine and a sine together."""
     value, unit = float(np.hypot(*cause.coefficients)), _torque_unit(fit)
     return Size(text=f"{value:.3g} {unit}", numbers={"amplitude": Measured(value, unit)})
 
 
 def over_angle(angle: str) -> Callable[[FittedBalance, Attributed, Mapping[str, Delay]], Size]:
-    """Return the size of a torque over a multiple of an angle."""
+    """Return a function for the amplitude of a torque over a multiple of an angle."""
 
     def size(fit: FittedBalance, cause: Attributed, delays: Mapping[str, Delay]) -> Size:
         found, order = amplitude(fit, cause, delays), cause.candidate.detail
@@ -66,7 +66,7 @@ def constant(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> S
 
 
 def lateness(_: FittedBalance, cause: Attributed, delays: Mapping[str, Delay]) -> Size:
-    """Return by how much a signal is late; its own measurement says more than the misfit."""
+    """Return the delay of a signal; a direct measurement has priority over the residual."""
     if cause.candidate.detail == FILTERED:
         return Size()
     late = float(cause.coefficients[0])
@@ -79,7 +79,7 @@ def lateness(_: FittedBalance, cause: Attributed, delays: Mapping[str, Delay]) -
 
 
 def of_the_load(_: FittedBalance, cause: Attributed, __: Mapping[str, Delay]) -> Size:
-    """Return a share of the load."""
+    """Return the friction coefficient as a share of the load."""
     value = float(cause.coefficients[0])
     return Size(text=f"{value:.3g} of the load", numbers={"coefficient": Measured(value)})
 
@@ -96,38 +96,41 @@ def drift_of(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> S
 
 
 def drifts(fit: FittedBalance, cause: Attributed) -> dict[str, float]:
-    """Return half the change of the coefficient that drifts."""
+    """Return half the change of the drifting coefficient."""
     detail = cause.candidate.detail
     half = float(0.5 * cause.coefficients[0] * fit.duration_of_recording)
     return {detail: half} if detail in fit.names else {}
 
 
 def off_scale(fit: FittedBalance, cause: Attributed) -> float:
-    """Return by what share the torque shows a larger inertia than the given one."""
+    """Return the relative difference of the inertia that the torque shows from the fixed one."""
     return float(cause.coefficients[0]) / (fit.value("inertia") or 1.0)
 
 
 def scale(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
-    """Return the share by which a scale is off."""
+    """Return the relative error of a scale."""
     share = off_scale(fit, cause)
     return Size(text=f"{100.0 * share:+.2g} %", numbers={"ratio": Measured(1.0 + share)})
 
 
 def scaled(fit: FittedBalance, cause: Attributed) -> dict[str, float]:
-    """Return shifts of the friction, which a wrong torque scales; a wrong inertia does not, and nothing tells which."""
+    """Return the shifts of friction if the torque's scale is wrong.
+
+    A wrong inertia does not shift friction, but the data do not show which of both is wrong.
+    """
     frictions = [fit.names[index] for index in fit.friction if index in fit.free]
     return {name: -off_scale(fit, cause) * fit.value(name) for name in frictions}
 
 
 def half_range(fit: FittedBalance, cause: Attributed) -> float:
-    """Return half the range of an inertia that varies, over the angles of the recordings."""
+    """Return half the range of a varying inertia over the angles of the recordings."""
     orders = [float(order) for order in cause.candidate.detail.split(" and ")]
     basis = np.hstack([inertia_basis(fit, order) for order in orders])
     return 0.5 * float(np.ptp(basis @ cause.coefficients))
 
 
 def range_of(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> Size:
-    """Return half the range of an inertia that varies, as a share of it."""
+    """Return half the range of a varying inertia, as a share of the inertia."""
     share = half_range(fit, cause) / (abs(fit.value("inertia")) or 1.0)
     orders = cause.candidate.detail.split(" and ")
     numbers = {"range": Measured(share)} | {f"order_{n}": Measured(float(n)) for n in orders}

@@ -1,4 +1,4 @@
-"""Misfit that sits where the joint is slow, though no simple friction at low speed predicts it."""
+"""Residual in slow motion that no simple low-speed friction predicts."""
 
 from __future__ import annotations
 
@@ -11,22 +11,23 @@ from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
 
-_SLOW = 0.2  # of the windows, the slowest
-_MOST = 0.85  # share of the misfit in them
-_PLACES, _EACH = 3, 0.6  # passages, and the largest share of the misfit that one of them may hold
+_SLOW = 0.2  # share of the windows that count as slow
+_MOST = 0.85  # smallest share of the residual in them
+_PLACES, _EACH = 3, 0.6  # fewest passages, and largest share of the residual in one of them
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SlowRows:
-    """Windows of slow motion that hold most of the misfit.
+    """Windows of slow motion with most of the residual.
 
     Attributes
     ----------
     rows : ndarray of bool, shape (windows,)
+        Slow windows.
     share : float
-        Share of the residual.
+        Share of the squared residual in these windows.
     speed : float
-        Below which a window counts as slow [rad/s or m/s].
+        Speed below which a window counts as slow [rad/s or m/s].
     """
 
     rows: NDArray[np.bool_]
@@ -35,7 +36,7 @@ class SlowRows:
 
 
 def slow_rows(fit: FittedBalance, base: Array, residual: Array) -> SlowRows | None:
-    """Return the slow windows if they hold most of the misfit, in several passages; else None."""
+    """Return the slow windows if they have most of the residual, in several passages; otherwise None."""
     velocity = fit.integral_of_each(lambda _, run: np.abs(run.velocity)) / fit.duration
     speed = quantile(velocity, _SLOW)
     rows = velocity < speed

@@ -1,4 +1,4 @@
-"""Whether residuals are more than noise: a cheap test at several scales, before any cause is looked for."""
+"""Fast test at several scales whether residuals are more than noise, before the search for causes."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Array = NDArray[np.float64]
 
 _SCALES = (1, 4, 16)
 _CORRELATED = 0.1
-_SURE = 4.0  # correlation over its error by chance
+_SURE = 4.0  # correlation over its standard error for noise
 _FEWEST = 40  # sums of windows
-_SLOW = 0.2  # share of the windows, the slowest
-_LOUD = 3.0  # misfit of the slow windows over that of the others
+_SLOW = 0.2  # share of the windows that count as slow
+_LOUD = 3.0  # mean squared residual of the slow windows over that of the others
 
 
 def correlations(residual: Array, run: NDArray[np.int64]) -> dict[int, float]:
-    """Correlation of neighbours among sums of 1, 4 and 16 windows, where there are enough."""
+    """Return the correlation of neighboring sums of 1, 4 and 16 windows, by scale; scales with few sums are missing."""
     found = {}
     for factor in _SCALES:
         series, of = summed(residual, run, factor)
@@ -34,7 +34,7 @@ def correlations(residual: Array, run: NDArray[np.int64]) -> dict[int, float]:
 
 
 def suspicious(residual: Array, run: NDArray[np.int64], duration: Array, velocity: Array) -> bool:
-    """Whether the residual has structure: neighbours alike at some scale, or a misfit of slow motion.
+    """Return whether the residual has structure: correlated neighbors at a scale, or a large residual in slow motion.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def suspicious(residual: Array, run: NDArray[np.int64], duration: Array, velocit
 
 
 def correlated(residual: Array, run: NDArray[np.int64]) -> bool:
-    """Whether neighbours are alike at some scale."""
+    """Return whether neighbors are correlated at a scale."""
     for factor, correlation in correlations(residual, run).items():
         error = 1.0 / np.sqrt(len(residual) / factor)
         if correlation > max(_CORRELATED, _SURE * error):
@@ -54,12 +54,12 @@ def correlated(residual: Array, run: NDArray[np.int64]) -> bool:
 
 
 def testable(run: NDArray[np.int64]) -> bool:
-    """Whether there are enough windows to tell noise from structure."""
+    """Return whether there are enough windows to distinguish noise from structure."""
     return len(run) >= _FEWEST
 
 
 def slow_misfit(residual: Array, duration: Array, velocity: Array) -> float:
-    """Mean squared misfit of the slowest windows over that of the others."""
+    """Return the mean squared residual of the slowest windows over that of the others."""
     if len(residual) < 5 * _FEWEST:
         return 1.0
     speed = np.abs(velocity)

@@ -1,4 +1,4 @@
-"""All of a long recording, beside the stretches of it that tell its causes."""
+"""Fit of a whole long recording, while its causes are found from stretches."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from jointid.identification.causes.fitted_balance import FittedBalance
 
 
 class WholeRecording:
-    """The fit of all of it, with the causes found so far.
+    """Fit of a whole recording with the causes found so far.
 
     Parameters
     ----------
     fit : FittedBalance
-        Sums of neighbouring windows.
+        Fit over sums of neighboring windows of the whole recording.
     stretches : FittedBalance
-        Some of the windows.
+        Fit over stretches of the recording.
     """
 
     def __init__(self, fit: FittedBalance, stretches: FittedBalance) -> None:
         self._fit = fit
         self._columns = fit.jacobian
         self._reached = np.zeros(fit.jacobian.shape[1])
-        # Stretches have a minimum of their own, by chance: it is no cause's shift.
+        # By chance, the minimum of the stretches differs. This difference is not the shift of a cause.
         self._by_chance = stretches.solve(stretches.jacobian, stretches.residual)
         self._by_chance -= fit.solve(fit.jacobian, fit.residual)
 
     def event(self) -> LocalEvent | None:
-        """An event that the causes found so far leave."""
+        """Return an event that the causes found so far do not explain."""
         return local_event(self._fit, self._columns, self._fit.residual)
 
     def attributed(self, found: Attributed) -> Attributed:
-        """A cause that stretches show, with the size and the shifts that all of the recording shows."""
+        """Return a cause from the stretches, with size and shifts from the whole recording."""
         same, by_chance = same_candidate(self._fit, found.candidate), self._by_chance
         self._by_chance = np.zeros_like(by_chance)
         if same is None:

@@ -25,7 +25,7 @@ from jointid.problem.windows import Windows
 
 Array = NDArray[np.float64]
 
-_SAME = 1e-9  # largest relative difference between a fixed value and the value from the joint's facts
+_SAME = 1e-9  # largest relative difference between a fixed value and that from the facts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

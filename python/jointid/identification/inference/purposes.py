@@ -131,8 +131,8 @@ def _squared_half_widths(
 ) -> Array:
     """Return the covariance, scaled to the squared half widths of the intervals on its diagonal.
 
-    Parameters with an unknown interval keep their random error. The uncertainty that an offset shares with the asymmetry
-    of friction is removed, because it does not change the torque.
+    Parameters with an unknown interval keep their random error. The uncertainty that an offset shares with the
+    asymmetry of friction is removed, because it does not change the torque.
     """
     scale = np.full(len(names), NORMAL)
     for index, name in enumerate(names):

@@ -138,7 +138,7 @@ def measured_again(run: Recording, draw: int, number: int) -> Recording:
         # position is rounded again, with shifted counts.
         others = np.sqrt(max(0.0, noise.sigma**2 - step**2 / 12.0))
         scale = np.hypot(others, noise.timing * run.velocity)
-        place = random.random() + 0.5 * (draw % 2)  # rounding errors of the pair are nearly opposite
+        place = random.random() + 0.5 * (draw % 2)  # the pair's rounding errors are nearly opposite
         position = (np.floor((_smooth(run) + scale * unit) / step + place) - place + 0.5) * step
     moved = Recording(time=run.time, position=position, kind=run.kind)
     return run.with_velocity(moved.velocity)
