@@ -50,7 +50,7 @@ def chosen_without_delays(
     Raises
     ------
     InputError
-        Input that cannot be used.
+        Invalid input.
     """
     parameters, windows, shift = settings.parameters, settings.windows, settings.shift
     # The model comes first: the residual of a wrong model hides delays of a fraction of a sample.

@@ -56,7 +56,7 @@ class EstimateSource:
     attributed: Callable[[], Estimate] | None = None
 
     def selftest(self, estimate: EstimateRecord, trials: int, seed: int) -> SelfTest:
-        """Inject known parameters into the recorded motion, and identify them again."""
+        """Simulate known parameters in the recorded motion, and identify them again."""
         from jointid.identification.self_test.testing import self_test
 
         return self_test(
@@ -80,7 +80,7 @@ class EstimateSource:
         return replace(found, found=(*self.known, *found.found))
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
-        """Leave the recordings out of a pickled estimate."""
+        """Replace this object by None in a pickled estimate, so that it contains no recordings."""
         return _nothing, ()
 
 

@@ -87,7 +87,7 @@ def penalty_as_fitted(problem: Problem, windows: Windows, domain: SearchDomain) 
     Raises
     ------
     InputError
-        Windows that cannot be cut.
+        Windows that are invalid for these recordings.
     """
     penalty = problem.penalty(windows)
     if penalty.residual == _core.Residual.instruments:

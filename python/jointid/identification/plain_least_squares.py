@@ -113,7 +113,7 @@ def second_look(
     lacking = [term.name for term in terms if term.own]
     lacking += ["load_friction"] if problem.choice.model.resolved.load_friction else []
     if lacking:
-        return CrossCheck(reason=f"a plain least squares has no {lacking[0]}")
+        return CrossCheck(reason=f"plain least squares has no term {lacking[0]}")
     shapes = {name: parameters[name].value for name in others}
     free = [name for name in names if parameters[name].vary]
     friction = [
@@ -128,7 +128,7 @@ def second_look(
         rows = _rows_of(stretches, cutoff * _CUTOFF, speed, shapes)
         if rows is None or len(rows.time) < max(2 * _BLOCKS, _ROWS * len(free)):
             if not looks:
-                return CrossCheck(reason="too few rows of steady motion in one direction")
+                return CrossCheck(reason="too little steady motion in one direction")
             continue
         delay = looks[0][2] if looks else None
         looks.append(_fitted(rows, problem, terms, names, parameters, shapes, delay))
@@ -144,7 +144,7 @@ def second_look(
         if all(each.agrees for each in found.values()):
             break  # another setting can only explain a difference
     if not found:
-        return CrossCheck(reason="its rows determine no parameter")
+        return CrossCheck(reason="the steady motion determines no parameter")
     return CrossCheck(values=found, delay=looks[0][2])
 
 

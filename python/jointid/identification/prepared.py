@@ -67,7 +67,7 @@ class Prepared:
     ----------
     problem : Problem
     penalty : Penalty
-        The direct sum over the windows.
+        Direct sum over the windows.
     domain : SearchDomain
     settings : Settings
         Settings of the call.

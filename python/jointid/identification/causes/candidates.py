@@ -303,7 +303,7 @@ def _angle(fit: FittedBalance, order: float) -> Array:
 
 
 def typical_speed(fit: FittedBalance) -> float:
-    """Return a fast speed of the joint."""
+    """Return a fast speed of the joint [rad/s or m/s]."""
     # If the joint rests nearly all the time, use its largest speed.
     usual = max(quantile_of_sizes(run.velocity, 0.9) for run in fit.runs)
     return usual or max(float(np.abs(run.velocity).max()) for run in fit.runs)

@@ -96,7 +96,7 @@ def noise_effect(
         runs = tuple(again(run, draw, number) for number, run in enumerate(problem.recordings))
         other = dataclasses.replace(problem, recordings=runs)
         found = _refitted(other, penalty, best, bounds)
-        if found is None:  # with this noise the joint seems to stand still
+        if found is None:  # with the added noise, the joint seems to stand still
             return None
         moved.append(found - best)
         for factor, shift in zip(_FACTORS, shifts, strict=True):

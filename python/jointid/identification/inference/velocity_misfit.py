@@ -87,7 +87,7 @@ def _added(
             other = dataclasses.replace(problem, recordings=runs).penalty(options)
             if penalty.residual == _core.Residual.instruments:
                 other.project_reading(free, threads=problem.threads)
-        except InputError:  # with this noise the joint seems to stand still
+        except InputError:  # with the added noise, the joint seems to stand still
             continue
         after.append(_misfits(other, best, free, factors))
     return {

@@ -73,7 +73,7 @@ def without_creep(
     Raises
     ------
     InputError
-        Windows that cannot be cut; a minimum speed that leaves too little motion.
+        Windows that are invalid for these recordings, or a minimum speed that leaves too little motion.
     """
     if min_speed:
         problem = _faster(problem, windows, min_speed)

@@ -85,7 +85,7 @@ def domain_for(
     computed = ComputedBounds(penalty, shapes, _signs(known))
     for index, (name, parameter) in enumerate(zip(names, known, strict=True)):
         if not parameter.vary:
-            assert parameter.value is not None  # Parameter refuses a fixed one without a value
+            assert parameter.value is not None  # a fixed Parameter always has a value
             lower[index] = upper[index] = parameter.value
             continue
         low, high = parameter.min, parameter.max

@@ -169,7 +169,7 @@ def _fitted(
     sizes = np.linalg.norm(whole, axis=0)
     sizes[sizes == 0.0] = 1.0
     triangle: Array = np.asarray(np.linalg.qr(whole / sizes, mode="r"))
-    rest = triangle[len(free) :, len(free) :]  # without the terms of either sign
+    rest = triangle[len(free) :, len(free) :]  # without the terms that may have either sign
     left, right = rest[:, :-1], rest[:, -1]
     solution = bounded_minima((left.T @ left)[None], -(left.T @ right)[None], 0.0, np.inf)[0]
     misfit = float(np.linalg.norm(left @ solution - right))

@@ -94,7 +94,7 @@ def _columns_again(problem: Problem, penalty: _core.Penalty, shapes: Array) -> A
     )
     try:
         again = problem.penalty(options)
-    except InputError:  # with this noise the joint seems to stand still
+    except InputError:  # with the added noise, the joint seems to stand still
         return None
     same = np.array_equal(again.windows, penalty.windows)
     return np.asarray(again.columns(shapes)) if same else None

@@ -20,7 +20,7 @@ def known_parameters(
     Raises
     ------
     InputError
-        As in `parameter_bounds`.
+        The same errors as in `parameter_bounds`.
     """
     table = parameter_bounds(names, joint, changes)
     return [

@@ -150,7 +150,7 @@ class ShapedColumns:
         for index, key in enumerate(self.keys):
             parameter = self.known[index]
             if not parameter.vary and (choice is None or key in choice.terms):
-                assert parameter.value is not None  # Parameter refuses a fixed one without a value
+                assert parameter.value is not None  # a fixed Parameter always has a value
                 made[every, self.first[index] + every * self.shaped[index], -1] -= parameter.value
         return made
 
