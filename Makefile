@@ -101,25 +101,25 @@ cross: .venv/.created build/tools/.made  ## every file of the core compiles for 
 matrix: .venv/.created  ## Debian 13 by chroot, gcc 14, clang 19 and 14, oldest and newest dependencies; by hand, as root, an hour
 	@tools/matrix.sh $(MATRIX)
 
-study: .venv/.installed .venv/.bench-tools  ## accuracy over many seeds; by hand, the results go to docs/
+study: .venv/.installed .venv/.bench-tools  ## accuracy over many seeds; by hand, docs/contributors/measured.md
 	@$(BIN)/python benchmarks/accuracy_study.py
 	@$(BIN)/python benchmarks/coverage_study.py
 	@$(BIN)/python benchmarks/presets_study.py
-	@$(BIN)/python benchmarks/ring_study.py
-	@$(BIN)/python benchmarks/emulated_ring.py --output docs/emulated_ring.md
-	@$(BIN)/python benchmarks/conditions_study.py --output docs/conditions.md
-	@$(BIN)/python benchmarks/faulty_logs.py --logs 200 --seed 2026 --output docs/foreign_logs.md
-	@$(BIN)/python benchmarks/delays_study.py --output docs/delays.md
-	@$(BIN)/python benchmarks/causes_study.py --joints 100 --output docs/causes.md
-	@$(BIN)/python benchmarks/causes_study.py --joints 30 --seed 7001 --size .1 --output docs/causes.md --append
-	@$(BIN)/python benchmarks/robot_study.py --hour --output docs/robot_accuracy.md
-	@$(BIN)/python benchmarks/robot_faults.py --output docs/robot_faults.md
+	@$(BIN)/python benchmarks/ring_study.py --write
+	@$(BIN)/python benchmarks/emulated_ring.py --write
+	@$(BIN)/python benchmarks/conditions_study.py --write
+	@$(BIN)/python benchmarks/faulty_logs.py --logs 200 --seed 2026 --write
+	@$(BIN)/python benchmarks/delays_study.py --write
+	@$(BIN)/python benchmarks/causes_study.py --joints 100 --write
+	@$(BIN)/python benchmarks/causes_study.py --joints 30 --seed 7001 --size .1 --write
+	@$(BIN)/python benchmarks/robot_study.py --hour --write
+	@$(BIN)/python benchmarks/robot_faults.py --write
 
-bench: .venv/.installed .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
+bench: .venv/.installed .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/contributors/measured.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
-	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
-	@$(BIN)/python benchmarks/latency.py --output docs/latency.md
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/projections.py --output docs/projection.md
+	@$(BIN)/python benchmarks/simulation_speed.py --write
+	@$(BIN)/python benchmarks/latency.py --write
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/projections.py --write
 
 notebooks: .venv/.installed .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
@@ -133,8 +133,8 @@ fuzz: .venv/.installed .venv/.test-tools build/tools/.made  ## a million damaged
 	@tools/fuzz.sh build/fuzz.jsonl --cases $(or $(CASES),1000000) --first $(or $(SEED),0) \
 	  --minutes $(or $(MINUTES),1000000) --processes $(or $(PROCESSES),$$(getconf _NPROCESSORS_ONLN))
 
-mutants: .venv/.installed .venv/.test-tools build/tools/.made  ## change single lines, see whether tests notice; by hand, docs/mutants.md
-	@PATH="$$PWD/build/tools/bin:$$PATH" PYTHONPATH="tools:$$PWD/build/tools" $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
+mutants: .venv/.installed .venv/.test-tools build/tools/.made  ## change single lines, see whether tests notice; by hand, docs/contributors/measured.md
+	@PATH="$$PWD/build/tools/bin:$$PATH" PYTHONPATH="tools:$$PWD/build/tools" $(BIN)/python -m mutants --write $(MUTANTS)
 
 write-faults: .venv/.installed .venv/.test-tools  ## a full disk, a bad one, a power loss at 1,000 calls that write; by hand
 	@JOINTID_WRITE_FAULTS=all $(BIN)/python -m pytest -s tests/base/test_write_faults.py

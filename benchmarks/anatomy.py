@@ -1,10 +1,9 @@
-"""Where a whole `identify(search="ga")` spends its time: each step timed by itself, in a loop and behind other work."""
+"""Where a whole `identify(search="ga")` spends its time: each step timed alone, behind other work."""
 
 from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Callable
 
 import numpy as np
 from peers.contest import WINDOWS, Contest
@@ -48,35 +47,22 @@ def measure(contest: Contest) -> list[Record]:
     rng = np.random.default_rng(4)
     rows = rng.uniform(contest.lower, contest.upper, (200, contest.lower.size))
 
-    def nothing() -> None:
-        pass
-
     def other_work() -> None:
         ends = time.perf_counter() + BEHIND
         while time.perf_counter() < ends:
             contest.numpy.many(rows)
 
-    ways: dict[str, Callable[[], None]] = {"in a loop": nothing, "behind other work": other_work}
     records = []
     for windows in (WINDOWS, None):
-        for way, before in ways.items():
-            runs = []
-            whole = []
-            for _ in range(REPEATS):
-                before()
-                runs.append(once(contest, windows))
-                before()
-                began = time.perf_counter()
-                jid.identify(contest.recording, contest.joint, windows=windows, search="ga")
-                whole.append(time.perf_counter() - began)
-            steps = {step: statistics.median(run[step] for run in runs) for step in STEPS}
-            records.append(
-                {
-                    "kind": "anatomy",
-                    "windows": windows,
-                    "way": way,
-                    "whole": statistics.median(whole),
-                    "steps": steps,
-                }
-            )
+        runs = []
+        whole = []
+        for _ in range(REPEATS):
+            other_work()
+            runs.append(once(contest, windows))
+            other_work()
+            began = time.perf_counter()
+            jid.identify(contest.recording, contest.joint, windows=windows, search="ga")
+            whole.append(time.perf_counter() - began)
+        steps = {step: statistics.median(run[step] for run in runs) for step in STEPS}
+        records.append({"kind": "anatomy", "whole": statistics.median(whole), "steps": steps})
     return records

@@ -1,11 +1,10 @@
-"""Which cause is named for which broken assumption, over random joints and motions, as tables in markdown."""
+"""Which cause is named for which broken assumption, over random joints and motions."""
 
 import argparse
 import sys
 import time
-from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ import jointid as jid
 from jointid.identification.causes.families import BY_NAME
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+from measured import Part, publish
 from plants import Bench, Law, Log, Plant, chirp, simulate, sines, thesis, trapezoids
 
 Array = NDArray[np.float64]
@@ -23,6 +23,31 @@ Array = NDArray[np.float64]
 HARM = 0.05  # of a parameter; or two of its errors
 BATCH = 10  # joints of each plant simulated together
 DURATION = 12.0
+_HEADER = (
+    "plant",
+    "sensor: moves a value",
+    "named [%]",
+    "only others",
+    "no sensor: moves a value",
+    "named [%]",
+    "only others",
+)
+CAUSES = Part(
+    title="Causes",
+    asked="Is the broken assumption named? {joints} random joints per plant, four kinds of motion, 12 s at 1 kHz, seed "
+    "{seed}; one assumption is broken in each row.",
+    header=_HEADER,
+    reading="*Moves a value*: by more than 5 % or two standard errors. *Named*: of these. *Only others*: a wrong name "
+    "and not the right one. Named without need: {needless}. An elastic gear, backlash, a varying inertia behind a "
+    "sensor and, without a sensor, a wrong torque constant have no name: no recording shows them.",
+)
+MILDER = Part(
+    title="Causes: milder mismatches",
+    asked="The same with {size:g} of each mismatch; {joints} joints per plant, seed {seed}.",
+    header=_HEADER,
+    reading="Many move no value, and many of the others move it by little more than two standard errors. Named without "
+    "need: {needless}.",
+)
 SLOW = {"slow_motion", "presliding", "stribeck_exponent"}
 
 
@@ -312,44 +337,30 @@ class Row:
     joints: int = 0
     harmed: int = 0
     named: int = 0
-    first: int = 0
-    missed: int = 0
     harmless: int = 0  # named rightly without need
     wrong: int = 0  # only others are named
-    firsts: Counter[str] = field(default_factory=Counter)
 
     def add(self, right: frozenset[str], harmed: bool, found: list[str]) -> None:
         """Count one joint."""
         self.joints += 1
         self.harmed += harmed
         hit = bool(right & set(found))
-        self.firsts[found[0] if found else "none"] += 1
         if harmed:
             self.named += hit
-            self.first += bool(right & set(found[:1]))
-            self.missed += not found
         else:
             self.harmless += hit
         self.wrong += bool(found) and not hit
 
-    def text(self, name: str, right: frozenset[str]) -> str:
-        """The row of the table."""
-        firsts = ", ".join(f"{key} {n}" for key, n in self.firsts.most_common())
-        cells: list[object] = [f"{self.harmed} of {self.joints}"]
-        share = f" ({100.0 * self.named / self.harmed:.0f} %)" if self.harmed else ""
-        cells += [f"{self.named}{share}", self.first] if right else ["", ""]
-        cells += [self.missed, self.harmless if right else "", self.wrong, firsts]
-        return f"| {name} | {' | '.join(map(str, cells))} |"
+    def cells(self, right: frozenset[str]) -> list[object]:
+        """Three columns of the table."""
+        share = f"{100.0 * self.named / self.harmed:.0f}" if self.harmed and right else "–"
+        return [self.harmed, share, self.wrong]
 
 
-HEAD = """| plant | moves a value | named | first | none | without need | only others | first names |
-|---|---|---|---|---|---|---|---|"""
-
-
-def table(
+def counted(
     cases: Sequence[Case], joints: int, sensor: bool, seed: int, verbose: bool, size: float = 1.0
-) -> list[str]:
-    """The rows of one table, and the share of harmless mismatches that are named."""
+) -> dict[str, Row]:
+    """What is counted of each case."""
     rows = {case.name: Row() for case in cases}
     for first in range(0, joints, BATCH):
         count = min(BATCH, joints - first)
@@ -366,49 +377,18 @@ def table(
             rows[case.name].add(case.right, harmed, found)
             if verbose:
                 print(case.name, harmed, found, flush=True)
-    lines = [
-        row.text(case.name, case.right) for case, row in zip(cases, rows.values(), strict=True)
-    ]
+    return rows
+
+
+def needless(cases: Sequence[Case], rows: Mapping[str, Row]) -> str:
+    """How many mismatches that have a name and move no value are named."""
     nameable = [rows[case.name] for case in cases if case.right]
     harmless = sum(row.joints - row.harmed for row in nameable)
-    return [
-        *lines,
-        f"\nNamed without need: {sum(row.harmless for row in nameable)} of {harmless} joints.",
-    ]
-
-
-_TEXT = """# Causes by name
-
-Written by `benchmarks/causes_study.py` (`make study`); do not edit. Joints of `tests/plants`, which shares no code with
-the package, {joints} of each plant: other inertia, friction, gravity, sensor and motion (four kinds) each time, 12 s
-at 1 kHz, seed {seed}. One assumption of the model is broken in each row. `identify` runs with its defaults; what its
-warnings name counts, and so does a constant delay that it takes away and that moved a parameter. A cause that is there,
-is measured, and moves no parameter by more than 5 % or two errors is a note (severity "info") that says how little it
-moves: it is no name here.
-
-*Moves a value*: against the same joint with the same noise and nothing broken, a parameter is off by more than 5 % or
-two standard errors; so is a coefficient that is no constant (friction that drifts, an inertia that varies) by half of
-its range. *Named*: the right name is among the causes of these; `slow_motion`, `presliding` and `stribeck_exponent`
-count as one. *First*: the right name is the first one. *None*: no name. *Without need*: named rightly, though no
-value moves so far. *Only others*: a wrong name and not the right one. *First names* are of all joints. An elastic
-gear, its backlash, and a varying inertia behind a sensor have no name, so that any name is a wrong one.
-
-A wrong torque constant has a name (`wrong_scale`) only beside a known inertia. Without one nothing in a recording shows
-it: with inertia, frictions, gravity and offset all multiplied by the same factor, the torque balance is the same, so
-every value is off by that factor and the residuals are what they were. The tolerance of the torque constant in the
-joint file is what states it; the intervals then contain it. Without a sensor, backlash and an elastic gear delay the
-link behind the motor: the torque then seems early against the position, which is reported as such (`signal_lag`, never
-applied), with the gear as one of its possible reasons."""
-
-_MILDER = """
-## Milder mismatches
-
-{joints} joints of each plant, seed {seed}, with {size:g} of each mismatch (`--size {size:g}`). Many move no
-value; of those that do, many move it by little more than two standard errors."""
+    return f"{sum(row.harmless for row in nameable)} of {harmless}"
 
 
 def main() -> None:
-    """Print or write the tables, with a sensor and without one."""
+    """Publish the table, with a sensor and without one."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--joints", type=int, default=20, help="random joints of each plant")
     parser.add_argument("--seed", type=int, default=1)
@@ -420,25 +400,28 @@ def main() -> None:
         help="of each mismatch, as a share; below 1 most are harmless",
     )
     parser.add_argument("--verbose", action="store_true", help="print each joint")
-    parser.add_argument("--output", type=Path, help="a file to write instead of printing")
-    parser.add_argument("--append", action="store_true", help="to that file, behind what is there")
+    parser.add_argument("--write", action="store_true", help="write it into the page, too")
     given = parser.parse_args()
     began = time.perf_counter()
     words = given.only.split() or [""]
-    milder = given.size != 1.0
-    text = _MILDER if milder else _TEXT
-    lines = [text.format(joints=given.joints, seed=given.seed, size=given.size)]
-    for title, sensor in (("With a torque sensor", True), ("Without one", False)):
-        cases: tuple[Case, ...] = WITH_SENSOR if sensor else WITHOUT
-        cases = tuple(case for case in cases if any(word in case.name for word in words))
-        lines += [f"\n##{'#' * milder} {title}\n", HEAD]
-        lines += table(cases, given.joints, sensor, given.seed, given.verbose, given.size)
-    text = "\n".join(lines) + "\n"
-    if given.output is None:
-        print(text)
-    else:
-        before = given.output.read_text(encoding="utf-8") if given.append else ""
-        given.output.write_text(before + text, encoding="utf-8")
+    lines: dict[str, list[object]] = {}
+    said = []
+    for place, whole in enumerate((WITH_SENSOR, WITHOUT)):
+        cases = [case for case in whole if any(word in case.name for word in words)]
+        found = counted(cases, given.joints, not place, given.seed, given.verbose, given.size)
+        said.append(needless(cases, found))
+        for case in cases:
+            cells = lines.setdefault(case.name, [case.name, *("–",) * 6])
+            cells[1 + 3 * place : 4 + 3 * place] = found[case.name].cells(case.right)
+    publish(
+        CAUSES if given.size == 1.0 else MILDER,
+        lines.values(),
+        write=given.write,
+        joints=given.joints,
+        seed=given.seed,
+        size=given.size,
+        needless=" and ".join(said),
+    )
     print(f"{time.perf_counter() - began:.0f} s")
 
 

@@ -1,8 +1,8 @@
-"""`make study`: 46 conditions with random joints each; writes docs/conditions.md.
+"""`make study`: 46 conditions with random joints each.
 
 Clean conditions show errors, coverage and false findings; mismatches and defects show whether a finding names every
 parameter that is off. Outcomes are kept in `results/conditions_study.jsonl`, which the next call continues: delete it
-when the code has changed. `--page` writes the tables of what is there.
+when the code has changed. `--page` publishes what is there.
 """
 
 from __future__ import annotations
@@ -10,12 +10,13 @@ from __future__ import annotations
 import argparse
 import collections
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from conditions import CONDITIONS, DURATION, Condition
+from measured import Part, publish
 from plants import Bench, simulate
 from store import Record, Store
 
@@ -23,6 +24,23 @@ import jointid as jid
 
 PATH = Path(__file__).resolve().parent / "results" / "conditions_study.jsonl"
 OFF = 0.05  # a relative error above this one has to be named
+_SHOWN = 2  # warnings of a row, the most frequent ones
+CLEAN = Part(
+    title="Conditions: clean recordings",
+    asked="How accurate is `identify` over many seeds, and what is found falsely? {joints} random joints per "
+    "condition, 12 s at 1 kHz unless stated otherwise, seed {seed}. Parameters more than 5 % off that no finding "
+    "names: {unnamed}.",
+    header=("condition", "all within 5 %", "worst error [%]", "coverage [%]", "false findings"),
+    reading="*Coverage*: 95 % intervals that contain the truth. A finding of uncertainty is false only where the "
+    "intervals are narrow (±4 %, a gain's ±1 %).",
+)
+WRONG = Part(
+    title="Conditions: mismatches and defects",
+    asked="What becomes of a joint or recording that is not as assumed? {joints} random joints per condition; the "
+    "two most frequent warnings. Parameters more than 5 % off that no finding names: {unnamed}.",
+    header=("condition", "all within 5 %", "worst error [%]", "coverage [%]", "warnings"),
+    reading="A finding names a parameter if it lists it, or if it is blocking.",
+)
 _SIDE_BY_SIDE = 250  # runs of one simulation
 _ROUND = 10  # joints of each condition
 _NEAR_ZERO = ("torque_offset", "sensor_offset", "gravity_cos", "gravity_sin")
@@ -174,58 +192,40 @@ def _cut(condition: Condition, recording: jid.Recording) -> jid.Recording:
     return recording.crop(0.0, condition.duration)
 
 
-HEAD = (
-    f"| condition | all within {OFF:.0%} | worst error | off by more, named | off by more, **not named** |"
-    " coverage | warnings |\n|---|--:|---|--:|---|--:|---|"
-).replace("%", " %")
-
-
-def row(condition: Condition, found: Sequence[Outcome]) -> str:
+def row(condition: Condition, found: Sequence[Outcome]) -> list[str]:
     """One line of the table."""
     good = sum(not each.off for each in found)
     worst = max(
         ((abs(error), name) for each in found for name, error in each.errors.items()),
         default=(0.0, ""),
     )
-    off = sum(len(each.off) for each in found)
-    unnamed = collections.Counter(name for each in found for name in each.unnamed)
-    listed = ", ".join(f"{name} {count}" for name, count in sorted(unnamed.items()))
-    codes = collections.Counter(code for each in found for code in each.codes)
     inside = [value for each in found for value in each.inside.values()]
-    cells = (
+    said = [each.false if condition.clean else each.codes for each in found]
+    codes = collections.Counter(code for each in said for code in each)
+    return [
         condition.name,
-        f"{good} of {len(found)}",
-        f"{'missing' if np.isinf(worst[0]) else f'{100 * worst[0]:.2f} %'} ({worst[1]})",
-        str(off - sum(unnamed.values())),
-        f"**{sum(unnamed.values())}**: {listed}" if unnamed else "0",
-        f"{100 * np.mean(inside):.1f} %" if inside else "",
-        ", ".join(f"`{code}` {count}" for code, count in codes.most_common()) or "none",
-    )
-    return f"| {' | '.join(cells)} |"
+        f"{good}/{len(found)}",
+        f"{'missing' if np.isinf(worst[0]) else f'{100 * worst[0]:.2f}'} ({worst[1]})",
+        f"{100 * np.mean(inside):.1f}" if inside else "",
+        ", ".join(f"`{code}` {count}" for code, count in codes.most_common(_SHOWN)) or "none",
+    ]
 
 
-def clean_rows(name: str, found: Sequence[Outcome]) -> Iterator[str]:
-    """Coverage by parameter, and how often each false finding is raised."""
-    parameters = sorted({name for each in found for name in each.inside})
-    shares = (
-        f"{p} {100 * np.mean([each.inside[p] for each in found if p in each.inside]):.1f}"
-        for p in parameters
-    )
-    codes = collections.Counter(code for each in found for code in each.false)
-    said = ", ".join(
-        f"`{code}` {100 * count / len(found):.1f} %" for code, count in codes.most_common()
-    )
-    yield f"| {name} | {', '.join(shares)} | {said or 'none'} |"
+def unnamed(found: Mapping[str, Sequence[Outcome]]) -> str:
+    """Parameters that are off and that no finding names, by condition."""
+    counts = {name: sum(len(each.unnamed) for each in runs) for name, runs in found.items()}
+    listed = [f"**{count}** ({name})" for name, count in counts.items() if count]
+    return ", ".join(listed) or "none"
 
 
 def main() -> None:
-    """Run the conditions and write the tables."""
+    """Run the conditions and publish the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--joints", type=int, default=20, help="random joints a condition")
     parser.add_argument("--clean-joints", type=int, default=0, help="of the clean ones, if others")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default="", help="conditions whose name contains this")
-    parser.add_argument("--output", type=Path, help="a file to write instead of printing")
+    parser.add_argument("--write", action="store_true", help="write them into the page, too")
     parser.add_argument("--page", action="store_true", help="only the tables, of what is kept")
     given = parser.parse_args()
     began = time.perf_counter()
@@ -235,45 +235,20 @@ def main() -> None:
         for clean in (False, True):
             joints = (given.clean_joints if clean else 0) or given.joints
             measure(store, [c for c in chosen if c.clean == clean], joints, given.seed)
-    found = {c.name: outcomes(store, c) for c in chosen}
-    chosen = [c for c in chosen if found[c.name]]
-    cleans = min((len(found[c.name]) for c in chosen if c.clean), default=0)
-    lines = [_TEXT.format(clean=cleans, one=100.0 / max(cleans, 1), seed=given.seed)]
-    for title, clean in (("Clean conditions", True), ("Mismatches and defects", False)):
-        lines += [f"\n## {title}\n", HEAD]
-        lines += [row(c, found[c.name]) for c in chosen if c.clean == clean]
-    lines += ["\n## Clean conditions: coverage and false findings\n"]
-    lines += [
-        "| condition | 95 % intervals that contain the truth [%] | false findings of severity warning or blocking |"
-    ]
-    lines += ["|---|---|---|"]
-    for c in chosen:
-        if c.clean:
-            lines += clean_rows(c.name, found[c.name])
-    text = "\n".join(lines) + "\n"
-    if given.output is None:
-        print(text)
-    else:
-        given.output.write_text(text, encoding="utf-8")
-    print(f"{sum(map(len, found.values()))} runs in {time.perf_counter() - began:.0f} s")
+    total = 0
+    for part, clean in ((CLEAN, True), (WRONG, False)):
+        mine = {c: runs for c in chosen if c.clean == clean and (runs := outcomes(store, c))}
+        total += sum(map(len, mine.values()))
+        publish(
+            part,
+            (row(c, runs) for c, runs in mine.items()),
+            write=given.write,
+            joints=min(map(len, mine.values()), default=0),
+            seed=given.seed,
+            unnamed=unnamed({c.name: runs for c, runs in mine.items()}),
+        )
+    print(f"{total} runs in {time.perf_counter() - began:.0f} s")
 
-
-_TEXT = """# Accuracy under many conditions
-
-Written by `benchmarks/conditions_study.py` (`make study`); do not edit. Each condition of `benchmarks/conditions.py`
-has random joints (as many as its row says), simulated by
-`tests/plants`, which shares no code with the package: other inertia, friction, gravity, sensor and motion each time,
-12 s at 1 kHz unless the condition says otherwise; seed {seed}. With a sensor the call knows the drive's inertia and
-the model; without one the model with gravity free; "no joint given" is `identify(recording)`.
-
-An error is relative to the true value; that of an offset or a coefficient of gravity, which may be near 0, to the
-larger of the true value and the Coulomb friction. Of a value that drifts, the truth is its mean. Where friction
-differs by direction, the truth of the offset holds half of the difference of the Coulomb frictions: nothing in a
-recording tells the two apart. A parameter is named if a finding of severity "warning" lists it, or if a finding is
-"blocking". A parameter that the estimate does not have counts as off. On a clean recording a finding that a value is
-uncertain (`undetermined`, `at_bound`, `model_too_rich`, `noisy_velocity`) is false unless a 95 % interval is as wide as
-`undetermined` says (±4 %; a gain's ±1 %; a coefficient of gravity against both together) or missing; any other one is
-false. Rare findings need many joints: one in {clean} joints is {one:.2g} %."""
 
 if __name__ == "__main__":
     main()

@@ -1,4 +1,4 @@
-"""`make study`: signals that are late, and signals that are not; writes docs/delays.md.
+"""`make study`: signals that are late, and signals that are not.
 
 Each recording has one signal late by 1 to 3 ms, or none; half of them are taken every millisecond, half every
 second one. Others have a model error that could pass for a delay.
@@ -9,21 +9,58 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from conditions import DURATION, LUGRE, POSE, Condition
 from delay_limit import NORMAL, Limit, limit
 from delay_limit import late as late_signal
+from measured import Part, publish
 from plants import Bench, simulate
 
 import jointid as jid
 
 NEAR = 3e-4  # [s] from the true delay
 CLOSE = 0.015  # of the true value, with the delay taken away
+LATE = Part(
+    title="Delays",
+    asked="Is a torque, velocity or sensor reading that is 1 to 3 ms late found? Random joints, four motions, 12 s, "
+    "sensor noise 0.2 N·m.",
+    header=(
+        "late signal",
+        "runs",
+        "named within 0.3 ms",
+        "named, further off",
+        "median error [ms]",
+        "in its 95 % interval",
+        "others called late",
+        "all parameters within 1.5 %; nothing late",
+    ),
+    reading="The last column compares the values with the delay removed to those before the signal was made late.",
+)
+PROMPT = Part(
+    title="Delays: nothing is late",
+    asked="Is a signal called late that is not?",
+    header=("recording", "runs", "called late"),
+)
+SILENT = Part(
+    title="Delays: a reading that is not fed back",
+    asked="How near does the estimate come to what the recording can tell, where no controller feeds the sensor's "
+    "noise back? The least standard error is the Cramér-Rao bound of each run (`benchmarks/delay_limit.py`).",
+    header=(
+        "rate",
+        "runs",
+        "least standard error [ms]: median, 90 %",
+        "determinable to 0.3 ms",
+        "named within",
+        "of the others",
+        "error / least error, median",
+        "in its 95 % interval",
+    ),
+    reading="An estimate that uses all that a recording tells has a median ratio of 0.67.",
+)
 _ROUNDED = 1e-5  # [s]; of a delay that nothing but rounding makes uncertain
 _MOTIONS = ("thesis", "sines", "trapezoids", "chirp")
 _MISMATCHES: Mapping[str, Mapping[str, Any]] = {
@@ -158,7 +195,10 @@ def outcome(
     )
 
 
-def outcomes(runs: int, seed: int, only: str = "") -> dict[str, tuple[Case, list[Outcome]]]:
+Found = Mapping[str, tuple[Case, Sequence[Outcome]]]
+
+
+def outcomes(runs: int, seed: int, only: str = "") -> Found:
     """Of all recordings, by the title of their case."""
     drawn = np.random.default_rng([seed, 1])
     each: list[tuple[Case, Bench]] = []
@@ -192,54 +232,37 @@ def _quiet(bench: Bench, seed: int) -> list[jid.Recording | None]:
     return list(simulate(replace(bench, log=log), duration=DURATION, seed=seed))
 
 
-def tables(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
-    """Both tables, line by line."""
-    lines = [
-        f"| late signal | runs | named within {NEAR * 1e3:g} ms | determinable, and of these named so |"
-        " named, but further off | further off than its 95 % interval says | median error |"
-        " in its 95 % interval | named, interval beyond ± 0.3 ms | other signals called late |"
-        + f" all parameters within {CLOSE:.1%} | the same runs, nothing late |".replace("%", " %"),
-        f"|---|{11 * '--:|'}",
-    ]
+def late_rows(found: Found) -> Iterator[list[object]]:
+    """A line a late signal."""
     for title, (case, runs) in found.items():
         if case.signal:
             named = [each for each in runs if np.isfinite(each.error)]
             errors = np.array([each.error for each in named])
-            inside = [each.error < NORMAL * each.stated + 2e-5 for each in named]
-            can = [each for each in runs if each.limit and each.limit.determinable(NEAR)]
-            near = np.count_nonzero([each.error < NEAR for each in can])
-            unsaid = [e >= NEAR and not said for e, said in zip(errors, inside, strict=True)]
-            wide = [NORMAL * each.stated > NEAR for each in named]
-            lines.append(
-                f"| {title} | {len(runs)} | {np.count_nonzero(errors < NEAR)} |"
-                f" {f'{len(can)}, {near}' if case.silent else ''} |"
-                f" {np.count_nonzero(errors >= NEAR)} | {sum(unsaid)} |"
-                f" {1e3 * np.median(errors) if len(errors) else np.nan:.2f} ms |"
-                f" {sum(inside)} of {len(named)} | {sum(wide)} | {sum(bool(each.false) for each in runs)} |"
-                f" {sum(each.worst <= CLOSE for each in runs)} |"
-                f" {sum(each.before <= CLOSE for each in runs)} |"
-            )
-    close = f"{CLOSE:.1%}".replace("%", " %")
-    head = f"| nothing is late | runs | a signal is called late | all parameters within {close} |"
-    lines += ["", head, "|---|--:|---|--:|"]
+            inside = sum(each.error < NORMAL * each.stated + 2e-5 for each in named)
+            yield [
+                title,
+                len(runs),
+                np.count_nonzero(errors < NEAR),
+                np.count_nonzero(errors >= NEAR),
+                f"{1e3 * np.median(errors) if len(errors) else np.nan:.2f}",
+                f"{inside}/{len(named)}",
+                sum(bool(each.false) for each in runs),
+                f"{sum(each.worst <= CLOSE for each in runs)}; "
+                f"{sum(each.before <= CLOSE for each in runs)}",
+            ]
+
+
+def prompt_rows(found: Found) -> Iterator[list[object]]:
+    """A line a recording in which nothing is late."""
     for title, (case, runs) in found.items():
         if not case.signal:
             false = [name for each in runs for name in sorted(each.false)]
             said = ", ".join(f"{name} {false.count(name)}" for name in sorted(set(false))) or "none"
-            lines.append(
-                f"| {title} | {len(runs)} | {said} | {sum(each.worst <= CLOSE for each in runs)} |"
-            )
-    return lines
+            yield [title, len(runs), said]
 
 
-def limits(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
+def silent_rows(found: Found) -> Iterator[list[object]]:
     """How near the delays of readings that are not fed back come to what the recordings can tell."""
-    lines = [
-        "| late signal | runs | least standard error possible: median, 90 % | determinable to 0.3 ms |"
-        " of these named within | of the others | error over the least one, median |"
-        " in its 95 % interval, named | all that were measured | interval beyond ± 0.3 ms, stated |",
-        f"|---|{9 * '--:|'}",
-    ]
     for title, (case, runs) in found.items():
         if not case.silent:
             continue
@@ -247,61 +270,33 @@ def limits(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
         can = [bool(each.limit and each.limit.determinable(NEAR)) for each in runs]
         near = [each.error < NEAR for each in runs]
         both = sum(one and other for one, other in zip(can, near, strict=True))
-        named = [each for each in runs if np.isfinite(each.error)]
-        inside = [each.error < NORMAL * each.stated + 2e-5 for each in named]
         measured = [abs(each.apart) < NORMAL for each in runs if np.isfinite(each.apart)]
-        ratios = [each.error / each.limit.error for each in named if each.limit]
-        wide = sum(NORMAL * each.stated > NEAR for each in named)
+        ratios = [e.error / e.limit.error for e in runs if np.isfinite(e.error) and e.limit]
         low, high = 1e3 * np.quantile(least, [0.5, 0.9])
-        lines.append(
-            f"| {title} | {len(runs)} | {low:.2f}, {high:.2f} ms | {sum(can)} | {both} |"
-            f" {sum(near) - both} of {len(runs) - sum(can)} | {np.median(ratios):.2f} |"
-            f" {sum(inside)} of {len(named)} | {sum(measured)} of {len(measured)} | {wide} |"
-        )
-    return lines
-
-
-_OF_LIMITS = """
-## A reading that is not fed back
-
-Each run beside its own bound. *Least standard error possible* is the bound of that run. *Error over the least one* of
-an estimate that uses all that a recording tells has a median of 0.67. *All that were measured* are the delays in
-`estimate.delays`, certain or not.
-"""
-
-_TEXT = """# Delays between signals
-
-Written by `benchmarks/delays_study.py` (`make study`); do not edit. Recordings of 12 s of random joints, simulated by
-`tests/plants`, which shares no code with the package, with four motions each. Torque, velocity or the sensor's reading
-(noise 0.2 N·m) is then made late by 1 to 3 ms, interpolated between samples. A delay is named if the estimate is
-certain of it. It is then taken away, as `identify` does by itself; the last two columns compare the values with those
-of the same recordings before the signal was made late.
-
-A controller that feeds the reading back repeats its noise in the torque, and this tells the reading's delay. Without
-such a controller the motion has to tell it. Smooth motion leaves a standard error of 0.1 to 0.6 ms at this noise
-(the Cramér-Rao bound: the noise over the root of the summed squares of the load's rate). Jumps of the acceleration
-at reversals tell it to 0.02 to 0.1 ms, except where a held torque's jump falls on a whole sample: the reading of an
-instant and an interpolated one then look alike. *Determinable* are the recordings whose bound, with the true motion
-and reading of each, allows a 95 % interval within ± 0.3 ms (`benchmarks/delay_limit.py`); of no other one can
-any estimate promise it. Where the 95 % interval is wider than ± 0.3 ms, the finding states it.
-"""
+        yield [
+            title.split(", ")[1],
+            len(runs),
+            f"{low:.2f}, {high:.2f}",
+            sum(can),
+            both,
+            f"{sum(near) - both}/{len(runs) - sum(can)}",
+            f"{np.median(ratios):.2f}",
+            f"{sum(measured)}/{len(measured)}",
+        ]
 
 
 def main() -> None:
-    """Run the cases and write the tables."""
+    """Run the cases and publish the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=13, help="joints of each motion and rate")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default="", help="cases whose title contains this")
-    parser.add_argument("--output", type=Path, help="a file to write instead of printing")
+    parser.add_argument("--write", action="store_true", help="write them into the page, too")
     given = parser.parse_args()
     began = time.process_time()
     found = outcomes(given.runs, given.seed, given.only)
-    text = "\n".join([_TEXT, *tables(found), _OF_LIMITS, *limits(found)]) + "\n"
-    if given.output is None:
-        print(text)
-    else:
-        given.output.write_text(text, encoding="utf-8")
+    for part, rows in ((LATE, late_rows), (PROMPT, prompt_rows), (SILENT, silent_rows)):
+        publish(part, rows(found), write=given.write)
     total = sum(len(runs) for _, runs in found.values())
     print(f"{total} runs in {time.process_time() - began:.0f} s of CPU", file=sys.stderr)
 

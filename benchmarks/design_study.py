@@ -1,6 +1,6 @@
 """What designed motions are worth, by identifications from many simulated recordings. By hand.
 
-It writes docs/design_accuracy.md. Every error is counted: recordings are simulated with noise, and
+Every error is counted: recordings are simulated with noise, and
 identified with default settings (the minimum that the separable search finds is that of the default one).
 """
 
@@ -9,7 +9,7 @@ import dataclasses
 import math
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ import numpy as np
 import jointid as jid
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from measured import Part, publish
 from store import Store
 
 INERTIA = 2.472e-4 * 101**2
@@ -57,7 +58,26 @@ MOTIONS = {
 SENSORS = jid.Sensors(torque_noise=0.5)
 SMALL = 0.05  # error of a parameter that counts in the comparison of random joints
 PATH = Path(__file__).resolve().parent / "results" / "design_study.jsonl"
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "design_accuracy.md"
+DESIGNED = Part(
+    title="Designed motions",
+    asked="How much better is a designed motion? RMS error [%] of the worst parameter over {runs} simulated recordings "
+    "of 12 s (±60°, 3.4 rad/s, 160 N·m, sensor noise 0.5 N·m).",
+    header=("situation", *MOTIONS, "designed", "times better", "expected / observed"),
+    reading="1 is the thesis's joint, 2 another one; the controller's parameters are right or wrong; the last four are "
+    "joint 1, hanging, wrong. The prior is the truth ± 20 %. The last column is the range over the parameters.",
+)
+PRIORS = Part(
+    title="Designed motions: a wrong prior",
+    asked="What does a prior around twice or half the truth cost? RMS error [%] of the worst parameter over {runs} "
+    "identifications; in brackets over that with the right prior.",
+    header=("situation", "twice", "half", "limits kept"),
+)
+WIDE = Part(
+    title="Designed motions: a wide prior",
+    asked="What is one motion worth that is designed for the joint's bounds, for joints drawn evenly in them? "
+    "Compared with the default motion (20°, 6 s) over the parameters with an error below 5 %.",
+    header=("link", "joints", "limits kept", "smaller worst error", "median ratio"),
+)
 
 Values = Mapping[str, Any]
 
@@ -330,49 +350,19 @@ def cell(rms: Values) -> str:
     return f"{percent(size)} {name}"
 
 
-def rows(records: list[dict[str, Any]]) -> list[str]:
+def rows(records: list[dict[str, Any]]) -> Iterator[list[str]]:
     """One line a situation: worst errors of each motion, and expected over observed."""
-    lines = [
-        "| situation | 20°, 6 s | 60°, 3 s | designed | times better | expected / observed, each parameter | CPU s |",
-        "|---|---|---|---|---|---|---|",
-    ]
     for each in records:
-        best = min(worst(each[name]["rms"])[0] for name in MOTIONS)
+        others = [each[name]["rms"] for name in MOTIONS]
         found = each["design"]["rms"]
-        ratios = ", ".join(f"{each['expected'][n] / found[n]:.2f}" for n in found)
-        lines.append(
-            f"| {each['name']} | {cell(each['20°, 6 s']['rms'])} | {cell(each['60°, 3 s']['rms'])} | "
-            f"{cell(found)} | {best / worst(found)[0]:.1f} | {ratios} | {each['spent']:.0f} |"
-        )
-    return lines
+        best = min(worst(rms)[0] for rms in others) / worst(found)[0]
+        ratios = [each["expected"][n] / found[n] for n in found]
+        spread = f"{min(ratios):.2f}–{max(ratios):.2f}"
+        yield [each["name"], *map(cell, [*others, found]), f"{best:.1f}", spread]
 
 
-def page(store: Store, runs: int) -> str:
-    """The page, from the records."""
-    command = f"python benchmarks/design_study.py --runs {runs}"
-    parts = [
-        "# What a designed motion is worth",
-        f"Made by `{command}`. Worst parameter's RMS error in %, and which, over {runs} identifications from simulated "
-        "recordings of 12 s at 1 kHz (±60°, 3.4 rad/s, 160 N·m; noise of the torque sensor 0.5 N·m). Joint 1 is the "
-        "thesis's: 25, 20, 100, 20, 2.4, 15; joint 2: 17, 14, 120, 26, 1.7, −7. The controller is the adaptive-robust "
-        "law; its parameters are right, or wrong: 10, 20, 200, 10, 1, 0. The prior is the truth ± 20 %.",
-        "\n".join(rows(store.of("situation"))),
-        "## Other joints",
-        "Joint 1, hanging, wrong controller.",
-        "\n".join(rows(store.of("other"))),
-        "## A prior that is wrong",
-        "The same situations, designed for ranges around twice and half the truth: worst "
-        f"error over {max(10, runs // 4)} identifications, and in brackets over that with the right prior.",
-        "\n".join(prior_rows(store)),
-        "## A prior that is wide",
-        random_text(store),
-    ]
-    return "\n\n".join(parts) + "\n"
-
-
-def prior_rows(store: Store) -> list[str]:
+def prior_rows(store: Store) -> Iterator[list[str]]:
     """One line a situation: its error with a wrong prior."""
-    lines = ["| situation | twice | half | limits kept |", "|---|---|---|---|"]
     for each in store.of("situation"):
         cells, all_kept = [], True
         for factor in (2.0, 0.5):
@@ -380,38 +370,33 @@ def prior_rows(store: Store) -> list[str]:
                 ratio = worst(other["design"]["rms"])[0] / worst(each["design"]["rms"])[0]
                 cells.append(f"{cell(other['design']['rms'])} ({ratio:.2f})")
                 all_kept &= other["kept"]
-        lines.append(f"| {each['name']} | {' | '.join(cells)} | {'yes' if all_kept else 'no'} |")
-    return lines
+        yield [each["name"], *cells, "yes" if all_kept else "no"]
 
 
-def random_text(store: Store) -> str:
+def wide_rows(store: Store) -> Iterator[list[object]]:
     """What one motion is worth for joints drawn in wide bounds."""
-    lines = []
     for hanging in (True, False):
         records = store.of("random", hanging=hanging)
-        if not records:
-            continue
-        better = sum(each["worst"][0] < each["worst"][1] for each in records)
-        within = sum(each["kept"] for each in records)
-        ratio = np.median([each["worst"][1] / each["worst"][0] for each in records])
-        lines.append(
-            f"Link {'hanging' if hanging else 'horizontal'}: one motion designed for the joint's bounds, "
-            f"{len(records)} joints drawn evenly in them. Limits kept by {within}. Over the parameters with an error "
-            f"below 5 % in either motion, the design's worst error is smaller than that of the default motion "
-            f"(20°, 6 s) for {better}; median ratio {ratio:.1f}."
-        )
-    return "\n\n".join(lines)
+        if records:
+            better = sum(each["worst"][0] < each["worst"][1] for each in records)
+            within = sum(each["kept"] for each in records)
+            ratio = np.median([each["worst"][1] / each["worst"][0] for each in records])
+            link = "hanging" if hanging else "horizontal"
+            yield [link, len(records), within, better, f"{ratio:.1f}"]
 
 
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--runs", type=int, default=400)
     arguments.add_argument("--joints", type=int, default=50)
-    arguments.add_argument("--page", action="store_true", help="only write the page again")
+    arguments.add_argument("--page", action="store_true", help="only the tables, of what is kept")
+    arguments.add_argument("--write", action="store_true", help="write them into the page, too")
     given = arguments.parse_args()
     store = Store(PATH, {"runs": given.runs, "joints": given.joints})
     if not given.page:
         measure(store, given.runs, given.joints)
         store.append({"kind": "finished"})
-    PAGE.write_text(page(store, given.runs), encoding="utf-8")
-    print(PAGE.read_text(encoding="utf-8"))
+    records = [*store.of("situation"), *store.of("other")]
+    publish(DESIGNED, rows(records), write=given.write, runs=given.runs)
+    publish(PRIORS, prior_rows(store), write=given.write, runs=max(10, given.runs // 4))
+    publish(WIDE, wide_rows(store), write=given.write)

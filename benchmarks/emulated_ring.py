@@ -1,4 +1,4 @@
-"""The ring through an emulated bus, over many seeds: tracking errors, and errors of the estimate. Markdown."""
+"""The ring through an emulated bus, over many seeds: tracking errors, and errors of the estimate."""
 
 import argparse
 import os
@@ -10,15 +10,34 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
+from measured import Part, publish
 
 from jointid import AdaptiveRobust
-from jointid.base.files import write_whole
 from jointid.commissioning import commission
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.elmo.torque_source import AnalogInput
 
 FILE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
+TRACKING = Part(
+    title="Session on the emulated drive",
+    asked="By how much does a session on the **emulated drive** reduce the tracking error? "
+    "`examples/hardware/joint.toml`, two cycles from Table 6-3's initial estimates, {seeds} seeds; medians of the RMS "
+    "error [mrad].",
+    header=(
+        "bench",
+        "before",
+        "after",
+        "true parameters",
+        "after / true, worst",
+        "before / after, smallest",
+    ),
+)
 NAMES = ("coulomb", "static", "stribeck", "viscous", "sensor_gain", "sensor_offset")
+ERRORS = Part(
+    title="Estimates on the emulated drive",
+    asked="How accurate is the last estimate of these {seeds} sessions? Relative error [%]: mean (worst).",
+    header=("bench", *NAMES),
+)
 
 
 def _as_it_is(bench: Bench) -> Bench:
@@ -65,53 +84,27 @@ def closed(kind: str, seed: int) -> list[list[float]]:
     return [errors, *off]
 
 
-def main(seeds: int, output: Path | None) -> None:
-    """Print both tables."""
-    bench = Bench.load(FILE)
-    lines = [
-        "# The ring through an emulated bus\n",
-        "Written by `benchmarks/emulated_ring.py` (`make study`); do not edit. `examples/hardware/joint.toml`: an",
-        "**emulated drive** on a bus of 500 kbit/s, commands every "
-        f"{1e3 * bench.options.period:g} ms, encoder of 808,000 counts a turn of the joint,",
-        "converter of 12 bits × 128, sensor noise 0.5 N·m, ripple 2.6 N·m; two cycles from Table 6-3's initial",
-        f"estimates; {seeds} seeds.\n",
-    ]
-    tracking = [
-        "| bench | before [mrad] | after | true parameters | after / true, worst | before / after, smallest |",
-        "|---|---|---|---|---|---|",
-    ]
-    off = [
-        f"| bench | {' | '.join(NAMES)} |",
-        "|---|" + "---|" * len(NAMES),
-    ]
+def main(seeds: int, *, write: bool) -> None:
+    """Publish both tables."""
+    tracking, off = [], []
     with ProcessPoolExecutor(os.cpu_count(), mp_context=get_context("spawn")) as pool:
         for kind in KINDS:
             found = [*pool.map(partial(closed, kind), range(seeds))]
             before, after, true = 1e3 * np.array([each[0] for each in found]).T
-            tracking.append(
-                f"| {kind} | {np.median(before):.3f} | {np.median(after):.4f} | {np.median(true):.4f} "
-                f"| {(after / true).max():.3f} | {(before / after).min():.1f} |"
-            )
-            for what, place in ((kind, 1), (f"{kind}; ripple not modelled", 2)):
+            medians = (f"{np.median(each):.4f}" for each in (before, after, true))
+            ratios = f"{(after / true).max():.3f}", f"{(before / after).min():.1f}"
+            tracking.append([kind, *medians, *ratios])
+            for what, place in ((kind, 1), (f"{kind}; ripple not modeled", 2)):
                 shares = np.array([each[place] for each in found])
-                cells = [
-                    f"{mean:+.2f} ± {spread:.2f} ({worst:.2f})"
-                    for mean, spread, worst in zip(
-                        shares.mean(0), shares.std(0, ddof=1), abs(shares).max(0), strict=True
-                    )
-                ]
-                off.append(f"| {what} | {' | '.join(cells)} |")
-    lines += ["RMS tracking error after the first sixth, medians.\n", *tracking, ""]
-    lines += ["Relative error of the last estimate [%]: mean ± standard deviation (worst).\n", *off]
-    page = "\n".join(lines) + "\n"
-    print(page)
-    if output is not None:
-        write_whole(output, page.encode())
+                pairs = zip(shares.mean(0), abs(shares).max(0), strict=True)
+                off.append([what, *(f"{mean:+.2f} ({worst:.2f})" for mean, worst in pairs)])
+    publish(TRACKING, tracking, write=write, seeds=seeds)
+    publish(ERRORS, off, write=write, seeds=seeds)
 
 
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--seeds", type=int, default=20)
-    arguments.add_argument("--output", type=Path, help="write the page here, too")
+    arguments.add_argument("--write", action="store_true", help="write it into the page, too")
     options = arguments.parse_args()
-    main(options.seeds, options.output)
+    main(options.seeds, write=options.write)

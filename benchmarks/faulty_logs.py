@@ -54,6 +54,8 @@ from faults_of_rows import (
 )
 from foreign_joints import DURATION, Draw, simulated
 from log_plans import Log, Plan
+from measured import Part, publish
+from measured import table as in_markdown
 
 import jointid as jid
 from jointid.cli.command_line import main as jointid_main
@@ -75,6 +77,16 @@ _ADVICE = re.compile(r"--(?:column|unit|scale) '?[\w.]+=(?:'[^']*'|[^\s,;']*)'?"
 _GENERAL = "units, signs and gear ratio"  # advice of many findings, which names no cause
 Outcome = Literal["right", "cause first", "cause later", "other cause", "wrong and usable"]
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
+
+
+PART = Part(
+    title="Foreign logs",
+    asked="Is a text log with one random fault read right, or refused for the right cause? `jointid identify` with "
+    "the options that the user would know, seed {seed}.",
+    header=("kind", "logs", *OUTCOMES),
+    reading="All right: {right}. Right, or the right cause in the first finding: {share:.1f} %. Wrong and usable: "
+    "{misled}.",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,36 +248,33 @@ def _identified(words: Sequence[str]) -> Answer:
     return Answer(document=json.loads(text) if text else {}, error="" if text else error)
 
 
-# Tables.
-
-
-def table(found: Sequence[Judged]) -> list[str]:
-    """Outcomes by kind."""
-    counts: dict[str, collections.Counter[str]] = {}
-    for each in found:
-        counts.setdefault(each.kind, collections.Counter())[each.outcome] += 1
-    head = f"| kind | logs | {' | '.join(OUTCOMES)} |"
-    lines = [head, f"|---|{'--:|' * (len(OUTCOMES) + 1)}"]
-    total = sum(counts.values(), collections.Counter())
-    for kind, of in [*counts.items(), ("**all**", total)]:
-        lines.append(f"| {kind} | {of.total()} | {' | '.join(str(of[o]) for o in OUTCOMES)} |")
-    good = total["right"] + total["cause first"]
-    share = 100.0 * good / max(total.total(), 1)
-    return [*lines, "", f"Right, or the right cause in the first finding: {share:.1f} %."]
-
-
-def faulty(given: argparse.Namespace, folder: Path) -> list[str]:
-    """The table of logs with faults, and the list of those that are wrong and usable."""
+def faulty(given: argparse.Namespace, folder: Path) -> None:
+    """Publish the outcomes by kind, and those that are wrong and usable."""
     numbers = [given.number] if given.number >= 0 else range(given.logs)
-    found = []
+    counts: dict[str, collections.Counter[str]] = {}
+    misled = []
     for number, kind, log in written(drawn(given.seed, numbers, given.kind)):
         each = judged(number, kind, log, answered(log, folder / f"{number:03d}_{kind}"))
-        found.append(each)
+        counts.setdefault(kind, collections.Counter())[each.outcome] += 1
         if given.list:
             print(each.text, flush=True)
-    misled = [each for each in found if each.outcome == "wrong and usable"]
-    listed = [f"- seed {given.seed}, {each.text}" for each in misled]
-    return [*table(found), "", "## Wrong and usable", "", *(listed or ["None."])]
+        if each.outcome == "wrong and usable":
+            misled.append(f"{kind} (log {number}: {log.what})")
+    total = sum(counts.values(), collections.Counter())
+    right = [kind for kind, of in counts.items() if of["right"] == of.total()]
+    publish(
+        PART,
+        (
+            [kind, of.total(), *(of[outcome] for outcome in OUTCOMES)]
+            for kind, of in [*counts.items(), ("**all**", total)]
+            if kind not in right
+        ),
+        write=given.write,
+        seed=given.seed,
+        right=", ".join(right) or "none",
+        share=100.0 * (total["right"] + total["cause first"]) / max(total.total(), 1),
+        misled=", ".join(misled) or "none",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -308,8 +317,8 @@ def clean_run(name: str, log: Log, answer: Answer) -> CleanRun:
     )
 
 
-def cleanly(given: argparse.Namespace, folder: Path) -> list[str]:
-    """The table of logs without a fault, and the list of those with something to explain."""
+def cleanly(given: argparse.Namespace, folder: Path) -> None:
+    """Print the table of logs without a fault, and those with something to explain."""
     rngs = (np.random.default_rng([given.seed, number]) for number in range(given.clean))
     plans = [clean(Draw(rng), number) for number, rng in enumerate(rngs)]
     runs = []
@@ -318,14 +327,13 @@ def cleanly(given: argparse.Namespace, folder: Path) -> list[str]:
         runs.append(run)
         if given.list and (run.false or run.wrong):
             print(number, name, *sorted(run.false), run.wrong, run.answer.first[:300], flush=True)
-    lines = ["| log | logs | disagree | no second look | wrong and usable | coverage | false |"]
-    lines += ["|---|--:|--:|--:|--:|--:|---|"]
+    header = ("log", "logs", "disagree", "no cross-check", "wrong and usable", "coverage", "false")
     names = sorted({run.name for run in runs})
-    lines += [_clean_row(name, [run for run in runs if run.name == name]) for name in names]
-    return [*lines, _clean_row("**all**", runs)]
+    rows = [_clean_row(name, [run for run in runs if run.name == name]) for name in names]
+    print(in_markdown(header, [*rows, _clean_row("**all**", runs)]))
 
 
-def _clean_row(name: str, runs: Sequence[CleanRun]) -> str:
+def _clean_row(name: str, runs: Sequence[CleanRun]) -> list[object]:
     codes = collections.Counter(code for run in runs for code in run.false)
     said = ", ".join(f"`{code}` {count}" for code, count in codes.most_common()) or "none"
     counts = [run.disagrees is True for run in runs], [run.disagrees is None for run in runs]
@@ -333,11 +341,11 @@ def _clean_row(name: str, runs: Sequence[CleanRun]) -> str:
     wrong = sum(bool(run.wrong) for run in runs)
     inside = [each for run in runs for each in run.inside]
     share = f"{100.0 * np.mean(inside):.1f} %" if inside else ""
-    return f"| {name} | {len(runs)} | {disagree} | {none} | {wrong} | {share} | {said} |"
+    return [name, len(runs), disagree, none, wrong, share, said]
 
 
 def main() -> None:
-    """Draw the logs, identify them, and write the table."""
+    """Draw the logs, identify them, and publish the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--logs", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
@@ -346,41 +354,14 @@ def main() -> None:
     parser.add_argument("--clean", type=int, default=0, help="so many logs without a fault instead")
     parser.add_argument("--keep", type=Path, help="a folder for the files and their commands")
     parser.add_argument("--list", action="store_true", help="print each log as it is judged")
-    parser.add_argument("--output", type=Path, help="a file to write instead of printing")
+    parser.add_argument("--write", action="store_true", help="write it into the page, too")
     given = parser.parse_args()
     began = time.perf_counter()
     with tempfile.TemporaryDirectory() as temporary:
         folder = given.keep or Path(temporary)
-        lines = cleanly(given, folder) if given.clean else faulty(given, folder)
-    head = _CLEAN_TEXT if given.clean else _TEXT
-    text = "\n".join([head.format(seed=given.seed), *lines, ""])
-    if given.output is None:
-        print(text)
-    else:
-        given.output.write_text(text, encoding="utf-8")
+        (cleanly if given.clean else faulty)(given, folder)
     print(f"{time.perf_counter() - began:.0f} s")
 
-
-_TEXT = """# Logs with one fault
-
-Written by `benchmarks/faulty_logs.py`; do not edit. Joints of `tests/plants`, which shares no code with the package,
-on random motions, written as text files with one random fault each, seed {seed}. `jointid identify` reads them with
-the options that their user would know: gear ratio, torque constant, a known inertia.
-
-*Right*: usable or usable with care, and every value is within 5 % or inside its 95 % interval. *Cause first*: an
-error, or "not usable", whose first finding names the fault. *Cause later*: a later finding does. *Other cause*: none
-does, or right values stand beside a finding that is false.
-*Wrong and usable*: a value is off by more, and a verdict that needs it calls it usable.
-"""
-
-_CLEAN_TEXT = """# Logs without a fault
-
-Joints as those of the logs with one fault, seed {seed}: four models, with and without a torque sensor, three rates;
-`jointid identify` is given the model, and the inertia where there is a sensor.
-
-*Disagree*: the second look contradicts the estimate. *Wrong and usable*: a value is more than 5 % off and outside its
-95 % interval. *False*: findings of severity warning or blocking; "uncertain" only where it is not.
-"""
 
 if __name__ == "__main__":
     main()

@@ -1,4 +1,4 @@
-"""What a user waits for: imports, the command line, the first call, a file, a report. Ratios of CPU time; Markdown.
+"""What a user waits for: imports, the command line, the first call, a file, a report. Ratios of CPU time.
 
 Each program is a new process with compiled bytecode, all of them in turn; the shortest CPU time of each counts, since
 what else the machine does only adds to it. Look at the ratios.
@@ -14,10 +14,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from measured import Part, publish
 from recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.base.files import write_whole
 
 _CALLS = """
 import json, math, sys, time
@@ -51,13 +51,6 @@ two = ["coulomb_viscous", "stribeck"]
 found["`compare_models` of two"] = least(lambda: compare_models(recording, joint, models=two), 8)
 five = [*two, "coulomb_viscous:gravity=free", "stribeck:gravity=free", "stribeck_general"]
 found["`compare_models` of five"] = least(lambda: compare_models(recording, joint, models=five), 1)
-def general(**more):
-    return lambda: identify(recording, joint, model="stribeck_general", **more)
-
-wide = {"stribeck_velocity": {"min": 1e-5, "max": 10.0}, "stribeck_exponent": {"min": 0.1, "max": 8.0}}
-found["`stribeck_general`"] = least(general(), 5)
-found["`stribeck_general`, wide bounds"] = least(general(parameters=wide), 3)
-found["`stribeck_general`, exponent 2"] = least(general(parameters={"stribeck_exponent": 2.0}), 20)
 found["others"] = sorted({name for name in ("scipy", "matplotlib") if name in sys.modules})
 import pandas
 for file in (path, path.with_suffix(".csv.gz")):
@@ -69,16 +62,14 @@ for file in (path, path.with_suffix(".csv.gz")):
 print(json.dumps(found))
 """
 
-_NOTES = """
-- Bytecode is compiled before, as pip does it. `python -c pass` includes what the environment's own `.pth` files take.
-- `import jointid` imports no room and not even numpy: they come with the first name that needs them.
-- *First*: the first `identify()` behind `from jointid import identify` and `load`, with what it still imports. *Warm*:
-  the quickest of the 20 that follow.
-- pandas reads the numbers; `jid.load` also finds out which column is what in which unit, and checks the signals.
-- `run.csv` is `examples/data/well_excited.csv.gz`: 12,000 rows of five columns, 0.6 MB of text.
-- *Five*: the two, both with free gravity, and `stribeck_general`; *wide bounds*: a velocity from 1e-5 to 10 rad/s, an
-  exponent from 0.1 to 8.
-- Neither SciPy nor matplotlib is imported by any of these but pandas."""
+PART = Part(
+    title="Latency",
+    asked="How long does a user wait? CPU time of the quickest of {runs} runs, all programs in turn, and its ratio to "
+    "another program; only the ratios are comparable between machines.",
+    header=("program or call", "CPU [ms]", "against", "ratio"),
+    reading="*Warm*: the quickest of 20 calls. `run.csv` has 12,000 rows of five columns, 0.6 MB. *Five*: two models, "
+    "both with free gravity, and `stribeck_general`. SciPy and matplotlib are not imported.",
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,9 +97,6 @@ _ROWS = (
     Row(what="`identify` with `auto`", against="warm `identify()`"),
     Row(what="`bootstrap(1000)`", against="warm `identify()`"),
     Row(what="`compare_models` of two", against="warm `identify()`"),
-    Row(what="`stribeck_general`", against="warm `identify()`"),
-    Row(what="`stribeck_general`, wide bounds", against="warm `identify()`"),
-    Row(what="`stribeck_general`, exponent 2", against="warm `identify()`"),
     Row(what="`compare_models` of five", against="warm `identify()`"),
 )
 
@@ -172,30 +160,19 @@ def measure(runs: int) -> dict[str, float]:
     return found | {name: min(each[name] for each in calls) for name in calls[0]}
 
 
-def main(runs: int, output: Path | None) -> None:
-    """Measure, and print the table."""
+def main(runs: int, *, write: bool) -> None:
+    """Measure, and publish the table."""
     seconds = measure(runs)
-    lines = [
-        "# What a user waits for\n",
-        f"Written by `python benchmarks/latency.py --runs {runs} --output docs/latency.md`",
-        "(part of `make bench`); do not edit. CPU time of the quickest run, all programs in turn on one machine; the",
-        "ratios are what holds.\n",
-        "| what | CPU [ms] | against | CPU [ms] | ratio |",
-        "|---|---|---|---|---|",
-    ]
+    rows = []
     for row in _ROWS:
         own, other = seconds[row.what], seconds[row.against]
-        times = f"{1e3 * own:.3g} | {row.against} | {1e3 * other:.3g}"
-        lines.append(f"| {row.what} | {times} | {own / other:.2f} |")
-    page = "\n".join([*lines, _NOTES])
-    print(page)
-    if output is not None:
-        write_whole(output, page.encode())
+        rows.append([row.what, f"{1e3 * own:.3g}", row.against, f"{own / other:.2f}"])
+    publish(PART, rows, write=write, runs=runs)
 
 
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--runs", type=int, default=15, help="of each program (default 15)")
-    arguments.add_argument("--output", type=Path, help="write the page here, too")
+    arguments.add_argument("--write", action="store_true", help="write it into the page, too")
     options = arguments.parse_args()
-    main(options.runs, options.output)
+    main(options.runs, write=options.write)

@@ -1,25 +1,74 @@
-"""Writes docs/performance.md from `performance.template.md` and the records."""
+"""The parts of the page of measured results that `make bench` writes from the records of the contest."""
 
 from __future__ import annotations
 
 import os
 import platform
 import subprocess
+from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
-from string import Template
 
 from anatomy import BEHIND, STEPS
-from peers.table import all_peers
-from rounds import FAILED, FEW
-from store import Store
-from summary import OURS, RatioClaim, Verdict, claims, floors, ratio_claims, rows
+from measured import Part, commit, publish
+from store import Record, Store
+from summary import Row, Verdict, claims, ratio_claims, rows
 
 import jointid as jid
 
-TEMPLATE = Path(__file__).resolve().parent / "performance.template.md"
-VERDICTS = {True: "yes", False: "**no**", None: "limit too short to decide"}
 LIBRARIES = ("numpy", "scipy", "pygmo", "deap", "pymoo", "pygad", "cma")
+FORMS = ("compressed", "compiled", "NumPy")
+RATIOS = Part(
+    title="Speed against other libraries",
+    asked='How many times as fast as the fastest peer of a group is `method="ga"`, to the same penalty? **Bold**: '
+    "missed. Machine: {machine}. Versions: {versions}.",
+    header=("required", "fastest peer", "search alone", "whole `identify()`"),
+    reading="A peer searches a ready penalty, so *search alone* compares like with like. The whole call also prepares "
+    "the penalty and computes the errors; no search makes it faster than these [steps](#steps-of-one-call). "
+    "[The default search](#search-against-variable-projection), `separable`, takes less time.",
+)
+CLAIMS = Part(
+    title="Required times and memory",
+    asked="Does one run of `make bench` keep the absolute limits? **Bold**: missed.",
+    header=("required", "measured"),
+)
+CONTEST = Part(
+    title="Time to the optimum",
+    asked="How long does each search take, on one recording of 12,000 samples with one penalty, to within 1e-3 of the "
+    "optimum? Medians of at most {seeds} seeds by the form of the penalty; a run ends after {limit} s.",
+    header=("search", *FORMS, "candidates", "reached"),
+    reading="*NumPy* and *compiled* are the same penalty; *compressed* is ours. *Eliminated* peers search one number: "
+    "the linear parameters are solved for.",
+)
+MODELS = Part(
+    title="Time of the general Stribeck model",
+    asked="What does a free Stribeck exponent cost? Least CPU time of several calls.",
+    header=("call", "CPU time", "times `stribeck`"),
+)
+ANATOMY = Part(
+    title="Steps of one call",
+    asked='Where does `identify(search="ga")` spend its time? Medians, each step timed alone behind {behind} s of '
+    "other work.",
+    header=("step", "200 windows", "default windows"),
+)
+CANDIDATES = Part(
+    title="Time per candidate",
+    asked="What does one candidate cost, by the form of the penalty?",
+    header=("form", "time per candidate"),
+    reading="The transcription (`benchmarks/literal/genetic.cpp`) is the thesis's MATLAB listing loop by loop; from "
+    "{literal_runs} runs of 200 × {literal_generations}, 200 × 1500 take {literal_total}.",
+)
+SAMPLES = Part(
+    title="Growth with the recording",
+    asked="How do time and memory of `identify()` grow with the number of samples?",
+    header=("samples", "`identify()`", "peak memory / arrays", "one candidate", "one individual"),
+)
+GROWTH = Part(
+    title="Growth with windows and population",
+    asked="How does time grow with the number of windows (`identify()`) and with the population (20 generations, one "
+    "thread)?",
+    header=("number", "whole", "one candidate"),
+)
 
 
 def versions() -> dict[str, str]:
@@ -27,16 +76,6 @@ def versions() -> dict[str, str]:
     libraries = {name: version(name) for name in LIBRARIES}
     ours = f"{jid.__version__} ({commit()})"
     return {"jointid": ours, "python": platform.python_version(), **libraries}
-
-
-def commit() -> str:
-    """The checkout's, "-dirty" if files differ from it; "unknown" outside of one."""
-    call = ["git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
-    try:
-        run = subprocess.run(call, check=True, text=True, capture_output=True, cwd=TEMPLATE.parent)
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return run.stdout.strip()
 
 
 def machine() -> str:
@@ -58,193 +97,79 @@ def seconds(value: float) -> str:
     return f"{value * 1e9:.3g} ns"
 
 
-def table(header: list[str], lines: list[list[str]]) -> str:
-    """In Markdown."""
-    head = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    return "\n".join([*head, *("| " + " | ".join(line) + " |" for line in lines)])
+def judged(verdict: Verdict) -> str:
+    """What was measured: bold where it is missed, with a question mark where it is not decided."""
+    if verdict.holds is None:
+        return f"{verdict.measured} (limit too short to decide)"
+    return verdict.measured if verdict.holds else f"**{verdict.measured}**"
 
 
-def contest_table(store: Store, order: list[str]) -> str:
-    """A line a peer."""
+def contest_rows(store: Store, order: list[str]) -> Iterator[list[str]]:
+    """A line a search, with its medians by the form of the penalty."""
+    by_name: dict[str, dict[str, Row]] = {}
+    for row in rows(store, order):
+        by_name.setdefault(row.name, {})[row.form] = row
+    for name, forms in by_name.items():
+        times = [
+            ("> " if row.bound else "") + seconds(row.seconds) if row else "—"
+            for row in map(forms.get, FORMS)
+        ]
+        first, *_ = forms.values()
+        count = f"{first.evaluations:,.0f}" if first.evaluations else "—"
+        reached = dict.fromkeys(f"{row.reached}/{row.runs}" for row in forms.values())
+        yield [name, *times, count, ", ".join(reached)]
+
+
+def growth_rows(store: Store) -> Iterator[list[str]]:
+    """A line a number of windows, then a line a population."""
+    for over in ("windows", "population"):
+        for r in store.of("scaling", over=over):
+            yield [f"{over} {r[over]:,}", seconds(r["seconds"]), seconds(r["candidate"])]
+
+
+def publish_all(store: Store, order: list[str], limit: float, *, write: bool) -> None:
+    """Print all parts, and write them into the page if that is wanted."""
     found = rows(store, order)
-    ours = next(row.seconds for row in found if row.key == OURS)
-    given = {peer.key: peer.given for peer in all_peers()}
-    lines = []
-    for row in found:
-        sign = "> " if row.bound else ""
-        spread = f"{seconds(row.quickest)} … {seconds(row.slowest)}"
-        lines.append(
-            [
-                row.name,
-                row.form,
-                given[row.key],
-                sign + seconds(row.seconds),
-                "—" if row.bound else spread,
-                f"{sign}{row.seconds / ours:.3g}",
-                f"{row.reached}/{row.runs}",
-                f"{row.ratio:.4g}",
-                f"{row.evaluations:,.0f}" if row.evaluations else "—",
-                seconds(row.candidate) if row.evaluations else "—",
-            ]
-        )
-    header = [
-        "search",
-        "penalty",
-        "given",
-        "median time",
-        "range",
-        "times our search",
-        "reached",
-        "P/P*",
-    ]
-    return table([*header, "candidates", "time a candidate"], lines)
-
-
-def scaling_tables(store: Store) -> dict[str, str]:
-    """One a direction."""
-
-    def of(over: str) -> list[dict[str, float]]:
-        return store.of("scaling", over=over)
-
-    return {
-        "samples": table(
-            [
-                "samples",
-                "windows",
-                "`identify()`",
-                "arrays",
-                "peak memory",
-                "times the arrays",
-                "compressed, a candidate",
-                "genetic search, an individual",
-            ],
-            [
-                [
-                    f"{r['samples']:,}",
-                    f"{r['windows']:,}",
-                    seconds(r["seconds"]),
-                    f"{r['arrays'] / 1e6:.1f} MB",
-                    f"{r['memory'] / 1e6:.1f} MB",
-                    f"{r['memory'] / r['arrays']:.1f}",
-                    seconds(r["candidate"]),
-                    seconds(r["individual"]),
-                ]
-                for r in of("samples")
-            ],
+    (literal,) = store.of("literal")
+    candidates = [[r["name"], seconds(r["seconds"])] for r in store.of("candidate")]
+    candidates.append(["literal C++ transcription, -O2", seconds(literal["candidate"])])
+    publish(
+        RATIOS,
+        (
+            [f"≥ {c.wanted:g} times: {c.group}", c.quickest, judged(c.alone), judged(c.whole)]
+            for c in ratio_claims(found)
         ),
-        "windows": table(
-            ["windows", "`identify()`", "compressed, a candidate"],
-            [
-                [f"{r['windows']}", seconds(r["seconds"]), seconds(r["candidate"])]
-                for r in of("windows")
-            ],
-        ),
-        "population": table(
-            ["population", "search of 20 generations", "a candidate, breeding included"],
-            [
-                [f"{r['population']}", seconds(r["seconds"]), seconds(r["candidate"])]
-                for r in of("population")
-            ],
-        ),
-        "threads": table(
-            ["threads", "direct sum, a candidate", "compressed, a candidate"],
-            [
-                [f"{r['threads']}", seconds(r["direct"]), seconds(r["compressed"])]
-                for r in of("threads")
-            ],
-        ),
-    }
-
-
-def ratios(store: Store, order: list[str]) -> str:
-    """What is required of the search and of the whole call, each with its own verdict."""
-    lines = []
-    for c in ratio_claims(rows(store, order)):
-        verdicts = [cell for v in (c.alone, c.whole) for cell in (v.measured, VERDICTS[v.holds])]
-        lines.append([f"≥ {c.wanted:g} times as fast as {c.group}", c.quickest, *verdicts])
-    header = ["required", "fastest of them", "search alone", "holds", "whole `identify()`", "holds"]
-    return table(header, lines)
-
-
-def anatomy_table(store: Store) -> str:
-    """A step a line."""
-    records = store.of("anatomy")
-    header = ["step"]
-    for r in records:
-        windows = "default" if r["windows"] is None else str(r["windows"])
-        header.append(f"{windows} windows, {r['way']}")
-    lines = [[step, *(seconds(r["steps"][step]) for r in records)] for step in STEPS]
-    whole = ["the whole call", *(seconds(r["whole"]) for r in records)]
-    return table(header, [*lines, whole])
-
-
-def missed(store: Store, order: list[str]) -> str:
-    """A line a missed ratio; empty when none is."""
-    lines = []
-    for floor in floors(store, order):
-        claim = floor.claim
-
-        def best(spent: float, claim: RatioClaim = claim) -> str:
-            return f"{claim.seconds / spent:.3g} times"
-
-        lines.append(
-            [
-                f"≥ {claim.wanted:g} times as fast as {claim.group}",
-                seconds(floor.allowed),
-                _taken(floor.search, claim.alone),
-                f"{seconds(floor.compression)}: {best(floor.compression)}",
-                _taken(floor.whole, claim.whole),
-                f"{seconds(floor.rest)}: {best(floor.rest)}",
-            ]
-        )
-    header = [
-        "required",
-        "time it allows",
-        "our search alone",
-        "with nothing but compression",
-        "whole `identify()`",
-        "with preparation and inference alone",
-    ]
-    return table(header, lines) if lines else "None is missed in this run."
-
-
-def _taken(spent: float, verdict: Verdict) -> str:
-    return f"{seconds(spent)}: {verdict.measured}" + ("" if verdict.holds else ", **missed**")
-
-
-def write(store: Store, order: list[str], limit: float, path: Path) -> None:
-    """Fill the template."""
-    literal = store.of("literal")[0]
-    candidate_lines = [[r["name"], seconds(r["seconds"])] for r in store.of("candidate")]
-    candidate_lines.append(
-        ["literal C++ transcription, -O2, one thread", seconds(literal["candidate"])]
-    )
-    most = max(len(store.of("run", peer=key)) for key in order)
-    content = Template(TEMPLATE.read_text()).substitute(
+        write=write,
         machine=machine(),
         versions=", ".join(f"{name} {value}" for name, value in versions().items()),
-        limit=f"{limit:.3g}",
-        seeds=most,
-        few=FEW,
-        failed=FAILED,
-        claims=table(
-            ["required", "measured", "holds"],
-            [[c.wish, c.verdict.measured, VERDICTS[c.verdict.holds]] for c in claims(store, order)],
-        ),
-        ratios=ratios(store, order),
-        missed=missed(store, order),
-        models=table(
-            ["call", "CPU time", "times `stribeck`"],
-            [[r["name"], seconds(r["seconds"]), f"{r['ratio']:.2f}"] for r in store.of("model")],
-        ),
-        anatomy=anatomy_table(store),
-        behind=f"{BEHIND:g}",
-        contest=contest_table(store, order),
-        candidates=table(["form", "time per candidate"], candidate_lines),
+    )
+    publish(CLAIMS, ([c.wish, judged(c.verdict)] for c in claims(store, order)), write=write)
+    most = max(row.runs for row in found)
+    publish(CONTEST, contest_rows(store, order), write=write, seeds=most, limit=f"{limit:.3g}")
+    models = ([r["name"], seconds(r["seconds"]), f"{r['ratio']:.2f}"] for r in store.of("model"))
+    publish(MODELS, models, write=write)
+    publish(ANATOMY, anatomy_rows(store), write=write, behind=f"{BEHIND:g}")
+    publish(
+        CANDIDATES,
+        candidates,
+        write=write,
         literal_total=seconds(literal["total"]),
         literal_runs=literal["runs"],
         literal_generations=literal["generations"],
-        **scaling_tables(store),
     )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(content)
+    publish(SAMPLES, map(_samples, store.of("scaling", over="samples")), write=write)
+    publish(GROWTH, growth_rows(store), write=write)
+
+
+def anatomy_rows(store: Store) -> Iterator[list[str]]:
+    """A step a line, by the number of windows."""
+    records = store.of("anatomy")
+    for step in STEPS:
+        yield [step, *(seconds(r["steps"][step]) for r in records)]
+    yield ["the whole call", *(seconds(r["whole"]) for r in records)]
+
+
+def _samples(r: Record) -> list[str]:
+    memory = f"{r['memory'] / r['arrays']:.1f}"
+    times = [seconds(r[name]) for name in ("candidate", "individual")]
+    return [f"{r['samples']:,}", seconds(r["seconds"]), memory, *times]

@@ -1,4 +1,4 @@
-"""Our search against variable projection on six problems, each from its ready penalty; CPU time, in turn. Markdown."""
+"""Our search against variable projection on six problems, each from its ready penalty; CPU time, in turn."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
+from measured import Part, publish
 from numpy.typing import NDArray
 from peers.projection import Projection, compiled_decay, numpy_decay
 from recordings import WELL_EXCITED
@@ -18,7 +18,6 @@ from store import Record
 
 import jointid as jid
 from jointid import _core
-from jointid.base.files import write_whole
 from jointid.cli.demonstration import data_folder
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.run import Engine
@@ -29,6 +28,21 @@ from jointid.problem.terms import Request, choose_terms
 Array = NDArray[np.float64]
 REPEATS = 15
 CLOSE = 1e-3  # of the optimal penalty
+PART = Part(
+    title="Search against variable projection",
+    asked="How long does each search take from a ready penalty to its end? Least CPU time [ms] of {repeats} runs in "
+    "turn; only the ratios are comparable between machines.",
+    header=(
+        "problem",
+        "genetic",
+        "separable",
+        "variable projection, NumPy",
+        "with our compiled column",
+        "NumPy / separable",
+    ),
+    reading="Required: `separable` not slower than variable projection in NumPy in at least 4 of 6 problems; {held} of "
+    "{problems} here. Variable projection keeps no bounds on the coefficients and searches one valley.",
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +54,6 @@ class Given:
     domain: SearchDomain
     numpy: Projection
     compiled: Projection
-    samples: int
 
 
 def given(name: str, recordings: tuple[jid.Recording, ...], joint: jid.Joint, model: str) -> Given:
@@ -58,7 +71,6 @@ def given(name: str, recordings: tuple[jid.Recording, ...], joint: jid.Joint, mo
         domain=domain,
         numpy=Projection(direct, low, high, decay),
         compiled=Projection(direct, low, high, compiled_decay(direct)),
-        samples=sum(len(each.time) for each in recordings),
     )
 
 
@@ -121,12 +133,6 @@ def separable(problem: Given) -> float:
     return _core.minimise_separable(form, low, high).penalty
 
 
-def _way(problem: Given) -> str:
-    low, high = problem.domain.lower, problem.domain.upper
-    projected = _core.minimise_projected(problem.direct, low, high)
-    return "compressed" if projected.found is None else f"{projected.found.evaluations} shapes"
-
-
 def measure() -> list[Record]:
     """A record a problem.
 
@@ -156,82 +162,25 @@ def measure() -> list[Record]:
         records.append(
             {
                 "name": problem.name,
-                "samples": problem.samples,
-                "windows": problem.direct.window_count,
-                "way": _way(problem),
                 **spent,
             }
         )
     return records
 
 
-_PAGE = """# The search against variable projection
-
-Written by `python benchmarks/projections.py --output docs/projection.md` (part of `make bench`); do not edit. From a
-ready penalty to the end of the search, least CPU time of {repeats} runs, all in turn on one machine: the ratios are
-what holds. Required: not slower than variable projection in NumPy in at least 4 of 6 rows; {held} of {rows} here.
-
-{table}
-
-- *Variable projection* (Golub and Pereyra 1973) is what an expert writes in some 15 lines of NumPy
-  (`benchmarks/peers/projection.py`). It is given the columns that no shape changes, made orthonormal beforehand, the
-  target, and the sums over the samples with everything computed beforehand that can be; it searches the shapes alone,
-  with SciPy's `minimize_scalar` in the bounds for one, L-BFGS-B over the logarithms for two, tolerances as SciPy has
-  them. It keeps no bounds on the coefficients and searches one valley. *With our compiled column* the sums of the
-  shaped column are ours; the columns beside it are computed, too.
-- *Separable*, the default search, is given the penalty as `identify` makes it: it makes the columns orthonormal
-  itself, scans the whole range of the shapes over some hundred windows, and takes Gauss-Newton steps over all of them
-  from each valley; it keeps the box. *Tries* are the shapes of the scan and the steps; below twice 96 windows it
-  compresses.
-- *Genetic* is the genetic algorithm: of one shape it compresses the penalty first, by some seventy sums over the
-  samples, and can then try any number of candidates; of two it sums for each candidate.
-- All end within {close:g} of the same penalty. `stribeck` has one shape, `stribeck_general` two; {samples:,} samples of
-  `well_excited`, if no other recording is named.
-"""
-
-
-_HEADER = (
-    "problem",
-    "samples",
-    "windows",
-    "genetic [ms]",
-    "separable [ms]",
-    "tries",
-    "variable projection, NumPy [ms]",
-    "with our compiled column [ms]",
-    "NumPy / separable",
-    "compiled / separable",
-    "not slower than NumPy",
-)
-
-
-def page(records: list[Record]) -> str:
-    """A line a problem."""
-    lines = ["| " + " | ".join(_HEADER) + " |", "|---" * len(_HEADER) + "|"]
-    held = 0
+def main(*, write: bool) -> None:
+    """Measure, and publish a line a problem."""
+    records = measure()
+    rows = []
     for r in records:
-        ours = r["separable"]
-        held += r["numpy"] >= ours
-        cells = [r["name"], f"{r['samples']:,}", f"{r['windows']:,}"]
-        cells += [f"{1e3 * r['genetic']:.3g}", f"{1e3 * ours:.3g}", r["way"]]
-        cells += [f"{1e3 * r[peer]:.3g}" for peer in ("numpy", "compiled")]
-        cells += [f"{r[peer] / ours:.2f}" for peer in ("numpy", "compiled")]
-        cells.append("yes" if r["numpy"] >= ours else "**no**")
-        lines.append("| " + " | ".join(cells) + " |")
-    return _PAGE.format(
-        repeats=REPEATS,
-        held=held,
-        rows=len(records),
-        table="\n".join(lines),
-        close=CLOSE,
-        samples=records[0]["samples"],
-    )
+        searches = ("genetic", "separable", "numpy", "compiled")
+        times = [f"{1e3 * r[search]:.3g}" for search in searches]
+        rows.append([r["name"], *times, f"{r['numpy'] / r['separable']:.2f}"])
+    held = sum(r["numpy"] >= r["separable"] for r in records)
+    publish(PART, rows, write=write, repeats=REPEATS, held=held, problems=len(records))
 
 
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
-    arguments.add_argument("--output", type=Path, help="write the page here, too")
-    written = page(measure())
-    print(written)
-    if (output := arguments.parse_args().output) is not None:
-        write_whole(output, written.encode())
+    arguments.add_argument("--write", action="store_true", help="write it into the page, too")
+    main(write=arguments.parse_args().write)

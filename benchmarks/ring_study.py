@@ -1,4 +1,4 @@
-"""`make study`, fourth part: the joint simulated, identified, and simulated again; writes docs/accuracy.md.
+"""`make study`, fourth part: the joint simulated, identified, and simulated again; writes its parts of the page.
 
 Every figure is over seeds of the sensors' noise, failures included.
 """
@@ -9,13 +9,12 @@ import argparse
 import math
 import time
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from measured import Part, publish
 
 import jointid as jid
-from jointid.base.files import write_whole
 
 TRUTH = {
     "coulomb": 25.0,
@@ -48,6 +47,35 @@ PRESETS = {
     ),
 }
 WANTED = {"noise 0.5 N·m": (2.0, 3.0), "with encoder and converter": (4.0, 6.0)}  # [%]; stribeck
+ACCURACY = Part(
+    title="Accuracy of the simulated joint",
+    asked="How accurate is `identify(recording, joint)` on `thesis_joint()` with the link hanging, moved ±60° for 12 s "
+    "by a controller with Table 6-3's estimates? Relative error [%] over {trials} recordings: mean (worst).",
+    header=("sensors: search", *TRUTH, "all within 5 %"),
+    reading="Required of the default: {wanted}. The presets `thesis()` and `thesis_code()` are not polished: they stop "
+    "on the ridge between gain and offset. [thesis.md](../thesis.md) says which statements of the thesis hold.",
+)
+RING = Part(
+    title="Simulate, identify, simulate again",
+    asked="Is the tracking error with the identified parameters that of the true ones? RMS error [rad], medians of "
+    "{trials} seeds.",
+    header=(
+        "velocity of the compensation",
+        "control",
+        "sensors",
+        "before",
+        "after",
+        "true",
+        "after / true, worst",
+    ),
+    reading="`ripple=2` in the model removes the bias of a ripple. With compensation at the measured velocity a joint "
+    "that sticks gets no help, and the error differs from run to run.",
+)
+GRID = Part(
+    title="The thesis's grid",
+    asked="How long does `jid.sweep` take for {searches} genetic searches, {candidates:.1f} million candidates, and "
+    "{runs} closed-loop simulations with the averaged estimates? {seconds:.2f} s (median of 3, all threads).",
+)
 
 
 def scenario(friction_velocity: str, control_period: float = 1e-3) -> jid.Scenario:
@@ -71,7 +99,7 @@ def known_joint() -> jid.Joint:
     return joint.replace(link=replace(joint.link, angle=-math.pi / 2.0))
 
 
-def accuracy(trials: int) -> list[str]:
+def accuracy(trials: int, *, write: bool) -> None:
     """Bias and spread of each parameter, ours beside the thesis's presets, on the same recordings."""
     study = jid.sweep(
         scenario("reference"),
@@ -83,14 +111,8 @@ def accuracy(trials: int) -> list[str]:
         trials=trials,
         search=jid.Search(seed=1000),
     )
-    lines = []
+    rows, verdicts = [], []
     for sensors, (limit, stribeck_limit) in WANTED.items():
-        lines += [
-            f"\n### {sensors}\n",
-            f"Relative error [%] over {trials} recordings: mean ± standard deviation (worst).\n",
-            f"| search | {' | '.join(TRUTH)} | all within 5 % |",
-            f"|{'---|' * (len(TRUTH) + 2)}",
-        ]
         for number, cell in enumerate(study.cells):
             if cell["sensors"] != sensors:
                 continue
@@ -99,31 +121,21 @@ def accuracy(trials: int) -> list[str]:
                 name: np.array([100.0 * (row.values[name] / true - 1.0) for row in mine])
                 for name, true in TRUTH.items()
             }
-            shown = [
-                f"{e.mean():+.2f} ± {e.std(ddof=1):.2f} ({np.abs(e).max():.2f})"
-                for e in errors.values()
-            ]
+            worst = {name: float(np.abs(e).max()) for name, e in errors.items()}
+            shown = [f"{e.mean():+.2f} ({worst[name]:.2f})" for name, e in errors.items()]
             near = np.all([np.abs(e) <= 5.0 for e in errors.values()], axis=0)
-            lines.append(f"| {cell['ga']} | {' | '.join(shown)} | {near.sum()} of {trials} |")
+            rows.append([f"{sensors}: {cell['ga']}", *shown, f"{near.sum()}/{trials}"])
             if cell["ga"] == "default":
-                worst = {name: float(np.abs(e).max()) for name, e in errors.items()}
                 limits = {n: stribeck_limit if n == "stribeck" else limit for n in worst}
                 held = all(worst[name] <= limits[name] for name in worst)
-                verdict = f"\nRequired of the default: {limit:g} % (stribeck {stribeck_limit:g} %) in every recording: "
-                verdict += "holds." if held else "does not hold."
-        lines.append(verdict)
-    return lines
+                said = "holds" if held else "does **not** hold"
+                verdicts.append(f"{limit:g} % (stribeck {stribeck_limit:g} %) {sensors}, {said}")
+    publish(ACCURACY, rows, write=write, trials=trials, wanted="; ".join(verdicts))
 
 
-def ring(trials: int) -> list[str]:
+def ring(trials: int, *, write: bool) -> None:
     """Tracking error with the initial estimates, the identified, and the true ones."""
-    lines = [
-        f"\nRMS tracking error [rad] after the first sixth, medians of {trials} seeds; the ratio of "
-        "each run to its own run with the "
-        "true parameters.\n",
-        "| friction compensated at | control | sensors | before | after | true | after / true, worst |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for velocity in ("reference", "measured"):
         for period in (1e-3, 2e-3):
             study = jid.sweep(
@@ -147,15 +159,14 @@ def ring(trials: int) -> list[str]:
                     float(np.median([t[name] for t in mine]))
                     for name in ("before", "after", "true")
                 )
-                lines.append(
-                    f"| {velocity} velocity | {1e3 * period:g} ms | {cell['sensors']} | {before:.2e} "
-                    f"| {after:.2e} | {true:.2e} | "
-                    f"{np.median(ratio):.3f}, {ratio.max():.3f} |"
-                )
-    return lines
+                sizes = [f"{each:.2e}" for each in (before, after, true)]
+                ratios = f"{np.median(ratio):.3f}, {ratio.max():.3f}"
+                control = f"{1e3 * period:g} ms"
+                rows.append([velocity, control, cell["sensors"], *sizes, ratios])
+    publish(RING, rows, write=write, trials=trials)
 
 
-def grid() -> list[str]:
+def grid(*, write: bool) -> None:
     """The thesis's grid, and the closed loops with its averaged estimates."""
     base = scenario("reference")
     recording = base.simulate(0).recordings[0]
@@ -174,49 +185,27 @@ def grid() -> list[str]:
         runs = base.simulate(0, controllers=laws, recordings=False)
         seconds.append(time.perf_counter() - began)
     candidates = int(study.column("evaluations").sum())
-    return [
-        f"\n{len(study)} genetic searches, {candidates / 1e6:.1f} million candidates, and "
-        f"{len(runs.error)} closed-loop simulations "
-        f"with the averaged estimates: {np.median(seconds):.2f} s (median of {len(seconds)}; "
-        "`jid.sweep`, all threads).",
-    ]
+    publish(
+        GRID,
+        (),
+        write=write,
+        searches=len(study),
+        candidates=candidates / 1e6,
+        runs=len(runs.error),
+        seconds=np.median(seconds),
+    )
 
 
 def _assumed(mean: dict[str, float]) -> dict[str, Any]:
     return {name: mean[name] for name in TRUTH}
 
 
-def main(trials: int, ring_trials: int, output: Path) -> None:
-    """All of it, as a page."""
-    lines = [
-        "# Accuracy on the simulated joint\n",
-        "Written by `benchmarks/ring_study.py` (`make study`); do not edit. The joint is "
-        "`thesis_joint()` with the link hanging down, moved "
-        "±60° for 12 s by the adaptive-robust controller on Table 6-3's initial estimates (10, 20, "
-        "200, 10, 1, 0) with adaptation off; "
-        "the truth is 25, 20, 100, 20, 2.4, 15. `identify` is called with the joint only.",
-        "\n## Accuracy and spread",
-        *accuracy(trials),
-        "\nThe presets' searches are not polished: they stop on the ridge between gain and offset. "
-        "[thesis.md](thesis.md) says which statements of the thesis about them hold.",
-        "\n## The ring closed: simulate, identify, simulate again",
-        *ring(ring_trials),
-        "\nRipple is not modelled here: `ripple=2` in the model removes its bias. With friction compensated "
-        "at the measured velocity, as the "
-        "thesis has it, a joint that sticks gets no help, whatever the estimates; the error then is "
-        "mostly that of sticking, and differs "
-        "from run to run by chance.",
-        "\n## The thesis's grid",
-        *grid(),
-    ]
-    write_whole(output, ("\n".join(lines) + "\n").encode())
-    print(output.read_text())
-
-
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--trials", type=int, default=100)
     parser.add_argument("--ring-trials", type=int, default=20)
-    parser.add_argument("--output", type=Path, default=Path("docs/accuracy.md"))
+    parser.add_argument("--write", action="store_true", help="write them into the page, too")
     chosen = parser.parse_args()
-    main(chosen.trials, chosen.ring_trials, chosen.output)
+    accuracy(chosen.trials, write=chosen.write)
+    ring(chosen.ring_trials, write=chosen.write)
+    grid(write=chosen.write)

@@ -1,6 +1,6 @@
-"""Random arms, each with one random fault that the call does not know, and clean ones. Writes docs/robot_faults.md.
+"""Random arms, each with one random fault that the call does not know, and clean ones.
 
-python benchmarks/robot_faults.py [--faulty 100] [--clean 50] [--only FAULT] [--output FILE]
+python benchmarks/robot_faults.py [--faulty 100] [--clean 50] [--only FAULT] [--write]
 """
 
 from __future__ import annotations
@@ -14,9 +14,27 @@ from pathlib import Path
 
 import numpy as np
 from arms.log_faults import FAULTS, FaultyLog, faulty_log
+from measured import Part, publish
 
 import jointid as jid
 
+PART = Part(
+    title="Robot logs with one fault",
+    asked="Is a faulty log of an arm refused or doubted, and the fault named? Random serial arms of three to seven "
+    "joints, 20 s; the plain call with the true URDF.",
+    header=(
+        "fault",
+        "arms",
+        "usable and wrong",
+        "refused",
+        "with care",
+        "usable and right",
+        "named",
+        "seconds",
+    ),
+    reading="*Wrong*: usable, though a joint's friction is more than 5 % off and outside its 95 % interval. Usable and "
+    "wrong, and clean ones that are doubted: {bad}.",
+)
 _WRONG = 0.05  # of a value, outside its interval
 _SHOWN = 14  # cases that are listed one by one
 _NAMED = {  # codes of findings that name the fault
@@ -105,29 +123,25 @@ def cases(faulty: int, clean: int, only: str) -> Iterator[tuple[int, str]]:
     yield from (each for each in every if only in each[1])
 
 
-def table(found: Sequence[Outcome]) -> Iterator[str]:
-    """Yield one row a fault, then the cases that end wrong."""
+def table(found: Sequence[Outcome]) -> Iterator[list[object]]:
+    """Yield one row a fault."""
     kinds = ("wrong", "refused", "doubted", "right")
-    yield "| fault | arms | usable and wrong | refused | with care | usable and right | named | seconds |"
-    yield "|---|--:|--:|--:|--:|--:|--:|--:|"
     for fault in dict.fromkeys(each.fault for each in found):
         mine = [each for each in found if each.fault == fault]
         counts = [sum(each.kind == kind for each in mine) for kind in kinds]
         seconds = float(np.median([each.seconds for each in mine]))
         named = sum(each.is_named for each in mine) if fault in _NAMED else "–"
-        cells = (fault, len(mine), *counts, named, f"{seconds:.1f}")
-        yield f"| {' | '.join(map(str, cells))} |"
-    bad = [
+        yield [fault, len(mine), *counts, named, f"{seconds:.1f}"]
+
+
+def bad(found: Sequence[Outcome]) -> str:
+    """The cases that end wrong, as a list."""
+    shown = [
         each
         for each in found
         if each.kind == "wrong" or (each.fault == "clean" and each.level != "usable")
     ]
-    if bad:
-        yield ""
-        yield "Usable and wrong, and clean ones that are doubted:"
-        yield ""
-        for each in bad[:_SHOWN]:
-            yield f"- {line(each)}"
+    return "; ".join(map(line, shown[:_SHOWN])) or "none"
 
 
 def line(each: Outcome) -> str:
@@ -141,43 +155,18 @@ def line(each: Outcome) -> str:
 
 
 def main() -> None:
-    """Run the study and write the page."""
+    """Run the study and publish its table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--faulty", type=int, default=100, help="arms with a fault")
     parser.add_argument("--clean", type=int, default=50, help="arms without")
     parser.add_argument("--only", default="", help="faults whose name contains this")
-    parser.add_argument("--output", type=Path, help="a file to write, besides printing")
+    parser.add_argument("--write", action="store_true", help="write it into the page, too")
     given = parser.parse_args()
     found = []
     for seed, fault in cases(given.faulty, given.clean, given.only):
         found.append(outcome(faulty_log(seed, fault), seed))
         print(f"{found[-1].kind:8} {found[-1].seconds:5.1f} s  {line(found[-1])}", flush=True)
-    text = "\n".join([_TEXT, "", *table(found)]) + "\n"
-    if given.output is None:
-        print(text)
-    else:
-        given.output.write_text(text, encoding="utf-8")
-
-
-_TEXT = """# Arms with one fault each
-
-Written by `benchmarks/robot_faults.py` (`make study`); do not edit. Random serial arms of three to seven joints,
-20 s; links, friction, rotors and motion are drawn. pinocchio has the dynamics; friction may hold any torque at
-standstill, and nothing of the package is in the simulation. Each log but the clean ones has one fault, and the plain
-call with the true URDF is not informed of it:
-
-- stamps: late, lost, both, or rounded
-- signs: of one joint or all, of torques, positions or both
-- factors: on all torques, on one, one gear ratio taken for all joints, degrees, or a torque without its sign
-- order: two or all joints exchanged, or only their torques
-- lag: a delay or a first-order lag of 4 to 30 ms on the torques
-- load: friction that grows with the torque of the links
-- smooth: Coulomb friction that rises as tanh of the speed
-- slow: 10 to 50 Hz
-
-Wrong: the verdict is "usable" although Coulomb or viscous friction of a joint is more than 5 % off and outside its
-95 % interval. Refused: "not usable", or an error. Named: a finding says what the fault is. Seconds are those of the
-processor, in the median."""
+    publish(PART, table(found), write=given.write, bad=bad(found))
 
 
 if __name__ == "__main__":

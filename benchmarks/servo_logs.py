@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+from measured import Part
 from numpy.typing import NDArray
 
 import jointid as jid
@@ -21,11 +22,22 @@ LOAD = jid.Model("coulomb_viscous", load_friction=True)
 PLAIN = jid.Model("coulomb_viscous", load_friction=False)
 KNOWN = {"mass": 0.49, "centre_of_mass": 0.1, "angle": -np.pi / 2}
 
-_REPEATS = 20  # of a timed call; the best counts, since other programs cost time, too
+HELD_OUT = Part(
+    title="Servo XL330",
+    asked="How well are held-out runs of Rhoban BAM's 16 logs simulated in closed loop, by ours and by CMA-ES on "
+    "rollouts of the same model? Mean absolute error of the position: median; worst of 16.",
+    header=("model", "R given", "held out by", "windows", "CMA-ES", "CMA-ES: one fit"),
+)
+TIMES = Part(
+    title="Servo XL330: times",
+    asked="How long do the calls take with all 16 runs? Best of {repeats} calls.",
+    header=("call", "processor", "wall"),
+)
+REPEATS = 20  # of a timed call; the best counts, since other programs cost time, too
 
 
 def xl330_joint(resistance: float | None = None) -> jid.Joint:
-    """BAM's bench: a pendulum of .49 kg at .1 m."""
+    """BAM's bench: a pendulum of 0.49 kg at 0.1 m."""
     loop = jid.PositionLoop(gain=4096.0 / (2.0 * np.pi) / (256.0 * 885.0))
     signals = {"duty": "duty", "driven": "torque_enabled", "gain": "firmware_kp"}
     return jid.Joint(
@@ -55,33 +67,29 @@ def held_out(
     model: jid.Model,
     *,
     peer: bool,
-) -> tuple[NDArray[np.float64], float, float]:
-    """Closed-loop errors of held-out runs [deg]; evaluations and seconds of one fit."""
+) -> tuple[NDArray[np.float64], float]:
+    """Closed-loop errors of held-out runs [deg]; seconds of one fit of the peer."""
     errors = np.zeros(len(runs))
-    spent, counts = [], []
+    spent = []
     for value in sorted(set(groups)):
         train = [run for run, group in zip(runs, groups, strict=True) if group != value]
         test = [k for k, group in enumerate(groups) if group == value]
-        started = time.process_time()
         found: jid.ServoEstimate | jid.Joint
         if peer:
             names = ",".join(run.name for run in train)
-            found, evaluations, seconds = _searched(train, joint, model, f"{model} {names}")
-            counts.append(evaluations)
+            found, seconds = _searched(train, joint, model, f"{model} {names}")
             spent.append(seconds)
         else:
             found = jid.identify_servo(train, joint, model=model, draws=0)
-            counts.append(1.0)
-            spent.append(time.process_time() - started)
         rolled = jid.rollout(found, [runs[k] for k in test])
         errors[test] = np.degrees(rolled.errors)
-    return errors, float(np.mean(counts)), float(np.mean(spent))
+    return errors, float(np.mean(spent)) if spent else 0.0
 
 
 def _searched(
     train: list[jid.Recording], joint: jid.Joint, model: jid.Model, key: str
-) -> tuple[jid.Joint, float, float]:
-    """The peer's joint, evaluations and seconds: as found before, or searched now."""
+) -> tuple[jid.Joint, float]:
+    """The peer's joint, and seconds: as found before, or searched now."""
     from peers.servo_evolution import described, evolved
 
     known = json.loads(SEARCHED.read_text(encoding="utf-8")) if SEARCHED.exists() else {}
@@ -91,63 +99,47 @@ def _searched(
         known[key] = [values, evaluations, time.process_time() - started]
         SEARCHED.parent.mkdir(exist_ok=True)
         SEARCHED.write_text(json.dumps(known), encoding="utf-8")
-    values, evaluations, seconds = known[key]
-    return described(joint, np.array(values)), float(evaluations), float(seconds)
+    values, _, seconds = known[key]
+    return described(joint, np.array(values)), float(seconds)
 
 
-def log_tables(logs: Path, *, peer: bool) -> Iterator[str]:
-    """Held-out errors of both models, by windows and by the peer; times; and all runs together."""
+def held_out_rows(logs: Path, *, peer: bool) -> Iterator[list[str]]:
+    """Held-out errors of both models, by windows and by the peer."""
     runs, groups = xl330_runs(logs)
-    yield (
-        "| model | R given | held out by | windows: median | worst "
-        "| CMA-ES: median | worst | evaluations | a fit | ratio |"
-    )
-    yield "|---|---|---|---|---|---|---|---|---|---|"
-    for model, name in ((LOAD, "with friction of the load"), (PLAIN, "Coulomb and viscous")):
+    for model, name in ((LOAD, "with load friction"), (PLAIN, "Coulomb and viscous")):
         for resistance in (None, 4.0):
             joint = xl330_joint(resistance)
             for group, values in groups.items():
-                ours, _, _ = held_out(runs, values, joint, model, peer=False)
+                ours, _ = held_out(runs, values, joint, model, peer=False)
                 given = "no" if resistance is None else f"{resistance:g} Ω"
-                cells = [name, given, group, f"{np.median(ours):.2f}°", f"{ours.max():.1f}°"]
+                cells = [name, given, group, _errors(ours)]
                 if peer and resistance is None:
-                    theirs, evaluations, seconds = held_out(runs, values, joint, model, peer=True)
-                    cells += [f"{np.median(theirs):.2f}°", f"{theirs.max():.1f}°"]
-                    cells += [f"{evaluations:.0f}", f"{seconds:.0f} s"]
-                    cells.append(f"{np.median(ours) / np.median(theirs):.2f}")
+                    theirs, seconds = held_out(runs, values, joint, model, peer=True)
+                    cells += [_errors(theirs), f"{seconds:.0f} s"]
                 else:
-                    cells += [""] * 5
-                yield f"| {' | '.join(cells)} |"
-    yield ""
-    yield from _times(runs)
-    yield ""
-    yield "All 16 runs together, R not given:"
-    yield ""
-    yield "```"
-    report = jid.identify_servo(runs, xl330_joint()).report().splitlines()
-    yield from (line for line in report if not line.startswith("time "))
-    yield "```"
+                    cells += ["–", "–"]
+                yield cells
 
 
-def _times(runs: list[jid.Recording]) -> Iterator[str]:
+def _errors(degrees: NDArray[np.float64]) -> str:
+    return f"{np.median(degrees):.2f}°; {degrees.max():.1f}°"
+
+
+def time_rows(logs: Path) -> Iterator[list[str]]:
+    """Times of the calls, the best of several."""
+    runs, _ = xl330_runs(logs)
     joint = xl330_joint()
     found = jid.identify_servo(runs, joint)
     calls: dict[str, Callable[[], object]] = {
         "the fit": lambda: jid.identify_servo(runs, joint, draws=0),
         "the fit with its errors": lambda: jid.identify_servo(runs, joint),
-        "rollouts of 16 runs of 6 s at 1 ms, three times, for what is bistable": lambda: (
-            jid.rollout(found, runs)
-        ),
+        "rollouts of 16 runs of 6 s at 1 ms, three times": lambda: jid.rollout(found, runs),
     }
-    yield f"All 16 runs, best of {_REPEATS} calls:"
-    yield ""
-    yield "| | processor | wall |"
-    yield "|---|---|---|"
     for name, call in calls.items():
         spent = []
-        for _ in range(_REPEATS):
+        for _ in range(REPEATS):
             started = time.process_time(), time.perf_counter()
             call()
             spent.append((time.process_time() - started[0], time.perf_counter() - started[1]))
         processor, wall = (1e3 * min(each) for each in zip(*spent, strict=True))
-        yield f"| {name} | {processor:.0f} ms | {wall:.0f} ms |"
+        yield [name, f"{processor:.0f} ms", f"{wall:.0f} ms"]

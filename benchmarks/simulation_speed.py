@@ -1,4 +1,4 @@
-"""Simulations per second: ours, alone and in batches, SciPy's `solve_ivp`, a plain Python loop. Markdown.
+"""Simulations per second: ours, alone and in batches, SciPy's `solve_ivp`, a plain Python loop.
 
 Six seconds of the thesis's joint under PD control at 1 kHz, one integration step a period. Medians of runs in turn;
 look at the ratios, single times on a busy machine mean little.
@@ -10,12 +10,11 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
+from measured import Part, publish
 from scipy.integrate import solve_ivp
 
 import jointid as jid
-from jointid.base.files import write_whole
 
 TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 SENSOR = {"sensor_gain": 2.4, "sensor_offset": 15.0}
@@ -24,15 +23,14 @@ _COLD = "the same, once behind other work"
 _ENOUGH = 0.03  # [s] a peer is called for, each time that it is its turn
 STIFFNESS, DAMPING, PERIOD, COUNT = 2e4, 500.0, 1e-3, 6000
 
-_NOTES = """
-- *One simulation* is `jid.simulate`: recording, true signals and all. The loop itself takes two thirds of it.
-  *Behind other work* caches are cold and its megabyte of signals is new memory.
-- A *batch* is `jid.simulate_batch` without recordings: tracking errors only. Each of its runs has the bits of the
-  run alone.
-- The *plain Python loop* is the same closed loop by the midpoint rule on floats (NumPy's scalars would be slower); it
-  has neither sticking nor sensors.
-- `solve_ivp` is called once a control period, because the command is held over it; it runs a twentieth of the time and
-  is scaled up. The jump of dry friction makes its steps tiny."""
+PART = Part(
+    title="Speed of the simulator",
+    asked="How fast are 6 s of the thesis's joint under PD control at 1 kHz, one integration step per control period? "
+    "Medians of {runs} turns.",
+    header=("simulation", "one [ms]", "per second", "times one of ours"),
+    reading="A batch returns tracking errors only. The Python loop has neither sticking nor sensors. `solve_ivp` is "
+    "called once per control period, for a twentieth of the time.",
+)
 
 
 def friction(v: float) -> float:
@@ -52,8 +50,8 @@ def _seconds(run: Callable[[], None]) -> float:
     return time.perf_counter() - began
 
 
-def main(runs: int, batch: int, output: Path | None) -> None:
-    """Time, in turn, and print the table."""
+def main(runs: int, batch: int, *, write: bool) -> None:
+    """Time, in turn, and publish the table."""
     joint = jid.thesis_joint().with_parameters(TRUTH | SENSOR)
     assert joint.link is not None
     joint = joint.replace(link=replace(joint.link, angle=-math.pi / 2.0))
@@ -112,29 +110,18 @@ def main(runs: int, batch: int, output: Path | None) -> None:
             again = [_seconds(run) for _ in range(enough)] if enough > 1 else [cold]
             seconds[name].append(statistics.mean(again) / simulations)
     reference = statistics.median(seconds["jointid, one simulation"])
-    lines = [
-        "# Speed of the simulator\n",
-        "Written by `benchmarks/simulation_speed.py` (part of `make bench`); do not edit. Six seconds of the",
-        "thesis's joint under PD control at 1 kHz, one integration step a control period; medians of "
-        f"{runs} turns, all in one process, each called for 30 ms.\n",
-        "| what | one simulation [ms] | simulations a second | times one of ours |",
-        "|---|---|---|---|",
-    ]
+    rows = []
     for name, values in seconds.items():
         median = statistics.median(values)
         each = f"{1 / median:.0f}" if median < 1.0 else f"{1 / median:.2g}"
-        lines.append(f"| {name} | {median * 1e3:.4g} | {each} | {reference / median:.3g} |")
-    lines.append(_NOTES)
-    page = "\n".join(lines) + "\n"
-    print(page)
-    if output is not None:
-        write_whole(output, page.encode())
+        rows.append([name, f"{median * 1e3:.4g}", each, f"{reference / median:.3g}"])
+    publish(PART, rows, write=write, runs=runs)
 
 
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--runs", type=int, default=7)
     arguments.add_argument("--batch", type=int, default=64)
-    arguments.add_argument("--output", type=Path, help="write the page here, too")
+    arguments.add_argument("--write", action="store_true", help="write it into the page, too")
     options = arguments.parse_args()
-    main(options.runs, options.batch, options.output)
+    main(options.runs, options.batch, write=options.write)

@@ -1,4 +1,4 @@
-"""`make bench`: who finds the optimum how fast, on one recording and one penalty; writes docs/performance.md.
+"""`make bench`: who finds the optimum how fast, on one recording and one penalty; writes its parts of the page.
 
 Results go to build/bench as JSON lines first: an interrupted run continues where it stopped.
 """
@@ -12,7 +12,6 @@ from pathlib import Path
 
 import anatomy
 import candidates
-import charts
 import interruption
 import literal_code
 import model_costs
@@ -29,7 +28,7 @@ ASIDE = 5.0  # minutes of the budget that scaling and the rest may take
 QUICK_LARGEST = 600_000  # samples
 
 
-def main(*, budget: float, quick: bool, output: Path) -> None:
+def main(*, budget: float, quick: bool) -> None:
     """All of it."""
     warnings.filterwarnings("ignore")  # the libraries' own
     began = time.perf_counter()
@@ -57,26 +56,18 @@ def main(*, budget: float, quick: bool, output: Path) -> None:
         store.append(interruption.interrupted(QUICK_LARGEST if quick else interruption.SAMPLES))
     scaling.measure(contest, store, QUICK_LARGEST if quick else max(scaling.SAMPLES))
     order = [peer.key for peer in all_peers()]
-    charts.draw(store, order, limit, output / "pictures")
-    performance.write(store, order, limit, output / "performance.md")
+    performance.publish_all(store, order, limit, write=not quick)
     store.append({"kind": "finished"})
-    print(
-        f"Wrote {output / 'performance.md'} after {(time.perf_counter() - began) / 60:.1f} minutes"
-    )
+    print(f"{(time.perf_counter() - began) / 60:.1f} minutes")
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--budget", type=float, default=20.0, help="minutes for all (default 20)")
     parser.add_argument(
-        "--quick", action="store_true", help="three seeds, two minutes, to try it out"
-    )
-    parser.add_argument(
-        "--output", type=Path, default=None, help="folder (default docs; quick: build)"
+        "--quick",
+        action="store_true",
+        help="three seeds, two minutes, to try it out: writes no page",
     )
     given = parser.parse_args()
-    main(
-        budget=2.0 if given.quick else given.budget,
-        quick=given.quick,
-        output=given.output or (WORK / "docs" if given.quick else ROOT / "docs"),
-    )
+    main(budget=2.0 if given.quick else given.budget, quick=given.quick)

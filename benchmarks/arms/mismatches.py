@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from measured import Part
 from simulated_arm import random_motion, run
 
 import jointid as jid
 from arms.seven import URDF, Arm, Errors, Sensors, of_estimate, random_arm, recorded
+from arms.seven_tables import warned
 from arms.tx40_tables import percent
 from jointid.robot.links.inertia_modes import Inertia
-
-FAR = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,44 +133,38 @@ MISMATCHES = (
 )
 
 
-def table(seeds: range) -> Iterator[str]:
+PART = Part(
+    title="Simulated robots: mismatches",
+    asked="What does something cost that the call does not know, and is it named? The worst error [%] of Coulomb or "
+    "viscous friction (arms: {runs}), and how often each warning is raised.",
+    header=("wrong", "urdf: worst error", "warnings", "free: worst error", "warnings"),
+    reading="Free inertias follow an error of the links: there is nothing to name then.",
+)
+
+
+def table(seeds: range) -> Iterator[list[str]]:
     """Worst errors over the seeds, and what the calls say."""
-    said = "residual | warnings | off by more than 5 %, **nothing said**"
-    yield f"| wrong | inertia | worst Coulomb | worst viscous | {said} |"
-    yield "|---|---|--:|--:|--:|---|--:|"
     for mismatch in MISMATCHES:
         runs = []
         for seed in seeds:
             arm = mismatch.arm(random_arm(seed))
             recording = recorded(run(arm, random_motion(seed)), mismatch.sensors, seed)
             runs.append((arm, mismatch.recording(recording)))
-        for inertia in ("urdf", "free"):
-            yield _row(mismatch.name, inertia, runs)
+        yield [mismatch.name, *_cells(runs, "urdf"), *_cells(runs, "free")]
 
 
-def _row(name: str, inertia: Inertia, runs: list[tuple[Arm, jid.RobotRecording]]) -> str:
-    worst = {"coulomb": 0.0, "viscous": 0.0}
-    residual, silent, refused, codes = 0.0, 0, 0, []
+def _cells(runs: list[tuple[Arm, jid.RobotRecording]], inertia: Inertia) -> list[str]:
+    robot = jid.Robot.from_urdf(URDF)
+    found: list[jid.RobotEstimate] = []
+    worst, refused = 0.0, 0
     for arm, recording in runs:
         try:
-            found = jid.identify_robot(recording, jid.Robot.from_urdf(URDF), inertia=inertia)
-        except jid.InputError as error:
-            codes.append(f"refused: {error}")
+            estimate = jid.identify_robot(recording, robot, inertia=inertia)
+        except jid.InputError:
             refused += 1
             continue
-        errors = Errors.of([(arm, *of_estimate(found))])
-        for kind in worst:
-            worst[kind] = max(worst[kind], errors.worst(kind))
-        residual = max(residual, found.relative_residual)
-        codes += [f"`{code}`" for code in {each.code for each in found.warnings}]
-        silent += not found.warnings and errors.within(FAR) == 0
-    counted = ", ".join(f"{code} {codes.count(code)}" for code in sorted(set(codes)))
-    shown = [percent(each, sign=False) for each in (*worst.values(), residual)]
-    cells = (
-        name,
-        inertia,
-        *(shown if refused < len(runs) else ["–"] * len(shown)),
-        counted or "none",
-        f"**{silent}** of {len(runs)}" if silent else "0",
-    )
-    return f"| {' | '.join(cells)} |"
+        errors = Errors.of([(arm, *of_estimate(estimate))])
+        worst = max(worst, errors.worst("coulomb"), errors.worst("viscous"))
+        found.append(estimate)
+    said = warned(found) + (f", refused {refused}" if refused else "")
+    return [percent(worst, sign=False) if found else "–", said]

@@ -17,6 +17,7 @@ SLOW = {"docs/safety.md"}  # it runs a bench
 RUN_BY = {
     "docs/app.md": "test_site_pages.py",
     "docs/command_line.md": "test_documents.py",
+    "docs/contributors/measuring.md": "test_measured_page.py",
     "docs/design.md": "test_design_document.py",
     "docs/exports.md": "test_documents.py",
     "docs/guide.md": "test_documents.py",

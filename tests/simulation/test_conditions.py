@@ -49,5 +49,5 @@ def test_a_clean_condition_and_a_mismatch_are_counted(
         assert {"coulomb", "viscous"} <= set(each.off)
         assert "wrong_scale" in each.codes
         assert each.unnamed == []  # a blocking finding is about every value
-    assert "2 of 2" in study.row(clean, found["clean"])
-    assert "0 of 2" in study.row(wrong, found["wrong"])
+    assert "2/2" in study.row(clean, found["clean"])
+    assert "0/2" in study.row(wrong, found["wrong"])

@@ -9,6 +9,8 @@ import sys
 import time
 from pathlib import Path
 
+from measured_page import write_part
+
 from mutants import page, tree
 from mutants.catalogue import LISTS, REPOSITORY, Mutant, MutantError, check_places, read
 from mutants.kept import VERDICTS, Kept
@@ -38,7 +40,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--verdicts", type=Path, default=VERDICTS, help="folder of what was found")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes at a time")
     parser.add_argument("--folder", type=Path, default=REPOSITORY / "build" / "mutants")
-    parser.add_argument("--output", type=Path, help="write the page there")
+    parser.add_argument("--write", action="store_true", help="write the part of the page")
     return parser
 
 
@@ -53,7 +55,7 @@ def _tried(options: argparse.Namespace) -> int:
         mutants = random.Random(options.seed).sample(killed, options.sample)
         print(f"{options.sample} of {len(killed)} drawn with seed {options.seed}", flush=True)
     if options.check:
-        _page(kept, everything, options.output)
+        _page(kept, everything, write=options.write)
         return 0
     began = time.monotonic()
     folder = options.folder.resolve()
@@ -66,15 +68,15 @@ def _tried(options: argparse.Namespace) -> int:
     for each in verdicts:
         if not each.killed and each.mutant.justified:
             print(f"justified: {each.mutant}: {each.mutant.justified}")
-    _page(kept, everything, options.output)
+    _page(kept, everything, write=options.write)
     wrong = page.complaints(verdicts)
     print("\n".join(wrong), end="\n" if wrong else "")
     return 1 if wrong else 0
 
 
-def _page(kept: Kept, everything: list[Mutant], output: Path | None) -> None:
-    if output is not None:
-        output.write_text(page.written(kept.find(everything), everything), encoding="utf-8")
+def _page(kept: Kept, everything: list[Mutant], *, write: bool) -> None:
+    if write:
+        write_part(page.written(kept.find(everything), everything))
 
 
 def _trials(
