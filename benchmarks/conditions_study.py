@@ -211,9 +211,9 @@ def row(condition: Condition, found: Sequence[Outcome]) -> list[str]:
     ]
 
 
-def unnamed(found: Mapping[str, Sequence[Outcome]]) -> str:
-    """Parameters that are off and that no finding names, by condition."""
-    counts = {name: sum(len(each.unnamed) for each in runs) for name, runs in found.items()}
+def unnamed(found: Sequence[tuple[Condition, Sequence[Outcome]]]) -> str:
+    """How many parameters are off that no finding names, by condition."""
+    counts = {c.name: sum(len(each.unnamed) for each in runs) for c, runs in found}
     listed = [f"**{count}** ({name})" for name, count in counts.items() if count]
     return ", ".join(listed) or "none"
 
@@ -237,15 +237,16 @@ def main() -> None:
             measure(store, [c for c in chosen if c.clean == clean], joints, given.seed)
     total = 0
     for part, clean in ((CLEAN, True), (WRONG, False)):
-        mine = {c: runs for c in chosen if c.clean == clean and (runs := outcomes(store, c))}
-        total += sum(map(len, mine.values()))
+        mine = [(c, outcomes(store, c)) for c in chosen if c.clean == clean]
+        mine = [(c, found) for c, found in mine if found]
+        total += sum(len(found) for _, found in mine)
         publish(
             part,
-            (row(c, runs) for c, runs in mine.items()),
+            (row(c, found) for c, found in mine),
             write=given.write,
-            joints=min(map(len, mine.values()), default=0),
+            joints=min((len(found) for _, found in mine), default=0),
             seed=given.seed,
-            unnamed=unnamed({c.name: runs for c, runs in mine.items()}),
+            unnamed=unnamed(mine),
         )
     print(f"{total} runs in {time.perf_counter() - began:.0f} s")
 

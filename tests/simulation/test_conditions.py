@@ -1,6 +1,7 @@
 """The study of many conditions: it names what it should, and counts what is off and unnamed."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,3 +52,6 @@ def test_a_clean_condition_and_a_mismatch_are_counted(
         assert each.unnamed == []  # a blocking finding is about every value
     assert "2/2" in study.row(clean, found["clean"])
     assert "0/2" in study.row(wrong, found["wrong"])
+    silent = replace(found["wrong"][0], named=frozenset())
+    assert study.unnamed([(clean, found["clean"]), (wrong, found["wrong"])]) == "none"
+    assert study.unnamed([(wrong, [silent])]) == f"**{len(silent.off)}** (wrong)"
