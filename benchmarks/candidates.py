@@ -15,7 +15,7 @@ from jointid import _core
 POPULATION = 200
 REPEATS = 11
 LEAST = 0.02  # [s] a measurement
-COMPRESSED = f"compressed, {POPULATION} a call, one thread"
+COMPRESSED = f"compressed, {POPULATION} per call, one thread"
 THESIS = "`thesis()` search 200 × 1500, one thread, all of it"
 THESIS_CODE = "`thesis_code()` search 200 × 1500, one thread, all of it"
 
@@ -40,20 +40,20 @@ def measure(contest: Contest) -> list[Record]:
         )
 
     what: dict[str, tuple[Callable[[], object], int]] = {
-        "NumPy, one candidate a call": (lambda: contest.numpy(one), 1),
-        f"NumPy, {POPULATION} a call": (lambda: contest.numpy.many(rows), POPULATION),
-        "compiled direct sum, one a call": (lambda: direct(one_full), 1),
-        f"compiled direct sum, {POPULATION} a call, one thread": (
+        "NumPy, one candidate per call": (lambda: contest.numpy(one), 1),
+        f"NumPy, {POPULATION} per call": (lambda: contest.numpy.many(rows), POPULATION),
+        "compiled direct sum, one per call": (lambda: direct(one_full), 1),
+        f"compiled direct sum, {POPULATION} per call, one thread": (
             by_population(direct, 1),
             POPULATION,
         ),
-        f"compiled direct sum, {POPULATION} a call, all threads": (
+        f"compiled direct sum, {POPULATION} per call, all threads": (
             by_population(direct, 0),
             POPULATION,
         ),
-        "compressed, one a call from Python": (lambda: compressed(one_full), 1),
+        "compressed, one per call from Python": (lambda: compressed(one_full), 1),
         COMPRESSED: (by_population(compressed, 1), POPULATION),
-        "compressed, 20 000 a call, one thread": (
+        "compressed, 20 000 per call, one thread": (
             lambda: compressed.evaluate(big, threads=1),
             100 * POPULATION,
         ),

@@ -59,7 +59,7 @@ SILENT = Part(
         "error / least error, median",
         "in its 95 % interval",
     ),
-    reading="An estimate that uses all that a recording tells has a median ratio of 0.67.",
+    reading="An efficient estimate has a median ratio of 0.67.",
 )
 _ROUNDED = 1e-5  # [s]; of a delay that nothing but rounding makes uncertain
 _MOTIONS = ("thesis", "sines", "trapezoids", "chirp")

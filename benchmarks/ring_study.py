@@ -129,7 +129,7 @@ def accuracy(trials: int, *, write: bool) -> None:
                 limits = {n: stribeck_limit if n == "stribeck" else limit for n in worst}
                 held = all(worst[name] <= limits[name] for name in worst)
                 said = "holds" if held else "does **not** hold"
-                verdicts.append(f"{limit:g} % (stribeck {stribeck_limit:g} %) {sensors}, {said}")
+                verdicts.append(f"{sensors}: {limit:g} % (stribeck {stribeck_limit:g} %), {said}")
     publish(ACCURACY, rows, write=write, trials=trials, wanted="; ".join(verdicts))
 
 

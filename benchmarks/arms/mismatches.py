@@ -112,7 +112,7 @@ MISMATCHES = (
     Mismatch(name="nothing"),
     Mismatch(name="stamps 0.2 ms late in the mean", sensors=Sensors(stamp_lateness=2e-4)),
     Mismatch(name="stamps 0.5 ms late in the mean", sensors=Sensors(stamp_lateness=5e-4)),
-    Mismatch(name="16,384 counts a turn", sensors=Sensors(counts=2.0**14)),
+    Mismatch(name="16,384 counts/rev", sensors=Sensors(counts=2.0**14)),
     Mismatch(name="torque noise 3 %", sensors=Sensors(torque_noise=0.03)),
     Mismatch(name="torque 3 ms late", recording=late("torque", 3e-3)),
     Mismatch(name="torque 10 ms late", recording=late("torque", 10e-3)),

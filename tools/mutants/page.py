@@ -14,7 +14,7 @@ PART = Part(
     title="Mutants",
     asked="Does a test fail when one line of the program is changed? {summary}, {minutes:.0f} minutes on one "
     "processor. Of {named} places that survived a first trial by hand, {dead} die now.",
-    header=("list", "mutants", "killed", "justified", "survived", "not tried", "on"),
+    header=("list", "mutants", "killed", "justified", "survived", "not tried", "last trial"),
     reading="The lists, `tools/mutants/lists`, say why a justified one may survive: `justified`.",
 )
 
@@ -67,7 +67,7 @@ def written(verdicts: Sequence[Verdict], mutants: Sequence[Mutant]) -> str:
         missing = sum(room in (each.room, "all") for each in mutants if each not in tried)
         counts = (len(of) + missing, len(of) - len(left), justified, len(left) - justified, missing)
         days = sorted({each.date for each in of})
-        rows.append([room, *counts, " to ".join(days[:1] + days[1:][-1:])])
+        rows.append([room, *counts, days[-1] if days else "–"])
     return PART.text(
         rows,
         summary=summary(verdicts),
