@@ -15,7 +15,6 @@ from jointid.identification.warnings.registry import finding_types
 ROOT = Path(__file__).resolve().parents[2]
 # Pages from outside docs/, by their place in the repository and on the site.
 ELSEWHERE = {
-    "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
     "examples/README.md": "examples.md",
     "examples/data/README.md": "example_data.md",
@@ -30,7 +29,7 @@ INSTEAD = {
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 _CODE = re.compile(r"(^```.*?^```|^~~~.*?^~~~|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
 # Pages of the repository alone: on the site a link to one of them is its text.
-_OFF_THE_SITE = ("docs/contributors/", "SECURITY.md")
+_OFF_THE_SITE = ("docs/contributors/", "CONTRIBUTING.md", "SECURITY.md")
 # What docs/ has for Sphinx itself, or for nobody's page.
 _ENDINGS = (".md", ".png", ".svg", ".csv", ".css", ".js", ".html")
 
