@@ -1,4 +1,4 @@
-"""The attributes of a recording besides its signals: kind, torque hold, metadata and truth, checked."""
+"""Checks of a recording's attributes other than signals: kind, torque hold, metadata and truth."""
 
 import json
 from collections.abc import Mapping
@@ -10,13 +10,13 @@ from jointid.recording.signals import KINDS
 
 
 def check_kind(kind: object) -> None:
-    """Raise `InputError` for a kind of joint that does not exist."""
+    """Raise `InputError` for an unknown kind of joint."""
     if kind not in KINDS:
         raise InputError("revolute or prismatic is expected", argument="kind", value=kind)
 
 
 def check_torque_hold(torque_hold: object) -> None:
-    """Raise `InputError` for a course of the torque between samples that does not exist."""
+    """Raise `InputError` for an unknown interpolation of the torque between samples."""
     if torque_hold not in (None, "zoh", "linear"):
         raise InputError(
             "zoh (held between samples) or linear is expected, or nothing if it is not known",
@@ -26,7 +26,7 @@ def check_torque_hold(torque_hold: object) -> None:
 
 
 def check_attributes(kind: object, torque_hold: object, name: object, derived: object) -> None:
-    """Raise `InputError` for an attribute of a recording that is of a wrong kind."""
+    """Raise `InputError` for an attribute of a wrong type."""
     check_kind(kind)
     check_torque_hold(torque_hold)
     if not isinstance(name, str):
@@ -36,12 +36,12 @@ def check_attributes(kind: object, torque_hold: object, name: object, derived: o
 
 
 def json_mapping(argument: str, mapping: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a read-only copy of a mapping, as JSON gives it back.
+    """Return a read-only copy of a mapping, as it is after a round trip through JSON.
 
     Raises
     ------
     InputError
-        It is no mapping, a key is no string, or a value is not representable in JSON.
+        The argument is not a mapping, a key is not a string, or JSON cannot represent a value.
     """
     if not isinstance(mapping, Mapping):
         raise InputError("a mapping is expected", argument=argument, value=mapping)

@@ -1,4 +1,4 @@
-"""Blocks of columns, one column for each joint, where headers name no joints: ``columns={"position": "1:6"}``."""
+"""Blocks of columns, one column per joint, without joint names: ``columns={"position": "1:6"}``."""
 
 import re
 from collections.abc import Mapping
@@ -17,24 +17,24 @@ OF_BLOCKS = Action(
     "several joints: first and last column of each signal, counted from 0, as position=1:6 and torque=7:12",
     function="load_robot",
 )
-"""The call for a file with a block of columns for each signal."""
+"""The call that loads a file with one block of columns per signal."""
 Columns = Mapping[str, str | int | None]
 
 
 def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
-    """Return a table whose blocks have columns ``1.position``, ``2.position``, ..., and the columns that are no blocks.
+    """Return a table with block columns named ``1.position``, ``2.position``, ..., and the columns outside blocks.
 
     Parameters
     ----------
     table : Table
     columns : mapping
-        As given to `load`. A block is the numbers of its first and last column, 0-based and both included.
+        Same as in `load`. A block is written as its first and last column, 0-based, both included.
 
     Raises
     ------
     InputError
-        A block is not in the table, two share a column, they have not as many columns, or a single column is given
-        for a signal of several joints.
+        A block is not in the table, two blocks share a column, their numbers of columns differ, or a single column
+        is given for a signal of several joints.
     """
     known = {header.strip() for header in table.headers}
     blocks = {
@@ -92,7 +92,7 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
 
 
 def _header(header: str, joint: tuple[str, int] | None) -> str:
-    """Return ``2.position [deg]`` for a column of a block; another header as it is."""
+    """Return ``2.position [deg]`` for a column of a block, and any other header unchanged."""
     if joint is None:
         return header
     unit = re.search(_UNIT, header)

@@ -12,10 +12,10 @@ from jointid.recording.signals import SIGNALS, check_signal_name
 
 
 class Changes(Samples):
-    """What a recording does instead of being changed: it returns another one, or refuses."""
+    """Methods that return a changed copy of a recording; the recording itself is read-only."""
 
     def with_velocity(self, velocity: npt.ArrayLike | None = None) -> Self:
-        """Return the recording with another velocity [rad/s], which counts as derived; default: derive it."""
+        """Return the recording with this velocity [rad/s], marked as derived. Default: derive it from the position."""
         return type(self)(
             **{**self._fields(), "velocity": velocity, "velocity_derived": velocity is not None}
         )
@@ -27,7 +27,7 @@ class Changes(Samples):
         extra: Mapping[str, npt.ArrayLike] | None = None,
         **signals: npt.ArrayLike | None,
     ) -> Self:
-        """Return the recording with some signals replaced; what is not named stays, also extra ones.
+        """Return the recording with some signals replaced. All other signals stay, extra ones too.
 
         Parameters
         ----------
@@ -36,18 +36,18 @@ class Changes(Samples):
         extra : mapping of str to array_like, each of shape (n,), optional
             Extra signals to add or to replace. Default: none.
         **signals : array_like of shape (n,), or None
-            By the names of the constructor's arguments; None takes an optional one away.
+            Signals by the constructor's argument names. None removes an optional signal.
 
         Returns
         -------
         Recording
-            As measured: true signals of a simulation are left out. A given velocity counts as before as
-            derived or not.
+            Measured signals only: a simulation's true signals are left out. A new velocity keeps the previous
+            mark "derived" or "recorded".
 
         Raises
         ------
         InputError
-            No such signal, or values that no recording can hold.
+            There is no such signal, or a recording cannot hold the values.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""Stamps that are not as the samples were: rows that stand twice, stamps that are rounded."""
+"""Correction of time stamps: repeated rows are removed, rounded stamps are made even again."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,30 +10,30 @@ from jointid.base.values import dataclass
 from jointid.recording.order_statistics import median
 from jointid.recording.signals import SHORTEST, FloatArray
 
-_BLOCK = 0.2  # of the rows
-_COARSE = 0.1  # of the period: a finer resolution harms nothing
+_BLOCK = 0.2  # share of the rows: more repeated rows are another run
+_COARSE = 0.1  # of the period: a finer resolution does no harm
 _FINE = 0.5  # of the period: a finer resolution shows a lost row
-_ODD = 0.05  # of the steps: where fewer differ, rows were lost
-_ROUNDED = 0.55  # of the resolution: an even clock is at most half of it away
-_BEYOND = 1.5  # resolutions: a step that is longer than a period by more is a gap
+_ODD = 0.05  # share of the steps: if fewer steps differ, rows were lost
+_ROUNDED = 0.55  # of the resolution: rounding moves a stamp by half of it at most
+_BEYOND = 1.5  # resolutions: a step that exceeds the period by more than this is a gap
 _ROUNDS = 5
-_SHOWN = 50  # rows that show an even clock
-_TICKS = 1 / 3  # of the rows
+_SHOWN = 50  # rows needed to show an even clock
+_TICKS = 1 / 3  # share of the rows
 _NANO = 1e9
 
 
 @dataclass(frozen=True, kw_only=True)
 class Clock:
-    """The rows and the time of a recording.
+    """The kept rows of a recording and their time.
 
     Attributes
     ----------
     time : ndarray, shape (n,)
         Time of the kept rows [s].
     kept : ndarray of int or None
-        Numbers of these rows; None: all.
+        Numbers of the kept rows. None: all rows.
     notes : dict
-        Entries of the recording's metadata that say what was done.
+        Metadata entries that describe the corrections.
     """
 
     time: FloatArray
@@ -42,11 +42,11 @@ class Clock:
 
 
 def clock_of(time: FloatArray, others: Sequence[FloatArray]) -> Clock:
-    """Return the rows that stand there once, with stamps that are not rounded.
+    """Return the rows without repetitions, and their stamps without rounding.
 
-    A row that repeats the stamp and all values of an earlier one is left out, and so are rows of zeros at the end,
-    which a logger never filled. Stamps that an even clock explains within their resolution become those of that
-    clock. What is left of repeated stamps is refused later.
+    A row that repeats the stamp and all values of an earlier row is left out. Rows of zeros at the end, which the
+    logger never filled, are left out too. If an even clock explains the stamps within their resolution, its times
+    replace them. Repeated stamps that remain are refused later.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def clock_of(time: FloatArray, others: Sequence[FloatArray]) -> Clock:
 
 
 def _filled(time: FloatArray, others: Sequence[FloatArray]) -> int:
-    """How many rows there are before those of zeros at the end."""
+    """Return the number of rows before the rows of zeros at the end."""
     empty = time == 0.0
     for each in others:
         empty &= each == 0.0
@@ -91,7 +91,7 @@ def _filled(time: FloatArray, others: Sequence[FloatArray]) -> int:
 
 
 def repeats(time: FloatArray, others: Sequence[FloatArray]) -> npt.NDArray[np.intp] | None:
-    """Return the rows that do not repeat the stamp and all values of an earlier one; None if none does."""
+    """Return the rows that do not repeat the stamp and all values of an earlier row; None if no row does."""
     return None if (np.diff(time) > 0.0).all() else _once(time, others)
 
 
@@ -100,17 +100,17 @@ def _once(time: FloatArray, others: Sequence[FloatArray]) -> npt.NDArray[np.intp
     for values in others:
         same &= np.diff(values) == 0.0
     kept = np.flatnonzero(np.concatenate([[True], ~same]))
-    if not (np.diff(time[kept]) > 0.0).all():  # a block that stands twice, not the row before
+    if not (np.diff(time[kept]) > 0.0).all():  # a whole block is repeated, not a single row
         rows = np.ascontiguousarray(np.column_stack([time, *others]))
         each = rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1])))
         first = np.unique(each, return_index=True)[1]
-        if len(time) - len(first) < _BLOCK * len(time):  # of more, it is another run
+        if len(time) - len(first) < _BLOCK * len(time):  # more repeated rows are another run
             kept = np.sort(first)
     return None if len(kept) == len(time) else kept
 
 
 def _even(time: FloatArray) -> tuple[FloatArray, dict[str, Any]] | None:
-    """Return the stamps of an even clock that these round; None if they do not, or need no correction."""
+    """Return the even clock from which these stamps were rounded; None if there is none, or no correction is needed."""
     steps = np.diff(time)
     if len(time) < _SHOWN or (steps < 0.0).any() or not (steps > 0.0).any():
         return None
@@ -121,7 +121,7 @@ def _even(time: FloatArray) -> tuple[FloatArray, dict[str, Any]] | None:
         return None
     finest = int(np.gcd.reduce(np.rint(steps * _NANO).astype(np.int64))) / _NANO
     resolution = finest
-    if np.count_nonzero(steps == 0.0) > _TICKS * len(steps):  # of a clock that ticks more slowly
+    if np.count_nonzero(steps == 0.0) > _TICKS * len(steps):  # the clock is slower than the rows
         resolution = max(finest, median(steps[steps > 0.0]))
     gap = np.zeros(len(steps), dtype=np.bool_)
     for _ in range(_ROUNDS):
@@ -146,14 +146,14 @@ def _even(time: FloatArray) -> tuple[FloatArray, dict[str, Any]] | None:
 
 
 def _numbers(steps: FloatArray, period: float, resolution: float) -> FloatArray:
-    """Return the number of each sample; one that is lost counts where the stamps are fine enough to show it."""
+    """Return the number of each sample. Lost samples are counted if the stamps are fine enough to show them."""
     fine = resolution < _FINE * period
     passed = np.maximum(1.0, np.rint(steps / period)) if fine else np.ones_like(steps)
     return np.concatenate([[0.0], np.cumsum(passed)])
 
 
 def _slope(time: FloatArray, number: FloatArray, pieces: Sequence[npt.NDArray[np.intp]]) -> float:
-    """Return the period that suits all pieces best."""
+    """Return the period that fits all pieces best."""
     above = below = 0.0
     for rows in pieces:
         centred = number[rows] - float(np.mean(number[rows]))

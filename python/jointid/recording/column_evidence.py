@@ -1,4 +1,4 @@
-"""What shows that a column of a foreign log is a signal: its header's words and unit, or its numbers."""
+"""Evidence that a column of a foreign log is a signal: words and unit of its header, or its numbers."""
 
 import re
 from collections.abc import Sequence
@@ -20,24 +20,24 @@ LIKELY = {
     "torque": re.compile("torq|moment(?!um)|effort|force|trq|(^|_)tau"),
     "current": re.compile("curr|strom|(^|_)(amps?|amperes?)($|_)|(^|_)iq"),
 }
-"""Signal → the words in a header that speak for it."""
+"""Signal → words in a header that indicate it."""
 _COUNTER = re.compile(
     r"(^|_)(index|idx|frame|count|counter|seq|sequence|sample|row|id|nr|no|n|k|number|episode|run|trial|step)($|_)"
 )
 _ROWS = 5000
 _EXAMINED = 12  # columns without headers
-_EVEN = 0.2  # of the usual step
+_EVEN = 0.2  # of the median step
 _ALIKE = 0.99  # correlation of a velocity with the position's rate
-_SMOOTHER = 3.0  # times: a position among columns without a velocity
+_SMOOTHER = 3.0  # factor: a position is smoother than other columns by this
 
 
 def speaks_for(header: str, signal: str) -> bool:
-    """Whether a word of a header speaks for a signal."""
+    """Whether a word of a header indicates a signal."""
     return LIKELY[signal].search(plain(header)) is not None
 
 
 def last_word_for(header: str, signal: str) -> int:
-    """Where in a header the last word stands that speaks for a signal; -1 where none does."""
+    """Return the place of the last word in a header that indicates a signal; -1 if there is none."""
     return max((found.start() for found in LIKELY[signal].finditer(plain(header))), default=-1)
 
 
@@ -47,12 +47,12 @@ def is_counter(header: str) -> bool:
 
 
 def is_external(header: str) -> bool:
-    """Whether a header names what acts from outside: an external torque or force."""
+    """Whether a header names an external torque or force."""
     return re.search(r"(^|_)ext(ernal)?($|_)", plain(header)) is not None
 
 
 def values_of(table: Table, index: int) -> FloatArray | None:
-    """Return the first values of a column that changes; None for text, a constant, or values that are missing."""
+    """Return the first values of a column; None for text, a constant, or missing values."""
     try:
         (values,) = table.numbers([index])
     except InputError:
@@ -63,7 +63,7 @@ def values_of(table: Table, index: int) -> FloatArray | None:
 
 
 def shows_time(table: Table, index: int) -> bool:
-    """Whether a column may be the time: it increases, and a word or even steps speak for it."""
+    """Whether a column may be the time: it increases, and its header or its even steps indicate time."""
     if looks_exact(first_cell(table, index)):
         return True
     values = values_of(table, index)
@@ -75,12 +75,12 @@ def shows_time(table: Table, index: int) -> bool:
     ):
         return bool((np.diff(values) >= 0.0).all())
     if not table.headers[index].strip() and (np.diff(values) == 1.0).all():
-        return False  # rows that are counted, as a data frame's index
+        return False  # a row counter, such as a data frame's index
     return not _COUNTER.search(plain(table.headers[index])) and _unevenness(values) < _EVEN
 
 
 def shows_position(table: Table, index: int, time: int, velocity: int) -> bool:
-    """Whether a column's rate is the velocity in another one."""
+    """Whether a column's rate of change equals the velocity in another column."""
     found = [values_of(table, each) for each in (index, time, velocity)]
     if any(each is None or len(each) != len(found[0]) for each in found):  # type: ignore[arg-type]
         return False
@@ -88,10 +88,10 @@ def shows_position(table: Table, index: int, time: int, velocity: int) -> bool:
 
 
 def by_numbers(table: Table) -> dict[str, int]:
-    """Return which columns of a table without headers the numbers show; empty if there are headers.
+    """Return signal → column from the numbers of a table without headers; empty if there are headers.
 
-    The time has even steps. A velocity is the rate of the position; without one the position is far smoother than
-    all others. No numbers show a torque.
+    The time has even steps. The velocity is the position's rate of change. If there is none, the position is far
+    smoother than all other columns. Numbers alone cannot show a torque.
     """
     if any(header != f"column {k}" for k, header in enumerate(table.headers)):
         return {}
@@ -111,7 +111,7 @@ def by_numbers(table: Table) -> dict[str, int]:
 
 
 def _unevenness(values: FloatArray) -> float:
-    """Return by how much of the usual step most steps differ; infinite for a column that does not increase."""
+    """Return the typical deviation of the steps over their median; infinite for a column that does not increase."""
     steps = np.diff(values)
     if not (steps > 0.0).all():
         return float("inf")
@@ -127,7 +127,7 @@ def _is_rate(position: FloatArray, time: FloatArray, velocity: FloatArray) -> bo
 
 
 def _smoothest(columns: dict[int, FloatArray], others: Sequence[int]) -> int | None:
-    """Return the column that is far smoother than all others; of a single one nothing is shown."""
+    """Return the column that is far smoother than all others; None if there is none or only one column."""
     rough = {k: float(np.std(np.diff(columns[k], 2)) / np.std(columns[k])) for k in others}
     order = sorted(rough, key=lambda k: rough[k])
     if len(order) < 2 or rough[order[1]] < _SMOOTHER * rough[order[0]]:

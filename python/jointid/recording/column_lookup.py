@@ -1,4 +1,4 @@
-"""Finding the column that a header or a number names."""
+"""Lookup of a column by header or number."""
 
 import operator
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ def column_index(table: Table, column: object, argument: str) -> int:
     column : object
         A header, in upper or lower case, or a 0-based column number.
     argument : str
-        The argument that it was given for.
+        Name of the argument, for messages.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def _by_header(table: Table, header: str, argument: str) -> int:
 
 
 def listed(headers: Sequence[str]) -> str:
-    """Return headers for a message, the first eight of them."""
+    """Return the first eight headers as text for a message."""
     shown = ", ".join(repr(header[:60]) for header in headers[:_SHOWN])
     rest = len(headers) - _SHOWN
     return f"{shown} and {rest} more" if rest > 0 else shown

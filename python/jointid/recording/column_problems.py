@@ -1,4 +1,4 @@
-"""What is wrong with the columns of a table, each as an error with what to do, and all of them as one."""
+"""Errors about the columns of a table, each with a remedy, and several of them joined into one."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -28,13 +28,13 @@ from jointid.recording.units import UNITS, is_mega, unit_names
 
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
 _MEASURED = ("meas", "actual")
-_SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
-_OF_ONE_JOINT, _AT_MOST = 5, 7  # columns without names of one joint, usually and ever
-_MOST_TRIED = 200  # columns whose names say nothing
+_SHORT = 2  # letters: in "qm" and "qg" the second letter names the side of the gear
+_OF_ONE_JOINT, _AT_MOST = 5, 7  # columns of one joint in a file without headers: usually, at most
+_MOST_TRIED = 200  # columns without a meaningful name
 
 
 def of_both_kinds(table: Table, signal: str, columns: Sequence[Column]) -> InputError:
-    """Return the error for a signal in units of both kinds of joint."""
+    """Return the error for a signal with columns in units of a revolute and of a prismatic joint."""
     first, second = (table.headers[column.index] for column in columns)
     return InputError(
         f"{first!r} and {second!r} are both recognised as {signal}, of a revolute and of a "
@@ -45,7 +45,7 @@ def of_both_kinds(table: Table, signal: str, columns: Sequence[Column]) -> Input
 
 
 def ambiguous(table: Table, signal: str, columns: Sequence[Column]) -> InputError:
-    """Return the error for a signal with several columns that fit."""
+    """Return the error for a signal that several columns fit."""
     names = " and ".join(
         f"{table.headers[column.index]!r} (column {column.index})" for column in columns
     )
@@ -57,7 +57,7 @@ def ambiguous(table: Table, signal: str, columns: Sequence[Column]) -> InputErro
 
 
 def in_other_unit(column: Column) -> str:
-    """Return what is wrong with a column's unit, in words."""
+    """Return the problem with a column's unit as text."""
     if is_mega(column.unknown):
         return (
             f"is in {column.unknown}, where M is mega, a million (milli is m{column.unknown[1:]})"
@@ -77,7 +77,7 @@ def in_other_unit(column: Column) -> str:
 
 
 def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputError:
-    """Return the error for a column whose unit is not one of the signal's."""
+    """Return the error for a column with a unit that does not fit the signal."""
     known = unit_names(dimensions(signal, kind))
     remedy: Action | None
     if is_mega(column.unknown):
@@ -103,14 +103,14 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
         header = table.headers[column.index]
         name = header if table.headers.count(header) == 1 else column.index
         remedy = Action("call", {"columns": {"torque": None, "current": name}}, function="load")
-    elif column.unit:  # what the header states is not overridden
+    elif column.unit:  # do not override the header's unit
         remedy = None
     else:
         remedy = Action(
             "call", {"units": {signal: known[0]}}, function="load", text="if this is its unit"
         )
     other: str | Action = "choose another column"
-    if signal not in NEEDED:  # it may be left out
+    if signal not in NEEDED:  # this signal is optional
         other = Action("call", {"columns": {signal: None}}, function="load")
     return InputError(
         f"{signal} of a {kind} joint {in_other_unit(column)}; "
@@ -121,7 +121,7 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
 
 
 def _of_dataset(table: Table) -> Action:
-    """Return the call that states the unit of a dataset's states and actions, which are alike."""
+    """Return the call that states the unit of a dataset's states and actions; both have the same unit."""
     read = [understood(header) for header in table.headers]
     signals = [
         each.meaning.signal for each in read if each.meaning and each.unit is UNITS["lerobot"]
@@ -139,13 +139,13 @@ def _of_dataset(table: Table) -> Action:
 def missing(
     table: Table, signals: Sequence[str], found: Candidates, kind: str | None
 ) -> InputError:
-    """Return the error for signals without a column; its remedy names columns that may hold them.
+    """Return the error for signals without a column. Its remedy names possible columns.
 
     Parameters
     ----------
     table : Table
     signals : sequence of str
-        "time" and "position", if they have no column.
+        Those of "time" and "position" that have no column.
     found : Candidates
     kind : str, optional
         Kind of the joint, if known.
@@ -153,7 +153,7 @@ def missing(
     Raises
     ------
     InputError
-        The column that a header names is chosen as another signal: no other column is proposed.
+        The call chooses the only matching column as another signal, so that no column can be proposed.
     """
     owners = {column.index: other for other, each in found.of.items() for column in each}
     for signal in signals:
@@ -211,7 +211,7 @@ def _not_recognised(
 
 
 def _asked(table: Table, found: Candidates, proposed: Mapping[str, int]) -> str:
-    """Return what is asked about a torque of which nothing shows the column."""
+    """Return the question about the torque's column, if nothing indicates it."""
     known = {each.index for columns in found.of.values() for each in columns}
     left = len(table.headers) - len({*known, *proposed.values()})
     if left < 1 or any(found.of.get(signal) or signal in proposed for signal in TORQUES):
@@ -220,7 +220,7 @@ def _asked(table: Table, found: Candidates, proposed: Mapping[str, int]) -> str:
 
 
 def _with_absent(proposal: Action | None, absent: Sequence[str]) -> Action:
-    """Return the proposal with what only the user knows: the rate of rows without a time, a position's column."""
+    """Return the proposal with placeholders for the user's facts: the sample period, the position's column."""
     arguments: dict[str, Any] = dict(proposal.arguments) if proposal else {}
     if "position" in absent:
         arguments["columns"] = {**arguments.get("columns", {}), "position": ...}
@@ -231,7 +231,7 @@ def _with_absent(proposal: Action | None, absent: Sequence[str]) -> Action:
 
 
 def together(table: Table, problems: Sequence[InputError]) -> InputError:
-    """Return several errors as one, whose remedy removes them all."""
+    """Return several errors as one, with one remedy for all of them."""
     if len(problems) == 1:
         return problems[0]
     arguments: dict[str, Any] = {}
@@ -257,7 +257,7 @@ def together(table: Table, problems: Sequence[InputError]) -> InputError:
 
 
 def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> list[int]:
-    """Return the columns whose unit may be the signal's."""
+    """Return the columns with a unit that fits the signal, or without a unit."""
     found = []
     for index, header in enumerate(table.headers):
         unit = understood(header).unit
@@ -277,14 +277,14 @@ def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> l
 
 
 def _is_other(header: str, signal: str) -> bool:
-    """Whether a header names a counter, or what acts from outside: neither is a time or a joint's position."""
+    """Whether a header names a counter or an external torque: neither is a time or a joint's position."""
     if signal not in NEEDED:
         return is_external(header)
     return is_external(header) or (is_counter(header) and not speaks_for(header, signal))
 
 
 def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> list[int]:
-    """Return those of the possible columns that a header or the numbers speak for, the likeliest first."""
+    """Return the possible columns that a header or the numbers support, the likeliest first."""
     of_joints = [column.index for column in found.of_joints.get(signal, ())]
     if signal == "time":
         unrecognised = [k for k in possible if understood(table.headers[k]).meaning is None]
@@ -299,7 +299,7 @@ def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> 
 
 
 def _of_velocity(table: Table, possible: list[int], found: Candidates) -> list[int]:
-    """Return the columns with the rate that is recognised as velocity."""
+    """Return the columns with a rate of change equal to the recognised velocity."""
     beside = [found.of.get(signal) for signal in ("time", "velocity")]
     if not all(beside):
         return []
@@ -308,7 +308,7 @@ def _of_velocity(table: Table, possible: list[int], found: Candidates) -> list[i
 
 
 def _doubts(name: str) -> tuple[bool, bool]:
-    """Reasons to doubt a column: its name is that of a command; nothing says that it is measured."""
+    """Return two doubts about a column: whether it is a command, and whether it is not marked as measured."""
     measured = any(part in name for part in _MEASURED) or (len(name) <= _SHORT and name[1:] == "m")
     return any(part in name for part in _UNLIKELY), not measured
 
@@ -320,7 +320,7 @@ def _likely(table: Table, signal: str, possible: list[int]) -> list[int]:
 def _torque(
     table: Table, found: Candidates, taken: set[int], proposed: Mapping[str, int], kind: str | None
 ) -> dict[str, int]:
-    """Return a column that may hold the torque, of the joint whose position is proposed."""
+    """Return a column that may hold the torque of the joint with the proposed position."""
     of_joints = {column.index: column for each in found.of_joints.values() for column in each}
     position = of_joints.get(proposed.get("position", -1))
     number = position.joint if position else _number(table, proposed.get("position"))
@@ -340,7 +340,7 @@ def _torque(
 
 
 def _is_of_motor(header: str) -> bool:
-    """Whether a header names the motor, also as a part of a word (Motorwinkel), and nothing behind the gear."""
+    """Whether a header names the motor, also within a word (Motorwinkel), and nothing on the joint side."""
     name = plain(header)
     return "motor" in name and not any(part in name for part in ("link", "output", "load"))
 
@@ -351,7 +351,7 @@ def _number(table: Table, index: int | None) -> str:
 
 
 def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Action | None:
-    """Return the call with these columns; where it is more than one, also with the units to check."""
+    """Return the call with these columns; for more than one column also with the units to check."""
     if not proposed:
         return None
     columns: dict[str, Any] = {}
@@ -378,7 +378,7 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
 
 
 def _unit_of_time(table: Table, index: int) -> str:
-    """Return the unit that the stamps of a proposed column probably have; empty if that is asked later."""
+    """Return the likely unit of a proposed time column; empty if a later message asks for it."""
     try:
         (stamps,) = table.numbers([index])
     except InputError:  # dates, or text: no unit is needed
@@ -388,7 +388,7 @@ def _unit_of_time(table: Table, index: int) -> str:
     try:
         with np.errstate(all="ignore"):
             unit = unit_of_stamps(float(stamps[0]), stamps - stamps[0], "")
-    except InputError as error:  # milliseconds are likelier than seconds, other pairs are alike
+    except InputError as error:  # prefer ms to s; other pairs are equally likely
         calls = [each.arguments for each in error.remedy if isinstance(each, Action)]
         units = [str(call["units"]["time"]) for call in calls if "units" in call]
         return units[0] if len(units) == 1 or "s" in units else ""

@@ -28,21 +28,21 @@ class Column:
     index : int
         0-based number of the column.
     unit : Unit or None
-        None: no unit is named anywhere, SI is assumed.
+        Unit of the values. None: none is stated, SI is assumed.
     unknown : str
-        Text in the unit's place of the header that is no known unit. Default: none.
+        Text at the unit's place in the header that is no known unit. Default: none.
     scale : float, optional
         Factor from file units to SI; replaces the unit. Default: the unit's factor.
     chosen : bool
-        Whether `columns` named it. Default: its header did.
+        Whether the call's `columns` named the column. Default: its header did.
     rank : int
-        How directly its header names the signal, as in `Meaning`. Default: the clearest.
+        How clearly the header names the signal, as in `Meaning`. Default: most clearly.
     joint : str
-        Number or name of the joint in its header. Default: none.
+        Number or name of the joint in the header. Default: none.
     documented : Documented or None
-        What a product documents of it, where that gave the unit. Default: nothing.
+        The product's documentation, if it gave the unit. Default: none.
     overridden : str
-        The unit that its header or its product states, where the call states another. Default: none.
+        The unit in the header or the product's documentation, if the call states another one. Default: none.
     """
 
     index: int
@@ -63,7 +63,7 @@ class Column:
             return values * self.scale
 
     def fits(self, signal: str, kind: str) -> bool:
-        """Whether its unit is one of the signal's, or none is named."""
+        """Whether the column's unit fits the signal, or no unit is stated."""
         return not self.unknown and (
             self.unit is None or self.unit.dimension in dimensions(signal, kind)
         )
@@ -78,7 +78,7 @@ class Candidates:
     of : dict of str to list of Column
         Signal → columns.
     of_joints : dict of str to list of Column
-        Signal → columns of several joints, of which none is taken.
+        Signal → columns of several joints; none of them is used until a joint is chosen.
     """
 
     of: dict[str, list[Column]] = field(default_factory=dict)
@@ -93,13 +93,13 @@ def candidates_of(
     scale: Mapping[str, float] | None,
     kind: str | None,
 ) -> Candidates:
-    """Return the columns that `columns` or a header assigns to each signal, with units and scales.
+    """Return the columns of each signal, assigned by `columns` or by headers, with units and scales.
 
     Parameters
     ----------
     table : Table
     columns, units, scale, kind
-        As in `load`.
+        Same as in `load`.
 
     Raises
     ------
@@ -156,13 +156,13 @@ def candidates_of(
 
 
 def _other_unit(column: Column, unit: Unit) -> str:
-    """Return the unit that is stated for a column, if it is another one."""
+    """Return the unit stated for a column if it differs from this unit."""
     stated = column.unit
     return stated.name if stated and _measured(column) and stated.name != unit.name else ""
 
 
 def _measured(column: Column) -> str:
-    """Return the unit that is stated for a column; empty for a reading, which only a factor converts."""
+    """Return the unit stated for a column; empty for a raw reading, which needs a factor."""
     reading = column.unit is None or column.unit.dimension in ("raw reading", "voltage")
     return "" if reading or column.unit is None else column.unit.name
 
@@ -177,7 +177,7 @@ def _check_recognised(
 
 
 def check_scale(table: Table, signal: str, factor: object, units: Mapping[str, str]) -> None:
-    """Refuse a factor that is no finite number other than 0, or beside a unit."""
+    """Refuse a factor that is 0 or not finite, or that is given together with a unit."""
     number = isinstance(factor, int | float | np.number) and not isinstance(factor, bool)
     if not number or factor == 0 or not math.isfinite(factor):  # type: ignore[arg-type]
         raise InputError(
@@ -222,9 +222,9 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
         elif index not in parts and meaning is not None and meaning.signal not in columns:
             if table.saved is None:
                 if meaning.signal == "late":
-                    continue  # elsewhere a column of this name may be anything
+                    continue  # in other files a column with this name may be anything
             elif meaning.rank != PLAIN:
-                continue  # whoever saved the recording wrote the signals' own names
+                continue  # a saved recording uses the signals' own names
             column_here = Column(
                 index=index,
                 unit=read.unit,
@@ -238,7 +238,7 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
 
 
 def _as_documented(table: Table, column: Column, signal: str) -> Column:
-    """Return a column whose header states no unit with the unit that its product documents."""
+    """Return a column without a unit in its header with the unit from the product's documentation."""
     known = understood(table.headers[column.index]).documented
     if table.saved is not None or known is None or known.signal != signal:
         return column
@@ -249,7 +249,7 @@ def _as_documented(table: Table, column: Column, signal: str) -> Column:
 
 
 def _of_one_joint(candidates: dict[str, list[Column]]) -> Candidates:
-    """Keep the columns of one joint; those of several are nobody's until a joint is chosen."""
+    """Keep the columns of one joint; set columns of several joints aside until a joint is chosen."""
 
     def clearest(signal: str) -> list[Column]:
         found = candidates.get(signal, [])

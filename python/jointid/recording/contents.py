@@ -1,4 +1,4 @@
-"""The contents of a table: the signals of a recording in SI units, of all rows or of some."""
+"""The contents of a table: a recording's signals in SI units, from all or some rows."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field
@@ -28,7 +28,7 @@ from jointid.recording.truncated import unrecorded
 
 Rows = npt.NDArray[np.intp]
 _FACTOR_SAID = frozenset({"position", "torque", "motor_torque", "sensor"})
-"""Signals of which a finding needs the factor to SI: for the other sign, or to know that degrees were converted."""
+"""Signals with a factor to SI that findings need, to propose the other sign or to know that degrees were converted."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,17 +41,17 @@ class Contents:
     found : mapping of str to Column
         Signal → its column.
     values : mapping of str to ndarray, each of shape (rows of the table,)
-        Signal → the values of its column, in the column's own unit.
+        Signal → values of its column, in the column's own unit.
     saved : mapping of str to object
         Attributes of a saved recording, as arguments of `Recording`.
     kind : str
         ``"revolute"`` or ``"prismatic"``.
     extra : mapping of str to (ExtraColumn, ndarray)
-        Name of an extra signal → its column, and the values in the column's own unit. Default: none.
+        Name of an extra signal → its column and values, in the column's own unit. Default: none.
     left_out : sequence of mapping of str to str
-        Columns that a header assigns to a signal and that are not read, as in `Match`. Default: none.
+        Columns that match a signal but are not read, as in `Match`. Default: none.
     notes : mapping of str to object
-        Further entries of the recording's metadata. Default: none.
+        Further metadata entries of the recording. Default: none.
     """
 
     table: Table
@@ -69,19 +69,19 @@ class Contents:
         *,
         time_remedy: Callable[[], tuple[str | Action, ...]] = tuple,
     ) -> dict[str, Any]:
-        """Return the arguments of `Recording` that the table, or some of its rows, hold.
+        """Return the arguments of `Recording` from all or some rows of the table.
 
         Parameters
         ----------
         rows : ndarray of int, optional
-            Default: all.
+            Rows to use. Default: all.
         time_remedy : callable
-            Returns what to do about time stamps that go back. Default: nothing.
+            Returns remedies for time stamps that go back. Default: none.
 
         Raises
         ------
         InputError
-            The signals are not finite, too short, or time does not increase.
+            A signal is not finite or too short, or time does not increase.
         """
         signals, extra = self._in_si(rows)
         clock = None
@@ -134,12 +134,12 @@ class Contents:
         return fields
 
     def sound_rows(self, rows: Rows | None = None) -> tuple[Rows, int]:
-        """Return the rows without damaged values, of all or of some, and how many have one.
+        """Return the rows without damaged values, among all or some rows, and the number of damaged rows.
 
         Raises
         ------
         InputError
-            More than a tenth of the rows has one, or columns have different lengths.
+            More than a tenth of the rows is damaged, or columns differ in length.
         """
         signals, extra = self._in_si(rows)
         every = signals | {f"extra.{name}": values for name, values in extra.items()}
@@ -150,7 +150,7 @@ class Contents:
         return (kept if rows is None else rows[kept]), len(sound) - len(kept)
 
     def once(self, rows: Rows | None) -> Rows | None:
-        """Return the rows that do not repeat the stamp and all values of an earlier one; None if none does."""
+        """Return the rows that do not repeat the stamp and all values of an earlier row; None if no row does."""
         signals, extra = self._in_si(rows)
         kept = repeats(signals["time"], self._beside(signals, extra))
         return kept if kept is None or rows is None else rows[kept]
@@ -161,7 +161,7 @@ class Contents:
         return [*(signals[name] for name in signals if name != "time"), *extra.values()]
 
     def _in_si(self, rows: Rows | None) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
-        """Return the signals, and the extra signals by their own names."""
+        """Return the signals, and the extra signals by name."""
         signals = {
             signal: column.to_si(values if rows is None else values[rows])
             for (signal, column), values in zip(
@@ -175,18 +175,18 @@ class Contents:
         return signals, extra
 
     def rows_of(self, by: str | int) -> dict[str, Rows]:
-        """Return value → rows that have it in a column, by the first appearance of each value."""
+        """Return value → rows with this value in a column, in the order of first appearance."""
         column = column_index(self.table, by, "by")
         cells = self.table.text(column)
         self._check_length(self.table.headers[column], len(cells))
-        # Not as an array of NumPy: each of its cells would be as long as the longest.
+        # Not as a NumPy array: each cell would take the length of the longest text.
         numbers = {cell: number for number, cell in enumerate(dict.fromkeys(cells))}
         inverse = np.array([numbers[cell] for cell in cells], dtype=np.int64)
         grouped = np.split(np.argsort(inverse, kind="stable"), np.cumsum(np.bincount(inverse))[:-1])
         return dict(zip(numbers, grouped, strict=True))
 
     def rows_where(self, where: Mapping[str, float | str]) -> Rows:
-        """Return the rows that have a value in each of some columns."""
+        """Return the rows that have the stated value in each of these columns."""
         kept = np.ones(len(self.values["time"]), dtype=np.bool_)
         for header, wanted in require_mapping("where", where, "{'run': 1}").items():
             column = column_index(self.table, header, "where")
@@ -233,7 +233,7 @@ class Contents:
             )
 
     def _metadata(self) -> dict[str, Any]:
-        # A sensor's raw reading has no SI unit: nothing is assumed for it.
+        # A sensor's raw reading has no SI unit, so none is assumed.
         assumed = [
             signal
             for signal, column in self.found.items()
@@ -256,7 +256,7 @@ class Contents:
 
 
 def _with_drop(error: InputError, signals: Mapping[str, FloatArray]) -> InputError:
-    """Return the error of a value with the advice to leave such rows out, where they are few."""
+    """Return the error of a value; if such rows are few, it advises to leave them out."""
     advice: str | Action = DROP if few(sound_rows(signals)) else "look at the column and its unit"
     return InputError(
         error.reason,
@@ -268,7 +268,7 @@ def _with_drop(error: InputError, signals: Mapping[str, FloatArray]) -> InputErr
 
 
 def _with_rate(error: InputError) -> InputError:
-    """Return the error of equal stamps with the advice to state the rate."""
+    """Return the error of equal stamps with advice to state the sample period."""
     return InputError(
         error.reason,
         argument=error.argument,

@@ -1,4 +1,4 @@
-"""Rows that repeat the one before because the logger was faster than the drive's bus."""
+"""Removal of rows that repeat the previous row because the logger was faster than the drive's bus."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from jointid.recording.order_statistics import median
 from jointid.recording.recording import Recording
 from jointid.recording.signals import SHORTEST, SIGNALS, FloatArray
 
-_FINE = 30.0  # a usual step in smallest steps: an equal position is then no slow motion
-_LONGER = 2.0  # times the usual run of copies, plus one: a longer run is a standstill
+_FINE = 30.0  # median step in encoder counts: with larger steps an equal position is no slow motion
+_LONGER = 2.0  # times the median run of copies, plus one: a longer run is a standstill
 _ROUNDING = 1e-6  # of the median step
 _EVEN = 0.3  # of the scatter about the stamps
-_AWAY = 2.0  # periods: stamps that leave an even clock by more have lost samples
-_PIECE = 20  # rows between standstills that show an even clock
-HELD = 0.03  # of the moving rows: fewer copies are left as they are
-_MOVED = 2.0  # quanta
-_AFTER = 0.3  # of the usual step
-_TIMED = 0.1  # periods between stamps and samples, at most
+_AWAY = 2.0  # periods: a larger deviation from an even clock means lost samples
+_PIECE = 20  # rows between standstills, needed to show an even clock
+HELD = 0.03  # share of the moving rows: fewer copies stay in the recording
+_MOVED = 2.0  # encoder counts
+_AFTER = 0.3  # of the median step
+_TIMED = 0.1  # periods: largest deviation of the stamps from the sampling times
 _MEASURED = ("position", "velocity", "sensor", "link_position")
 _COMMANDED = ("torque", "motor_torque", "current")
 
@@ -33,9 +33,9 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
     """Return the arguments of `Recording` without the rows that repeat all measured signals of the row before.
 
     The first row of each run stays, because its stamp is nearest to the sample. A held torque
-    (``torque_hold="zoh"``) becomes its mean until the next row that is kept. Where the positions show
-    that the samples that are left were taken evenly, they get even stamps: the logger's say only when it
-    looked, and without its copies their steps are of one or two of its periods.
+    (``torque_hold="zoh"``) becomes its mean until the next kept row. If the positions show evenly taken
+    samples, the kept rows get even stamps: the logger's stamps are polling times, and without the copies
+    their steps are one or two logger periods.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The position is so coarse that equal rows are no copies, or too few rows are left.
+        The position is so coarse that equal rows may be a slow motion, or too few rows are left.
     """
     time, position = fields["time"], fields["position"]
     steps = np.abs(np.diff(position))
@@ -72,17 +72,17 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def without_held_rows(run: Recording) -> tuple[Recording, float] | None:
-    """Return a recording without the rows that hold the sample before, and how many rows a sample has.
+    """Return a recording without the rows that hold the previous sample, and the number of rows per sample.
 
-    None where equal rows may be a slow motion: of a fine encoder they are none, of a coarse one where the recorded
-    velocity says that the joint moved on for two of its steps.
+    None if equal rows may be a slow motion. They are copies with a fine encoder, or, with a coarse one, if the
+    recorded velocity shows that the joint moved by two encoder counts meanwhile.
     """
     same = np.diff(run.position) == 0.0
     if not same.any():
         return None
     repeated = same & (np.diff(run.velocity) == 0.0)
     if not run.velocity_derived and np.count_nonzero(repeated) > 0.5 * np.count_nonzero(same):
-        same = repeated  # one sample has both
+        same = repeated  # one sample holds both torque and motion
     copies, resting = _copies(same)
     count, moving = int(np.count_nonzero(copies)), int(np.count_nonzero(~resting))
     if count <= HELD * moving or not _is_held(run, copies):
@@ -97,16 +97,16 @@ def without_held_rows(run: Recording) -> tuple[Recording, float] | None:
         return None
     reduced = Recording(**_fields_of(run._fields(), kept, resting))
     period = reduced.sample_period
-    # Samples that were lost on a bus with a clock of its own: stamps are worse without the copies than with them.
+    # A bus with its own clock lost samples: without the copies the stamps are worse than with them.
     timed = _core.timing_errors(reduced.time, reduced.position, period)[0] < _TIMED * period
     return (reduced, rows) if timed else None
 
 
 def _is_held(run: Recording, copies: NDArray[np.bool_]) -> bool:
-    """Whether equal positions are copies, not slow motion and not sticking.
+    """Whether equal positions are copies, not slow motion or sticking.
 
-    A sample after copies is as far away as any other, and a joint that breaks away is not. A usual step is many
-    quanta, or the recorded velocity says that the joint moved on meanwhile.
+    After copies, the step is as large as any other step; after sticking it is smaller. The median step is many
+    encoder counts, or the recorded velocity shows that the joint moved meanwhile.
     """
     steps = np.abs(np.diff(run.position))
     moved = steps[steps > 0.0]
@@ -121,7 +121,7 @@ def _is_held(run: Recording, copies: NDArray[np.bool_]) -> bool:
     if run.velocity_derived:
         return False
     distance = np.abs(run.velocity[1:]) * np.diff(run.time)
-    # For each run of copies how far the velocity says that the joint moves while the position stays.
+    # For each run of copies: the distance from the velocity while the position stays.
     number = np.cumsum(~copies)[1:][copies[1:]]
     distances = np.bincount(number, weights=distance[copies[1:]])
     return bool(distances.any() and median(distances[distances > 0.0]) > _MOVED * quantum)
@@ -130,7 +130,7 @@ def _is_held(run: Recording, copies: NDArray[np.bool_]) -> bool:
 def _fields_of(
     fields: Mapping[str, Any], kept: NDArray[np.intp], resting: NDArray[np.bool_]
 ) -> dict[str, Any]:
-    """The arguments of a recording of the rows that are kept, with even stamps where the positions show them."""
+    """Return the arguments of a recording of the kept rows, with even stamps if the positions show them."""
     time = fields["time"]
     result = dict(fields)
     for name in SIGNALS:
@@ -147,13 +147,13 @@ def _fields_of(
 
 
 def fresh_rows(time: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return time and position of the rows that do not repeat the position before."""
+    """Return time and position of the rows that do not repeat the previous position."""
     copies, _ = _copies(np.diff(position) == 0.0)
     return time[~copies], position[~copies]
 
 
 def _evened(time: FloatArray, position: FloatArray, resting: NDArray[np.bool_]) -> FloatArray:
-    """Return stamps that are even between standstills, where the positions say so."""
+    """Return stamps that are even between standstills, if the positions show even sampling."""
     as_stamped, as_even = _core.timing_errors(time, position, median(np.diff(time)))
     if not as_even < _EVEN * as_stamped:
         return time
@@ -172,7 +172,7 @@ def _evened(time: FloatArray, position: FloatArray, resting: NDArray[np.bool_]) 
 
 
 def _line(time: FloatArray) -> FloatArray:
-    """Even stamps nearest to these."""
+    """Return the even stamps nearest to these."""
     number = np.arange(len(time)) - 0.5 * (len(time) - 1)
     middle = float(np.mean(time))
     period = float(np.sum(number * (time - middle)) / np.sum(number * number))
@@ -180,7 +180,7 @@ def _line(time: FloatArray) -> FloatArray:
 
 
 def _copies(same: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether each row is a copy of the one before, and whether it belongs to a standstill."""
+    """Return for each row whether it copies the previous one, and whether it belongs to a standstill."""
     copy = np.concatenate([[False], same])
     resting = np.zeros(len(copy), dtype=np.bool_)
     edges = np.flatnonzero(np.diff(np.concatenate([copy, [False]]).astype(np.int8)))
@@ -195,11 +195,11 @@ def _copies(same: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool
 
 
 def _means(time: FloatArray, values: FloatArray, kept: NDArray[np.intp]) -> FloatArray:
-    """Return the mean of a held signal from each kept row to the next; of the last row its value."""
+    """Return the mean of a held signal from each kept row to the next; for the last row its value."""
     impulse = np.concatenate([[0.0], np.cumsum(values[:-1] * np.diff(time))])
     means = values[kept].copy()
     means[:-1] = np.diff(impulse[kept]) / np.diff(time[kept])
-    # A row without copies keeps its value to the bit.
+    # A row without copies keeps its value, bit for bit.
     alone = np.diff(kept) == 1
     means[:-1][alone] = values[kept[:-1]][alone]
     return np.asarray(means)

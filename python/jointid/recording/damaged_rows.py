@@ -1,4 +1,4 @@
-"""Rows with a value that is no measurement: which they are, and when they may be left out."""
+"""Damaged rows: how they are found, and when they may be left out."""
 
 from collections.abc import Mapping
 
@@ -10,22 +10,22 @@ from jointid.base.errors import InputError
 from jointid.recording.plausibility import LARGEST
 from jointid.recording.signals import FloatArray
 
-_MOST = 0.1  # of the rows: more are not damaged, they are in another unit or of another meaning
-NOTE = "dropped_rows"  # in a recording's metadata: how many were left out
+_MOST = 0.1  # share of the rows: if more look damaged, the column's unit or meaning is wrong
+NOTE = "dropped_rows"  # metadata key: number of rows left out
 DROP = Action("call", {"drop_invalid": True}, text="to leave such rows out", function="load")
 
 
 class RepeatedHeaderError(InputError):
-    """A second file was appended to a file, header and all: no row of it is damaged."""
+    """A second file with its header was appended to the file: its rows are not damaged."""
 
 
 def sound_rows(signals: Mapping[str, FloatArray]) -> npt.NDArray[np.bool_]:
-    """Return which rows have only values that a joint can have: finite, and not absurdly large.
+    """Return a mask of the rows with plausible values only: finite, and not absurdly large.
 
     Parameters
     ----------
     signals : mapping of str to ndarray, each of shape (n,)
-        In SI.
+        Signals in SI units.
     """
     columns = list(signals.values())
     sound = np.ones(len(columns[0]), dtype=np.bool_)
@@ -36,12 +36,12 @@ def sound_rows(signals: Mapping[str, FloatArray]) -> npt.NDArray[np.bool_]:
 
 
 def few(sound: npt.NDArray[np.bool_]) -> bool:
-    """Whether rows that are not sound are few enough to be damaged ones."""
+    """Whether the rows outside the mask are few enough to be damaged rows."""
     return bool(np.count_nonzero(~sound) <= _MOST * len(sound))
 
 
 def checked_rows(sound: npt.NDArray[np.bool_], source: str) -> npt.NDArray[np.intp]:
-    """Return the sound rows, or raise `InputError` where more than a tenth is not."""
+    """Return the numbers of the sound rows, or raise `InputError` if more than a tenth is damaged."""
     if not few(sound):
         raise InputError(
             f"{np.count_nonzero(~sound)} of {len(sound)} rows have a value that no joint has: they are not single "

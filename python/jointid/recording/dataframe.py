@@ -1,4 +1,4 @@
-"""A recording from a data frame, pandas or anything with `columns` and `frame[column]`, and as one."""
+"""Conversion between a recording and a data frame (pandas, or anything with `columns` and `frame[column]`)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 ATTRIBUTE = "jointid_recording"
-"""Of a frame's `attrs`: what of a recording is no column, as text."""
+"""Key in a frame's `attrs` of the recording's attributes, as text."""
 
 
 def frame_of(recording: Samples) -> pd.DataFrame:
@@ -40,13 +40,13 @@ class FrameTable:
     Parameters
     ----------
     frame : DataFrame
-        Its index is a column of the table, too, if it has a name, or holds dates or durations. An xarray
-        Dataset counts as the frame that its `to_dataframe` returns.
+        The index is also a column if it has a name, or holds dates or durations. An xarray Dataset is
+        converted with its `to_dataframe`.
 
     Raises
     ------
     InputError
-        It has no columns, or describes a recording that this version cannot read.
+        The frame has no columns, or describes a recording that this version cannot read.
     """
 
     source = "data frame"
@@ -70,7 +70,7 @@ class FrameTable:
         self._index = _named_index(frame)
         self.headers = tuple(map(str, self._labels))
         index = getattr(getattr(frame, "index", None), "dtype", None)
-        if self._index is None and getattr(index, "kind", "") == "f":  # times, but of what unit?
+        if self._index is None and getattr(index, "kind", "") == "f":  # times in an unknown unit
             self.header_place = (
                 "data frame, whose index has no name (rename_axis('time_s') names it)"
             )
@@ -88,7 +88,7 @@ class FrameTable:
         ]
 
     def raw(self, column: int) -> npt.NDArray[Any]:
-        """Return the values of a column as the frame has them; of dates with a zone those of UTC."""
+        """Return the values of a column as the frame has them; dates with a zone in UTC."""
         values = self._column(column)
         zone = getattr(getattr(values, "dt", None), "tz", None)
         if zone is not None:
@@ -102,7 +102,7 @@ class FrameTable:
         return [str(value) for value in np.asarray(self._column(column)).tolist()]
 
     def place(self, column: int, row: int) -> str:
-        """Return row and column of a value."""
+        """Return the place of a value: row and column."""
         return f"{self.source}, row {row}, column {self.headers[column]!r}"
 
     def _column(self, number: int) -> Any:
@@ -114,7 +114,7 @@ class FrameTable:
 
 
 def _named_index(frame: Any) -> tuple[str, Any] | None:
-    """The index of a frame with its name, if it is one that a table can show."""
+    """Return name and values of a frame's index if it can be a column; None otherwise."""
     index = getattr(frame, "index", None)
     if index is None or callable(index) or getattr(index, "nlevels", 1) != 1:
         return None

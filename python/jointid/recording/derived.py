@@ -1,4 +1,4 @@
-"""Velocity derived from position: differences where the position is fine, local cubics where it is coarse."""
+"""Velocity derived from position: differences for a fine position, local cubics for a coarse one."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from jointid.recording.signals import FloatArray
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DerivedVelocity:
-    """A velocity and how well it is known.
+    """A derived velocity and its noise.
 
     Attributes
     ----------
     velocity : ndarray, shape (n,)
         [rad/s] or [m/s], read-only.
     noise : ndarray, shape (n,)
-        Its standard deviation at each sample, from the position's noise [rad/s or m/s].
+        Standard deviation at each sample, from the position's noise [rad/s or m/s].
     refined : bool
-        Whether fits over more samples replaced the differences.
+        Whether local cubic fits replaced the differences.
     position_noise : PositionNoise
-        The encoder's step, white noise, and errors of the stamps.
+        Encoder step, white noise and time stamp errors.
     """
 
     velocity: FloatArray
@@ -39,13 +39,13 @@ class DerivedVelocity:
 def derived_velocity(
     time: FloatArray, position: FloatArray, gaps: tuple[Gap, ...], period: float
 ) -> DerivedVelocity:
-    """Return the velocity, with as much smoothing at each sample as the position's noise asks for.
+    """Return the velocity, with the smoothing at each sample that the position's noise requires.
 
-    It begins with second-order differences on the true time stamps. Where their noise is below 0.03 % of
-    the largest speed, they stay, bit for bit. Otherwise cubics are fitted at each sample over 5 to 101
-    samples, and the longest is used whose confidence interval meets those of all shorter ones
-    (intersection of confidence intervals: Goldenshluger and Nemirovski 1997; Katkovnik 1999): long in
-    smooth motion, short at reversals and where the joint breaks away. No fit reaches across a gap.
+    The velocity starts as second-order differences on the true time stamps. If their noise is below 0.03 % of
+    the largest speed, they are the result, bit for bit. Otherwise cubics are fitted at each sample over 5 to 101
+    samples. The longest fit is used for which the confidence interval overlaps those of all shorter fits
+    (intersection of confidence intervals: Goldenshluger and Nemirovski 1997; Katkovnik 1999). Fits are long in
+    smooth motion, and short at reversals and breakaway. No fit includes a gap.
 
     Parameters
     ----------
@@ -75,9 +75,9 @@ def derived_velocity(
 def differences(time: FloatArray, position: FloatArray, gaps: Sequence[Gap]) -> FloatArray:
     """Return the velocity by second-order differences on the true time stamps.
 
-    Central differences inside a gap-free stretch, one-sided ones of the same order at its ends:
-    exact for a quadratic. A stretch of two samples has the slope between them; a single sample
-    between two gaps has no difference to take and gets 0.
+    Differences are central inside a gap-free stretch, and one-sided of the same order at its ends. They are
+    exact for a quadratic. A stretch of two samples gets the slope between them. A single sample between two
+    gaps gets 0.
 
     Parameters
     ----------

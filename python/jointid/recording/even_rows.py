@@ -1,4 +1,4 @@
-"""A table whose rows were taken at a stated rate: with a time column, whatever the file has."""
+"""A table with a time column from a stated sample period."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -21,20 +21,20 @@ _HEADER = "time [s]"
 def as_stated(
     table: Table, sample_period: object, columns: Mapping[str, str | int | None] | None
 ) -> tuple[Table, Mapping[str, str | int | None] | None]:
-    """Return a table and the columns of its signals as a call states them: blocks of joints, and the rows' time.
+    """Apply the call's blocks of joints and sample period to a table; return it and the columns of its signals.
 
     Parameters
     ----------
     table : Table
     sample_period : float or None
-        [s]. None: the table has the time.
+        Time between rows [s]. None: the table has a time column.
     columns : mapping or None
-        As given to `load`.
+        Same as in `load`.
 
     Raises
     ------
     InputError
-        The period is no positive number, a time column is named, too, or a block cannot be read.
+        The period is not a positive number, a time column is also named, or a block cannot be read.
     """
     if isinstance(columns, Mapping) and any(":" in str(each) for each in columns.values()):
         from jointid.recording.blocks import with_blocks
@@ -61,13 +61,13 @@ def as_stated(
 
 
 class EvenRows:
-    """A table with one more column: the time of rows that were taken at an even rate.
+    """A table with an added time column, for rows taken at an even rate.
 
     Parameters
     ----------
     table : Table
     sample_period : float
-        [s].
+        Time between rows [s].
     """
 
     def __init__(self, table: Table, sample_period: float) -> None:
@@ -93,7 +93,7 @@ class EvenRows:
 
     @property
     def notes(self) -> dict[str, Any]:
-        """What a recording's metadata say about how the file was read."""
+        """Metadata entries on how the file was read."""
         notes = {**getattr(self._table, "notes", {}), "sample_period": self._period}
         return {**notes, "left_out": self._unread} if self._unread else notes
 
@@ -122,17 +122,17 @@ class EvenRows:
         return [repr(each) for each in self.numbers([column])[0].tolist()]
 
     def first_cell(self, column: int) -> str:
-        """Return the first cell of a column of the file as it stands there."""
+        """Return the first cell of a column as it is in the file."""
         from jointid.recording.table import first_cell
 
         return first_cell(self._table, column) if column < len(self._table.headers) else ""
 
     def raw(self, column: int) -> Any:
-        """Return a column of the file as it has it."""
+        """Return a column as the file has it."""
         from jointid.recording.table import raw_values
 
         return raw_values(self._table, column) if column < len(self._table.headers) else None
 
     def place(self, column: int, row: int) -> str:
-        """Return where a cell is."""
+        """Return the place of a cell."""
         return self._table.place(min(column, len(self._table.headers) - 1), row)

@@ -1,4 +1,4 @@
-"""Extra signals of a recording: named arrays that no fixed signal describes, and the columns that hold them."""
+"""Extra signals of a recording: arrays under the user's own names, and their columns."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from jointid.recording.table import Table
 from jointid.recording.units import Unit, unit_named
 
 PREFIX = "extra_"
-"""Begins the header of an extra signal in a saved recording."""
+"""Prefix of an extra signal's header in a saved recording."""
 
 UNITS_KEY = "extra_units"
-"""Key of a recording's metadata: name of an extra signal → text of its unit."""
+"""Metadata key: name of an extra signal → text of its unit."""
 
 _NAME = r"[A-Za-z_][A-Za-z0-9_]{0,59}"
-_INERTIA = r"[\s_(\[](kg|kgc|gc)[_·*]?m\^?[2²][)\]]?$"  # headers: SIGNAL_kgm2
+_INERTIA = r"[\s_(\[](kg|kgc|gc)[_·*]?m\^?[2²][)\]]?$"  # end of a header such as SIGNAL_kgm2
 _INERTIA_FACTORS = {"kg": 1.0, "kgc": 1e-4, "gc": 1e-7}
 
 
@@ -40,7 +40,7 @@ def checked_extra(extra: object) -> Mapping[str, FloatArray]:
     Raises
     ------
     InputError
-        No mapping, a name that is no identifier or is a signal's, or values that are no array of numbers.
+        The argument is not a mapping, a name is not an identifier or is a signal's name, or values are not numbers.
     """
     if not extra:
         return _NONE
@@ -59,7 +59,7 @@ _NONE: Mapping[str, FloatArray] = MappingProxyType({})
 
 
 def check_extra_name(name: object, argument: str) -> None:
-    """Raise `InputError` for what cannot be the name of an extra signal."""
+    """Raise `InputError` for an invalid name of an extra signal."""
     if not isinstance(name, str) or not re.fullmatch(_NAME, name):
         raise InputError(
             "a name of letters, digits and underscores is expected, like q6_rate",
@@ -84,9 +84,9 @@ class ExtraColumn:
     index : int
         0-based number of the column.
     unit : Unit or None
-        None: its header names no known unit, and the values stay as they are.
+        Unit in the header. None: no known unit; the values stay unchanged.
     shown : str
-        Text of the unit after conversion, e.g. "rad/s"; empty if it is not known.
+        Text of the unit after conversion, e.g. "rad/s"; empty if unknown.
     scale : float, optional
         Factor from file units to SI; replaces the unit's. Default: the unit's factor.
     """
@@ -110,20 +110,20 @@ def extra_columns(
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
 ) -> dict[str, ExtraColumn]:
-    """Return the columns of the extra signals that a call wants, and of those that were saved.
+    """Return the columns of the extra signals that the call names, and of saved extra signals.
 
     Parameters
     ----------
     table : Table
     wanted : collection of str, mapping of str to str or int, or None
-        Headers, which are then the names; or name → header or 0-based number.
+        Headers, which become the names; or name → header or 0-based number.
     units, scale : mapping, optional
-        As in `load`; entries of other signals are ignored.
+        Same as in `load`; entries of other signals are ignored.
 
     Raises
     ------
     InputError
-        Something else, a name that cannot be one, or no such column.
+        An argument has a wrong type, a name is invalid, or there is no such column.
     """
     found: dict[str, ExtraColumn] = {}
     if table.saved is not None:
@@ -167,7 +167,7 @@ def _unit(header: str) -> Unit | None:
 
 
 def named_extra(wanted: object) -> dict[str, str | int]:
-    """Return the columns that a call wants as extra signals, by name; raise `InputError` for something else."""
+    """Return name → column of the extra signals that a call names; raise `InputError` for a wrong type."""
     if wanted is None:
         return {}
     if isinstance(wanted, Mapping):

@@ -1,4 +1,4 @@
-"""What is said about how a file was read, from the metadata of its recording."""
+"""Remarks on how a file was read, from the recording's metadata."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,7 +7,7 @@ _SHOWN = 4
 
 
 def remarks(metadata: Mapping[str, Any]) -> list[str]:
-    """Return what is worth knowing about how a log was read; empty if it was as everybody expects.
+    """Return remarks on how a log was read; empty if there was nothing special.
 
     Parameters
     ----------

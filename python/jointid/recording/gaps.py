@@ -6,19 +6,19 @@ from jointid.base.values import dataclass
 from jointid.recording.order_statistics import median
 from jointid.recording.signals import FloatArray
 
-_LONG = 3.5  # median sample periods: two lost samples in a row make no gap, three do
+_LONG = 3.5  # median sample periods: three lost samples in a row make a gap, two do not
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gap:
-    """An interval between two samples that is much longer than the others.
+    """An interval between two samples that is much longer than the usual period.
 
     Attributes
     ----------
     index : int
-        The last sample before the gap.
+        Index of the last sample before the gap.
     start : float
-        Its time [s].
+        Time of this sample [s].
     duration : float
         Time to the next sample [s].
     """

@@ -1,4 +1,4 @@
-"""Headers word by word: which signal names like `joint1_pos`, `actual_q_0` or `Axis 1.ActPos` mean."""
+"""Meaning of headers, word by word: the signal of names such as `joint1_pos`, `actual_q_0` or `Axis 1.ActPos`."""
 
 import re
 from functools import lru_cache
@@ -29,14 +29,14 @@ _MEASURED = _words_of(
 _COMMANDED = _words_of(
     "desired des d target cmd command commanded set setpoint setpoints ref reference goal soll"
 )
-# Words that say nothing about which signal it is.
+# Words without information about the signal.
 _PLAIN = _words_of("joint joints jnt j dof state states msg msgs data field value main nc to plc")
-# A column of these is not the signal itself, whatever else the header says.
+# A header with one of these words is not the signal itself.
 _OTHER = _words_of(
     "error err errors limit limits min max offset std sigma raw_offset gain ext "
     "filtered friction gravity inertia model enabled valid flag status count"
 )
-_NUMBERED = frozenset(["axis", "achse"])  # say nothing where a number follows
+_NUMBERED = frozenset(["axis", "achse"])  # no information about the signal if a number follows
 _ROLES: dict[str, str] = {
     **dict.fromkeys(("motor", "mot"), "motor"),
     **dict.fromkeys(("link", "load"), "link"),
@@ -77,19 +77,19 @@ _TIMES = frozenset(
         *("unix time", "epoch", "epoch time", "rosbag timestamp", "date time", "datetime", "zeit"),
     }
 )
-# Two words that are one: q_dot is a velocity, i_q a current, time_stamp a stamp.
+# Pairs of words with one meaning: q_dot is a velocity, i_q a current, time_stamp a stamp.
 _JOINED = {("q", "dot"): "qdot", ("theta", "dot"): "dtheta", ("i", "q"): "iq", ("d", "q"): "dq"}
-_JOINED |= {("qfrc", "actuator"): "qfrc"}  # of MuJoCo; its other qfrc_... are computed
+_JOINED |= {("qfrc", "actuator"): "qfrc"}  # MuJoCo; its other qfrc_... are computed
 _WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+|[^\W\d_]+")
 AT_THE_LINK = "torque_at_the_link"
-"""Entry of the metadata: the header of a torque that may be measured behind the drive's friction."""
+"""Metadata key: header of a torque that may be measured on the link side, behind the drive's friction."""
 _AT_THE_LINK = re.compile(
     r"(?<![a-z])(joint_?torques?|tau_?j(oint)?|torque_?sensor|sensor_?torque|link_?(side_?)?torque)(?![a-z])"
 )
 
 
 def is_at_the_link(header: str) -> bool:
-    """Whether a header of a torque names the joint or a sensor, not the drive.
+    """Whether the header of a torque names the joint or a sensor, not the drive.
 
     Examples
     --------
@@ -99,22 +99,22 @@ def is_at_the_link(header: str) -> bool:
     return _AT_THE_LINK.search(re.sub(r"[\s.-]+", "_", header.casefold())) is not None
 
 
-PLAIN, WORDS, OF_A_JOINT = range(3)  # how directly a header names its signal, the clearest first
+PLAIN, WORDS, OF_A_JOINT = range(3)  # how clearly a header names its signal, clearest first
 
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What a header names.
+    """The meaning of a header.
 
     Attributes
     ----------
     signal : str
         ``"position"``, ...
     rank : int
-        `PLAIN`: the signal's own name; `WORDS`: with words around it, such as actual or measured;
-        `OF_A_JOINT`: with a number or the name of a joint.
+        `PLAIN`: the signal's own name. `WORDS`: the name with words such as actual or measured.
+        `OF_A_JOINT`: the name with the number or name of a joint.
     joint : str
-        That number or name. Default: none.
+        Number or name of the joint. Default: none.
     """
 
     signal: str
@@ -124,15 +124,15 @@ class Meaning:
 
 @lru_cache(maxsize=4096)
 def meaning_of(name: str) -> Meaning | None:
-    """Return what a header without its unit means, or None where a word of it is not understood.
+    """Return the meaning of a header without its unit, or None if a word in it is unknown.
 
-    What was commanded is never taken for what was measured: a commanded position is the
-    reference, a commanded torque or velocity no signal at all.
+    A commanded value is never taken for a measured one. A commanded position is the reference;
+    a commanded torque or velocity is no signal.
 
     Parameters
     ----------
     name : str
-        E.g. ``"actual_q_0"``.
+        The header, e.g. ``"actual_q_0"``.
 
     Examples
     --------
@@ -163,7 +163,7 @@ def _understood(words: list[str], joint: str) -> Meaning | None:
     for k, word in enumerate(words):
         after = words[k + 1] if k + 1 < len(words) else ""
         if word == "current" and QUANTITIES.get(after) in ("position", "velocity"):
-            measured = True  # the current position is the actual one
+            measured = True  # "current position" means the actual position
         elif (word == "m" and quantity == "torque") or word in _ROLES:
             if role:
                 return None

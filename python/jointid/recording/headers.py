@@ -1,4 +1,4 @@
-"""Headers: which signal and which unit they name."""
+"""Headers: the signal and the unit that they name."""
 
 import re
 from functools import lru_cache
@@ -30,24 +30,24 @@ ALIASES: dict[str, str] = {
 
 _AXIS = r"(?i)(?:axis|joint|motor|servo|id)[ _]?(\d+)"
 _INDEX = r"(?<=[\w\]])\[(\d+)\]"
-_SYMBOL = r"(?i)(?<![^\W_])i(?![^\W_])"  # of a current
+_SYMBOL = r"(?i)(?<![^\W_])i(?![^\W_])"  # symbol of a current
 
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """A header as it was understood.
+    """The parts of a header and their meaning.
 
     Attributes
     ----------
     name : str
-        In lower case, without unit.
+        The name in lower case, without unit.
     unit : Unit or None
     unknown : str
-        Text in the unit's place that is no known unit. Default: none.
+        Text at the unit's place that is no known unit. Default: none.
     meaning : Meaning or None
-        The signal that it names. Default: none is recognised.
+        The signal that the header names. Default: none is recognised.
     documented : Documented or None
-        What a product documents of its name. Default: it is no product's.
+        The product's documentation of this name. Default: no known product.
     """
 
     name: str
@@ -57,12 +57,12 @@ class Header:
     documented: Documented | None = None
 
 
-LONGEST = 300  # characters of a header that are looked at: name and unit stand at its end
+LONGEST = 300  # characters of a header that are examined: name and unit are at its end
 
 
 @lru_cache(maxsize=4096)
 def understood(header: str) -> Header:
-    """Return what a header says."""
+    """Return the parts and the meaning of a header."""
     header = header[-LONGEST:]
     text, unit, unknown = _divided(header)
     meaning = _meaning(text)
@@ -87,15 +87,15 @@ def _meaning(text: str) -> Meaning | None:
 
 
 def parsed(header: str) -> tuple[str, Unit | None, str]:
-    """Return a header's plain name, its unit, and the text in the unit's place that is no unit."""
+    """Return a header's plain name, its unit, and text at the unit's place that is no unit."""
     header = header[-LONGEST:]
     text, unit, unknown = _divided(header)
     return plain(text), unit, unknown
 
 
 def _divided(header: str) -> tuple[str, Unit | None, str]:
-    """Return name, unit and what is in the unit's place but no unit."""
-    if re.search(r"\((\d+,:|:,\d+)\)$", header):  # a part of a matrix: no unit in the brackets
+    """Return name, unit, and text at the unit's place that is no unit."""
+    if re.search(r"\((\d+,:|:,\d+)\)$", header):  # part of a matrix: the brackets hold no unit
         return header, None, ""
     header = re.sub(_INDEX, r"_\1", header)  # position[0] is a number, not a unit
     bracketed = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", header)
@@ -107,7 +107,7 @@ def _divided(header: str) -> tuple[str, Unit | None, str]:
     for first in range(2, len(parts), 2):  # the longest unit: rad_s before s
         suffix = "_".join(parts[first::2])
         if suffix.casefold() == "min":
-            break  # the least value: minutes are [min]
+            break  # minimum value; minutes are [min]
         unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
         if suffix and is_mega(suffix):
             return "".join(parts[: first - 1]), None, suffix

@@ -1,4 +1,4 @@
-"""What a notebook shows of a recording: its facts, and the range of each signal."""
+"""A recording's display in notebooks: its facts, and the range of each signal."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _shown(recording: Samples, name: str) -> str:
 
 
 def _range(name: str, unit: str, values: FloatArray) -> list[Html | str]:
-    # Of values whose squares are no floats, the rms is infinite.
+    # If a squared value overflows, the rms is infinite.
     with np.errstate(over="ignore"):
         size = float(np.sqrt(np.mean(values * values)))
     shown = (f"{number:.5g}" for number in (float(values.min()), float(values.max()), size))

@@ -1,4 +1,4 @@
-"""What tells one recording from another: bytes compared, fingerprint, one line of text."""
+"""Identity of a recording: comparison by bytes, fingerprint, one line of text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.recording.samples import Samples
 
 
 def same_fields(mine: dict[str, Any], theirs: dict[str, Any]) -> bool:
-    """Whether two recordings' arguments are equal; arrays by their bytes, as -0.0 is not 0.0 here."""
+    """Whether two recordings' arguments are equal. Arrays are compared by bytes: -0.0 differs from 0.0."""
     return list(mine) == list(theirs) and all(
         _same(value, theirs[name]) for name, value in mine.items()
     )

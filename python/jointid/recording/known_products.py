@@ -1,4 +1,4 @@
-"""Names that one product or standard gives its values, with the units that it documents."""
+"""Names of values in one product or standard, with the documented units."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from jointid.recording.units import UNITS, Unit
 
 _STEP = 2.0 * math.pi / 4096.0
 _RPM = UNITS["rpm"].factor
-_ALIKE = 1.5  # times: the documented speeds differ by 3 and more
+_ALIKE = 1.5  # factor between alike speeds; the documented units differ by a factor of 3 or more
 _OWNER = r"^((odrv|axis|joint|motor|servo|drive|encoder|id)_?\d*_)+"
-_OLDER = 1024  # counts of 300°, of older servos with the same names
+_OLDER = 1024  # counts per 300°, of older servos with the same names
 
 
 @dataclass(frozen=True, slots=True)
 class Documented:
-    """A value as a product documents it.
+    """A value in a product's documentation.
 
     Attributes
     ----------
     signal : str
         ``"position"``, ...
     source : str
-        Who documents it.
+        The product or standard.
     units : tuple of Unit
-        Possible units; the position's rate chooses among several. Empty: the name does not state a unit.
+        Possible units. Several: the position's rate of change selects one. Empty: the name states no unit.
     whole : bool
-        Whether the product's values are whole numbers: others were converted by somebody.
+        Whether the product's values are whole numbers; other values were converted before.
     asked : str
-        What it is in, where it has to be asked for. Default: nothing.
+        Description of the unit, if the user must state it. Default: none.
     factor : str
-        What its factor to SI is made of. Default: nothing.
+        Formula of the factor to SI. Default: none.
     """
 
     signal: str
@@ -95,16 +95,16 @@ PRODUCTS: dict[str, Documented] = {
         factor="0.00269 for XM, XH and XW, 0.001 for XL330 and XC330, 0.0065 for STS",
     ),
 }
-"""Plain name → what it is documented to be."""
+"""Plain name → its documentation."""
 
 
 def documented(name: str) -> Documented | None:
-    """Return what a header without its unit is documented to be; None where no product is known for it.
+    """Return the documentation of a header without its unit; None if no known product uses this name.
 
     Parameters
     ----------
     name : str
-        With or without the path of an object: ``"axis0.encoder.pos_estimate"``.
+        The name, with or without an object's path: ``"axis0.encoder.pos_estimate"``.
     """
     last = re.split(r"[./:]", name.strip())[-1]
     words = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", last)
@@ -112,9 +112,9 @@ def documented(name: str) -> Documented | None:
 
 
 def unit_in_table(known: Documented, table: Table, index: int) -> Unit | None:
-    """Return the unit of a column with a documented name; None where its numbers are not the product's.
+    """Return the unit of a column with a documented name; None if its numbers do not fit the product.
 
-    A raw reading has to be asked for: the name alone does not state its unit.
+    For a raw reading the user must state the unit, because the name does not.
     """
     if not known.whole:
         return known.units[0]
@@ -130,14 +130,14 @@ def unit_in_table(known: Documented, table: Table, index: int) -> Unit | None:
 
 
 def speed_unit(time: FloatArray, position: FloatArray, velocity: FloatArray) -> Unit | None:
-    """Return the documented unit of a servo's velocity that the position's rate shows; None where none fits.
+    """Return the documented unit of a servo's velocity that agrees with the position's rate; None if none fits.
 
     Parameters
     ----------
     time, position : ndarray, each of shape (n,)
-        In SI.
+        Time [s] and position [rad].
     velocity : ndarray, shape (n,)
-        As the servo has it.
+        Velocity in the servo's own unit.
     """
     square = float(velocity @ velocity)
     if len(time) < 2 or not square > 0.0:

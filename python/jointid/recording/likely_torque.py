@@ -1,4 +1,4 @@
-"""Which column of a foreign log may hold the torque, where no header says so."""
+"""Search for the torque's column in a foreign log, if no header names it."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ _DUTY = (
     "pwm",
     "volt",
     "present_load",
-)  # what makes a torque without being proportional to one
+)  # words of quantities that cause a torque but are not proportional to it
 _DIMENSIONS = ("torque", "force", "current", "voltage")
 _SUPPLY = ("supply", "battery", "bus", "limit", "max", "min", "enable", "temp")
 _ALIKE = 0.98  # correlation of another position, as of a reference
 
 
 def torque_column(table: Table, taken: Collection[int], position: int | None) -> int | None:
-    """Return the 0-based number of a column that may be proportional to the torque; None where nothing shows one.
+    """Return the 0-based number of a column that may be proportional to the torque; None if nothing indicates one.
 
-    It changes, does not follow the position, and its header has a unit or a word of torque or current, or a word of
-    a command. No duty or voltage is one, nor anything else of a log that has one.
+    The column changes and does not follow the position. Its header has a unit or word of torque or current, or a word
+    of a command. A duty or voltage is not accepted. In a log with a duty or voltage, a command is not accepted either.
 
     Parameters
     ----------
@@ -48,19 +48,19 @@ def torque_column(table: Table, taken: Collection[int], position: int | None) ->
 
 
 def quantity_of(header: str) -> str:
-    """Return whether a header's unit, or else its words, speak for a torque or a current; empty for neither."""
+    """Return "torque" or "current" if a header's unit, or without a unit its words, indicate one; otherwise ""."""
     unit = understood(header).unit
     if unit is not None and unit.dimension in ("torque", "force"):
         return "torque"
     if unit is not None and unit.dimension == "current":
         return "current"
     spoken = [each for each in ("torque", "current") if speaks_for(header, each)]
-    # A torque current is a current, a current torque the actual one: the last word is what it is.
+    # "torque current" is a current, "current torque" a torque: the last word decides.
     return max(spoken, key=lambda each: last_word_for(header, each), default="")
 
 
 def duty_column(table: Table, taken: Collection[int], position: int | None) -> int | None:
-    """Return the 0-based number of a column that is the duty or voltage of a servo; None where none is.
+    """Return the 0-based number of the column of a servo's duty or voltage; None if there is none.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def duty_column(table: Table, taken: Collection[int], position: int | None) -> i
 
 
 def _candidates(table: Table, taken: Collection[int], position: int | None) -> dict[int, str]:
-    """The words of the columns that may have to do with the torque, by number."""
+    """Return column number → words of its header, for columns that may be related to the torque."""
     motion = None if position is None else values_of(table, position)
     found: dict[int, str] = {}
     for index, header in enumerate(table.headers):
@@ -97,7 +97,7 @@ def _likeliest(table: Table, found: dict[int, str], group: tuple[str, ...]) -> i
 
 
 def _is_coded(table: Table, index: int) -> bool:
-    """Whether a header is of a driver's own number, as "pwm_raw"; the same quantity as a share is plainer."""
+    """Whether a header names a driver's raw number, such as "pwm_raw"; the same quantity as a ratio is preferred."""
     return "raw" in plain(table.headers[index])
 
 

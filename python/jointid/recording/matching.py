@@ -1,4 +1,4 @@
-"""The one column of each signal: chosen among its candidates, left out and said, or refused."""
+"""Choice of one column per signal: from its candidates, left out with a reason, or refused."""
 
 from collections.abc import Mapping
 from dataclasses import field
@@ -9,23 +9,23 @@ from jointid.recording.columns import Column, candidates_of
 from jointid.recording.signals import NEEDED, SIGNALS, TORQUES, dimensions
 from jointid.recording.table import Table
 
-# Signals whose dimension shows the kind of joint, the clearest first.
+# Signals with a dimension that shows the kind of joint, clearest first.
 _SHOWING_KIND = ("position", "link_position", "reference", "velocity", "torque")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Match:
-    """Which column holds each signal.
+    """The column of each signal.
 
     Attributes
     ----------
     found : dict of str to Column
         Signal → its column, in the order of `SIGNALS`.
     kind : str
-        Kind of the joint, as stated or as the units show.
+        Kind of the joint, as stated or from the units.
     left_out : list of dict
-        Columns that a header assigns to a signal and that are not read: ``"column"`` (the header),
-        ``"signal"`` and ``"reason"``.
+        Columns that match a signal but are not read: ``"column"`` (the header), ``"signal"`` and
+        ``"reason"``.
     """
 
     found: dict[str, Column]
@@ -43,8 +43,8 @@ def match_columns(
 ) -> Match:
     """Return the column of each signal present.
 
-    Time and position are needed; of the torque, the motor's torque and the current one. A column of
-    another signal with a foreign unit, or beside another one that fits as well, is left out.
+    Time and position are needed, and one of torque, motor torque and current. For any other signal, a column
+    is left out if its unit does not fit, or if another column fits equally well.
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ def match_columns(
     Raises
     ------
     InputError
-        A signal that is needed has no column, two, or one with a unit of another dimension, all of
-        them at once; a header, signal or unit that does not exist.
+        A needed signal has no column, two columns, or a unit of another dimension; one error names all of
+        them. Or a header, signal or unit does not exist.
     """
     found = candidates_of(table, columns=columns, units=units, scale=scale, kind=kind)
     absent = [signal for signal in NEEDED if not found.of.get(signal)]
@@ -86,7 +86,7 @@ def match_columns(
 
 
 def _take(table: Table, signal: str, candidates: list[Column], match: Match) -> InputError | None:
-    """Enter the column of a signal, or what is left out; return the error of one that is needed."""
+    """Enter the column of a signal, or why it is left out; return the error if the signal is needed."""
     fitting = [column for column in candidates if column.fits(signal, match.kind)]
     clearest = [c for c in fitting if c.rank == min(each.rank for each in fitting)]
     strict = table.saved is not None or candidates[0].chosen
@@ -119,12 +119,12 @@ def _leave_out(table: Table, signal: str, columns: list[Column], reason: str, ma
 
 
 def _kind_shown(table: Table, candidates: Mapping[str, list[Column]]) -> str:
-    """Return the kind of joint that the units show.
+    """Return the kind of joint from the units.
 
     Raises
     ------
     InputError
-        The columns of one signal are of a revolute and of a prismatic joint.
+        The columns of one signal have units of a revolute and of a prismatic joint.
     """
     for signal in _SHOWING_KIND:
         kinds = {

@@ -1,4 +1,4 @@
-"""What is put right in a recording by default before it is used: wrapped angles, rows that hold the row before."""
+"""Default corrections of a recording before use: wrapped angles, and rows that repeat the previous row."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from jointid.recording.unwrapping import unwrapped
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mend:
-    """One thing that was put right.
+    """One correction.
 
     Attributes
     ----------
     code : {"unwrapped", "held_rows", "held_torque"}
         Code of the finding.
     count : int
-        Wraps, or rows that were left out, or that hold the torque.
+        Number of wraps, of rows left out, or of rows that hold the torque.
     size : float
-        Size of a wrap [rad], usual number of rows per sample for held rows, or time [s] for a held torque.
+        Size of a wrap [rad]; usual number of rows per sample for held rows; hold time [s] for a held torque.
     """
 
     code: str
@@ -28,7 +28,7 @@ class Mend:
 
 
 def mended(run: Recording) -> tuple[Recording, tuple[Mend, ...]]:
-    """Return a recording as it was meant, and what was put right; the same recording where nothing was."""
+    """Return the corrected recording and the corrections; without corrections the same recording."""
     mends = []
     found = unwrapped(run)
     if found is not None:

@@ -1,4 +1,4 @@
-"""How far a joint moves, in steps of its encoder and in its noise."""
+"""Travel of a joint, in encoder counts and relative to the noise."""
 
 from __future__ import annotations
 
@@ -12,30 +12,28 @@ from jointid.base.values import dataclass
 from jointid.recording.recording import Recording
 
 WIDER = "a motion of at least some hundred encoder counts"
-_FEWEST = 50.0  # steps from the lowest position to the highest
-_WIDEST = (
-    12.0  # standard deviations from the lowest value of white noise to the highest, of a million
-)
+_FEWEST = 50.0  # encoder counts from the lowest position to the highest
+_WIDEST = 12.0  # range of a million samples of white noise, in standard deviations
 _LAGS = range(1, 5)  # samples
-_ALIKE = 0.3  # correlation of positions so far apart: white noise has none
+_ALIKE = 0.3  # correlation of positions at these lags: white noise has none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmallMotion:
-    """A motion of few steps, or none beside the noise.
+    """A motion of few encoder counts, or one that is lost in the noise.
 
     Attributes
     ----------
     travel, step : float
-        [rad] or [m]; the step of a position that lies on no grid is its smallest change.
+        [rad] or [m]. The step of a position without a grid is its smallest change.
     unchanged : float
-        Share of the samples without a change of position.
+        Share of samples without a change of position.
     noise : float
-        Standard deviation of the position where that is all there is [rad or m]; 0 where it moves by steps.
+        Standard deviation of a position that is noise alone [rad or m]; 0 for a motion by encoder counts.
     text : str
-        How far it moves, as a sentence.
+        The travel as a sentence.
     details : str
-        What shows it.
+        The evidence as a sentence.
     """
 
     travel: float
@@ -47,24 +45,24 @@ class SmallMotion:
 
     @property
     def steps(self) -> float:
-        """Travel in steps."""
+        """Travel in encoder counts."""
         return self.travel / self.step
 
 
 def small_motion(recording: Recording) -> SmallMotion | None:
-    """Return the motion of a recording if it is less than 50 steps of the encoder or noise alone, else None."""
+    """Return the motion of a recording if it is below 50 encoder counts or noise alone; otherwise None."""
     position = recording.position
     lowest, highest = recording.ranges["position"]
     travel = highest - lowest
     changes = np.abs(np.diff(position))
     largest = float(changes.max(initial=0.0))
-    changes = changes[changes > 1e-9 * travel]  # others are rounding errors
+    changes = changes[changes > 1e-9 * travel]  # smaller changes are rounding errors
     if not len(changes):
         return None
     step = float(changes.min())
     unchanged = 1.0 - len(changes) / (len(position) - 1)
     unit = recording.unit("position")
-    # The noise's estimate is the median of differences of third and higher order: what neighbours differ by bounds it.
+    # The noise estimate is the median of differences of third and higher order. Differences of neighbours bound it.
     noise = 0.0 if travel >= 2.0 * _WIDEST * largest else _noise_alone(recording, travel)
     if noise > 0.0:
         return SmallMotion(
@@ -88,9 +86,9 @@ def small_motion(recording: Recording) -> SmallMotion | None:
 
 
 def _noise_alone(recording: Recording, travel: float) -> float:
-    """The position's standard deviation if it is white noise, else 0.
+    """Return the position's standard deviation if it is white noise; otherwise 0.
 
-    A motion with few samples a period looks as large beside what neighbours differ by, but returns after some.
+    A motion with few samples per period has as large differences of neighbours, but it is correlated at some lag.
     """
     found = recording.derived.position_noise
     if found.quantum > 0.0 or travel >= _WIDEST * found.sigma:
@@ -122,7 +120,7 @@ def raise_if_still(recordings: Sequence[Recording]) -> None:
 
 
 def raise_if_hardly_moving(recordings: Iterable[Recording]) -> None:
-    """Raise `InputError` if one of the recordings is a motion of less than 50 steps of the encoder or noise."""
+    """Raise `InputError` if one of the recordings moves by less than 50 encoder counts, or is noise alone."""
     for number, recording in enumerate(recordings):
         small = small_motion(recording)
         if small is not None:

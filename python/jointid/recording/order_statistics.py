@@ -1,6 +1,6 @@
-"""The median, quantiles, and numbers without their repetitions.
+"""Median, quantiles and distinct numbers.
 
-NumPy's own functions import numpy.ma to ask for masks, which takes a third of the time that NumPy itself takes.
+NumPy's functions import numpy.ma to check for masks. This import takes a third of NumPy's own import time.
 """
 
 import numpy as np
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def median(values: ArrayLike) -> float:
-    """Return the median of all numbers of an array, the same bits as `numpy.median`.
+    """Return the median of all numbers of an array, identical to `numpy.median` bit for bit.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ def median(values: ArrayLike) -> float:
     Returns
     -------
     float
-        NaN if there is a NaN, or nothing.
+        NaN if the array holds a NaN or is empty.
     """
     flat = np.asarray(values, dtype=np.float64).ravel()
     if not len(flat):
@@ -32,14 +32,14 @@ def median(values: ArrayLike) -> float:
 
 
 def quantile(values: ArrayLike, share: float) -> float:
-    """Return the number below which a share of all numbers of an array are, the same bits as `numpy.quantile`.
+    """Return a quantile of all numbers of an array, identical to `numpy.quantile` bit for bit.
 
     Parameters
     ----------
     values : array_like
         Any shape; at least one number.
     share : float
-        From 0 to 1. Between two numbers, the place is interpolated.
+        Order of the quantile, 0 to 1; interpolated between two numbers.
 
     Returns
     -------
@@ -50,14 +50,14 @@ def quantile(values: ArrayLike, share: float) -> float:
 
 
 def quantile_of_sizes(values: ArrayLike, share: float) -> float:
-    """Return the number below which a share of the magnitudes of an array are; it needs one copy of the array.
+    """Return a quantile of the magnitudes of an array; this needs one copy of the array.
 
     Parameters
     ----------
     values : array_like
         Any shape; at least one number.
     share : float
-        As of `quantile`.
+        Same as in `quantile`.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def quantile_of_sizes(values: ArrayLike, share: float) -> float:
 
 
 def _quantile(parted: NDArray[np.float64], share: float) -> float:
-    """The quantile of an array that is put into another order."""
+    """Return the quantile of an array; changes the array's order."""
     place = (len(parted) - 1) * share
     low = min(int(place), len(parted) - 1)
     high = min(low + 1, len(parted) - 1)
@@ -81,7 +81,7 @@ def _quantile(parted: NDArray[np.float64], share: float) -> float:
 
 
 def distinct(values: ArrayLike) -> NDArray[np.int64]:
-    """Return each whole number of an array once, in order.
+    """Return the distinct whole numbers of an array, sorted.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def distinct(values: ArrayLike) -> NDArray[np.int64]:
     Returns
     -------
     ndarray of int64
-        As `numpy.unique` returns them.
+        Same as from `numpy.unique`.
     """
     ordered = np.sort(np.asarray(values, dtype=np.int64), axis=None)
     first = np.ones(len(ordered), dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Parts of a recording: between two times, in equal pieces, on another clock, or one signal by its name."""
+"""Parts of a recording: a time interval, consecutive parts, or one signal by name."""
 
 from collections.abc import Sequence
 from typing import Any, Self, overload
@@ -12,9 +12,9 @@ from jointid.recording.signals import FloatArray, closest
 
 
 class Parts(Changes):
-    """What a recording returns of itself."""
+    """Methods that return a part of a recording."""
 
-    __iter__ = None  # neither samples nor names are meant by `for`
+    __iter__ = None  # `for` over a recording is ambiguous: samples or names
 
     @overload
     def __getitem__(self, wanted: str) -> FloatArray: ...
@@ -65,17 +65,17 @@ class Parts(Changes):
         Parameters
         ----------
         start, stop : float, optional
-            [s], on the recording's clock, both included. Default: the first and last sample.
+            Times on the recording's clock [s], both included. Default: the first and last sample.
 
         Returns
         -------
         Recording
-            With the same time stamps and velocities, derived ones too.
+            The samples with the same time stamps and velocities, derived velocities too.
 
         Raises
         ------
         InputError
-            Fewer than 8 samples would be left, or a bound is no number.
+            Fewer than 8 samples would be left, or a bound is not a number.
         """
         from jointid.recording.slicing import slice_between
 
@@ -89,21 +89,21 @@ class Parts(Changes):
         Parameters
         ----------
         parts : int, optional
-            How many; their numbers of samples differ by one at most.
+            Number of parts; their lengths differ by one sample at most.
         at : sequence of float, optional
-            Instead of `parts`: the times [s] at which a new part begins, on the recording's
-            clock, increasing; a sample at such a time is the new part's first.
+            Instead of `parts`: increasing times on the recording's clock [s] at which a new part begins.
+            A sample at such a time belongs to the new part.
 
         Returns
         -------
         tuple of Recording
-            Named ``"NAME 1/3"``, ..., with the same time stamps and velocities, derived ones too.
+            Parts named ``"NAME 1/3"``, ..., with the same time stamps and velocities, derived velocities too.
 
         Raises
         ------
         InputError
-            Neither or both are given, a time is not inside the recording, or a part would have
-            fewer than 8 samples.
+            Neither or both arguments are set, a time is outside the recording, or a part would have fewer
+            than 8 samples.
         """
         from jointid.recording.slicing import slices_of
 

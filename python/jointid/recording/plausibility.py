@@ -1,4 +1,4 @@
-"""What no joint's recording holds: absurdly large values."""
+"""Checks for implausibly large values and sample periods."""
 
 import math
 from collections.abc import Mapping
@@ -7,20 +7,20 @@ import numpy as np
 
 from jointid.recording.signals import FloatArray
 
-LARGEST = 1e15  # in SI: beyond it a value is a mark for "none", or damaged
-_SLOW = 0.5  # [s]: a sample period in which friction's events are over
+LARGEST = 1e15  # in SI units: a larger value is damaged, or a code for "missing"
+_SLOW = 0.5  # [s]: a longer sample period misses all changes of friction
 TIME_UNITS = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
-_USUAL = 0.05  # [s]: the longest period that a unit is guessed for
+_USUAL = 0.05  # [s]: longest usual period, for the guess of a unit
 
 
 def time_unit(period: float) -> str:
-    """Return the unit in which stamps that are `period` apart give a usual sample period."""
+    """Return the unit in which `period` is a usual sample period."""
     factors = {"ms": 1e-3, "us": 1e-6}
     return next((unit for unit, factor in factors.items() if period * factor <= _USUAL), "ns")
 
 
 def slow_stamps(period: float) -> tuple[str, str] | None:
-    """Return what is said about a sample period [s] that is probably none, and the unit; None for a usual one."""
+    """Return a remark on an unlikely sample period [s], and its likely unit; None for a usual period."""
     if period < _SLOW:
         return None
     unit = time_unit(period)
@@ -31,14 +31,14 @@ def slow_stamps(period: float) -> tuple[str, str] | None:
 
 
 def too_large(signals: Mapping[str, FloatArray]) -> tuple[str, int] | None:
-    """Return signal and index of a value that is larger than any of a joint, or None."""
+    """Return signal and index of a value that is impossible for a joint, or None."""
     for signal, values in signals.items():
         if len(values) and max(float(values.max()), -float(values.min())) > LARGEST:
             return signal, int(np.argmax(np.abs(values)))
     return None
 
 
-# Largest usual amount in SI of a joint with a gear, and what a larger one probably is.
+# Largest usual magnitude of a joint with a gear, in SI units, and likely reasons for a larger one.
 _USUAL_AMOUNTS = {
     ("position", "revolute"): (4.0 * math.pi, "degrees or counts, or the motor’s side"),
     ("velocity", "revolute"): (20.0, "degrees a second or rpm, or the motor’s side"),
@@ -52,13 +52,13 @@ _USUAL_AMOUNTS = {
 
 
 def range_remark(signal: str, low: float, high: float, kind: str = "revolute") -> str:
-    """Return what is odd about a signal's range; empty where nothing is.
+    """Return a remark on an unusual range of a signal; empty for a usual range.
 
     Parameters
     ----------
     signal : str
     low, high : float
-        Smallest and largest value, in SI.
+        Smallest and largest value, in SI units.
     kind : {"revolute", "prismatic"}
 
     Examples

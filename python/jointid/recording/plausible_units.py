@@ -1,4 +1,4 @@
-"""Units that no header states, proposed by which of them makes a joint's motion possible."""
+"""Proposed units for columns without a stated unit: those that make a joint's motion plausible."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from jointid.recording.recording import Recording
 from jointid.recording.signals import FloatArray
 from jointid.recording.units import UNITS
 
-_WIDE = 4.0 * math.pi  # [rad]: two turns away from zero, which few joints reach
+_WIDE = 4.0 * math.pi  # [rad]: two turns from zero; few joints move further
 _WIDEST = 3.0 * 360.0  # [deg]
-_FAST = 50.0  # [rad/s] of a joint behind a gear
+_FAST = 50.0  # [rad/s], of a joint with a gear
 _LARGEST = {
     "current": (100.0, "A", "mA"),
     "torque": (5000.0, "N·m", "mNm"),
-}  # of the drive of a joint
+}  # largest usual values of a joint's drive
 _ALIKE = (
-    0.03  # of a velocity and the position's rate; 6 degrees a second (1 rpm) and 2π are 5 % apart
+    0.03  # tolerance of the velocity over the position's rate; the ratios 6 and 2π differ by 5 %
 )
 _PAIRS = (
     *(("rad", "rad_s"), ("deg", "deg_s"), ("rad", "deg_s"), ("rad", "rpm"), ("rad", "rev_s")),
@@ -35,9 +35,9 @@ class ProposedUnit:
     Parameters
     ----------
     unit : str
-        As in a header.
+        Unit as in a header.
     reason : str
-        Why, in a phrase with the values.
+        Reason as a phrase with the values.
     """
 
     unit: str
@@ -45,16 +45,16 @@ class ProposedUnit:
 
 
 def proposed_units(recording: Recording) -> dict[str, ProposedUnit]:
-    """Return by signal the units that are likelier than SI, of those that no header and no call states.
+    """Return signal → unit that is likelier than SI, for signals with no unit in the header or the call.
 
-    The position's and the velocity's are judged together, by the position's rate; the torque's and the current's by
+    Position and velocity are judged together, by the position's rate of change. Torque and current are judged by
     their size alone.
-    What is plausible in SI is not in the result, and neither is what no unit makes plausible.
+    Signals that are plausible in SI are not in the result, nor signals that no unit makes plausible.
 
     Parameters
     ----------
     recording : Recording
-        Read with SI units where none is stated; ``metadata["assumed_units"]`` says where.
+        Recording with SI assumed for the signals in ``metadata["assumed_units"]``.
 
     Examples
     --------
@@ -74,15 +74,15 @@ def proposed_units(recording: Recording) -> dict[str, ProposedUnit]:
 def unlikely_sizes(
     recording: Recording, signals: Collection[str], times: float = 1.0
 ) -> dict[str, ProposedUnit]:
-    """Return by signal the unit that makes a current or a torque plausible which few joints have.
+    """Return signal → unit that makes an unusually large current or torque plausible.
 
     Parameters
     ----------
     recording : Recording
     signals : collection of str
-        Those to judge.
+        Signals to judge.
     times : float
-        How many times as large as a usual joint's it may be. Default 1.
+        Allowed multiple of the largest usual value. Default 1.
     """
     found = {}
     for signal, (limit, unit, smaller) in _LARGEST.items() if recording.kind == "revolute" else ():

@@ -1,4 +1,4 @@
-"""The numbers of the columns that were matched: exact stamps, units that the numbers show, columns without numbers."""
+"""Reading the numbers of matched columns: exact stamps, units recognised by the numbers, columns without numbers."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,8 +19,8 @@ from jointid.recording.time_column import exact_time, stamps_note
 from jointid.recording.units import UNITS
 
 _NEEDED = ("time", "position", "torque")
-_COARSE = 1e6  # s: products with larger times are rounded by 0.1 ns and more
-MOTION = ("velocity", "sensor")  # without them the estimate is another: the user decides
+_COARSE = 1e6  # s: rounding errors of larger times exceed 0.1 ns
+MOTION = ("velocity", "sensor")  # without these the estimate would change, so the user decides
 
 
 def read_values(
@@ -32,16 +32,16 @@ def read_values(
     ----------
     table : Table
     found : dict of str to Column
-        Signal → its column. Changed: a time column whose unit was recognised, columns left out.
+        Signal → its column. Changed in place: recognised unit of time; columns left out are removed.
     left_out : list of dict
-        As in `Match`; what cannot be read and is not needed is appended.
+        Same as in `Match`; optional columns that cannot be read are appended.
     notes : dict
-        Entries of the metadata; what was recognised is entered.
+        Metadata entries; recognised units are added.
 
     Raises
     ------
     InputError
-        A cell that is needed is no number, or stamps may be in either of two units.
+        A needed cell is not a number, or two units are possible for the stamps.
     """
     values: dict[str, FloatArray] = {}
     if table.saved is None and found["time"].scale is None:
@@ -65,7 +65,7 @@ def read_values(
 
 
 def with_remedy(error: InputError, signal: str) -> InputError:
-    """Return the error with the advice to leave the signal out."""
+    """Return the error with advice to leave the signal out."""
     return InputError(
         error.reason,
         argument=error.argument,
@@ -78,7 +78,7 @@ def with_remedy(error: InputError, signal: str) -> InputError:
 def _recognise_time(
     table: Table, found: dict[str, Column], values: dict[str, FloatArray], notes: dict[str, Any]
 ) -> None:
-    """Enter the unit of stamps without one; subtract the first of those that a product would round."""
+    """Set the unit of stamps without one; subtract the first stamp if large values would be rounded."""
     time, stamps = found["time"], values["time"]
     first = float(stamps[0])
     with np.errstate(all="ignore"):
@@ -98,7 +98,7 @@ def _recognise_time(
 def _recognise_products(
     table: Table, found: dict[str, Column], values: dict[str, FloatArray], notes: dict[str, Any]
 ) -> None:
-    """Enter the units that products document; a servo's velocity has the one that the position's rate shows."""
+    """Set units from products' documentation; a servo's velocity gets the unit that agrees with the position's rate."""
     velocity = found.get("velocity")
     if velocity is not None and velocity.documented and len(velocity.documented.units) > 1:
         time, position = (found[name].to_si(values[name]) for name in ("time", "position"))
@@ -129,7 +129,7 @@ def _readable(
     numbers: Mapping[str, int],
     left_out: list[dict[str, str]],
 ) -> dict[str, FloatArray]:
-    """Read columns of which one holds no numbers: one that is not needed is left out."""
+    """Read columns one by one, because one holds no numbers; optional columns without numbers are left out."""
     for signal, index in numbers.items():
         column = found[signal]
         if table.saved is not None or column.chosen or signal in _NEEDED:

@@ -1,6 +1,6 @@
 """A recording: the signals of one joint over time, measured or simulated."""
 
-from __future__ import annotations  # so that `help` shows array_like by its name
+from __future__ import annotations  # so that `help` shows the name array_like
 
 import functools
 import os
@@ -157,15 +157,15 @@ class Recording(Parts):
         Parameters
         ----------
         df : DataFrame
-            Anything with `columns` and `df[column]`. Headers have the same meaning as in a file. The index counts as
+            Object with `columns` and `df[column]`. Headers have the same meaning as in a file. The index counts as
             a column if it has a name ("time_s"), or holds dates or durations.
         columns, units, scale, extra, gear_ratio, side, sample_period, kind, torque_hold
-            As in `load`.
+            Same as in `load`.
 
         Raises
         ------
         InputError
-            As in `load`; a row is named by its 0-based number.
+            Same errors as in `load`; rows are named by their 0-based number.
         """
         from jointid.recording.contents import read_contents
         from jointid.recording.dataframe import FrameTable
@@ -190,7 +190,7 @@ class Recording(Parts):
 
     @functools.cached_property
     def fingerprint(self) -> str:
-        """First 16 hexadecimal digits of the SHA-256 hash of the signals' names and bytes, extra ones too."""
+        """First 16 hexadecimal digits of the SHA-256 hash of all signals (names and bytes), extra signals included."""
         return fingerprint_of(self)
 
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
@@ -200,8 +200,8 @@ class Recording(Parts):
         Use it for methods that need equal steps, such as spectra and filters.
 
         Each gap-free stretch begins at its own first sample. Signals are interpolated linearly; a held torque
-        (``torque_hold="zoh"``: torque, motor_torque and current) keeps its last value. Gaps stay gaps.
-        Nothing is filtered: at a lower rate, noise aliases.
+        (``torque_hold="zoh"``: torque, motor_torque and current) keeps its last value. Gaps remain gaps.
+        There is no filter: at a lower rate, noise aliases.
 
         Parameters
         ----------
@@ -219,8 +219,8 @@ class Recording(Parts):
         Raises
         ------
         InputError
-            Not exactly one of `period` and `rate`, a value that is not positive, too few or too many samples
-            in the result, or a gap that would no longer be recognised.
+            Neither or both of `period` and `rate` are set, a value is not positive, the result has too few or too
+            many samples, or a gap would no longer be recognised.
         """
         from jointid.recording.resampling import resampled
 
@@ -229,15 +229,15 @@ class Recording(Parts):
         return type(self)(**{**self._fields(), **signals, "metadata": metadata})
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the recording as a data frame, one row a sample, in SI units.
+        """Return the recording as a data frame in SI units, one row per sample.
 
         `Recording.from_dataframe` returns an equal recording, bit for bit.
 
         Returns
         -------
         DataFrame
-            The signals by name, the extra ones by ``"extra_NAME"``; indexed by time [s]. Its `attrs` hold
-            the joint's kind, `torque_hold` and the metadata.
+            Columns are the signals by name, extra signals as ``"extra_NAME"``. The index is the time [s].
+            The frame's `attrs` hold the joint's kind, `torque_hold` and the metadata.
 
         Raises
         ------
@@ -255,19 +255,19 @@ class Recording(Parts):
         return frame_of(self)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the recording to a file, whole or not at all.
+        """Write the recording to a file, completely or not at all.
 
         `load` returns an equal recording, bit for bit.
 
         Parameters
         ----------
         path : path-like
-            Ends in ``.npz``, ``.csv`` or ``.csv.gz``; an existing file is replaced.
+            File name with ending ``.npz``, ``.csv`` or ``.csv.gz``; an existing file is replaced.
 
         Raises
         ------
         InputError
-            Another ending, or the folder does not exist.
+            The name has another ending, or the folder does not exist.
         OSError
             The file cannot be written; an existing one is untouched.
         """
@@ -292,5 +292,5 @@ class Recording(Parts):
         return str(html_facts(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # By the constructor: unpickled arrays are writable again.
+        # Use the constructor, because unpickled arrays are writable again.
         return functools.partial(type(self), **self._fields()), ()

@@ -12,8 +12,8 @@ from jointid.recording.samples import Samples
 from jointid.recording.signals import SHORTEST, FloatArray
 
 _HELD = ("torque", "motor_torque", "current")  # signals that `torque_hold` describes
-_MOST = 50_000_000  # samples: more come from a wrong unit
-_ROUNDING = 1e-6  # periods by which the last sample may miss the clock and still be included
+_MOST = 50_000_000  # samples: more result from a wrong unit
+_ROUNDING = 1e-6  # periods: the last sample may miss the clock by this and is still included
 
 
 def resampled(recording: Samples, period: float | None, rate: float | None) -> dict[str, Any]:
@@ -22,7 +22,7 @@ def resampled(recording: Samples, period: float | None, rate: float | None) -> d
     Raises
     ------
     InputError
-        As `Recording.resample`.
+        Same errors as `Recording.resample`.
     """
     step = _step(period, rate)
     argument = "period" if rate is None else "rate"
@@ -89,7 +89,7 @@ def _clock(time: FloatArray, step: float) -> FloatArray:
 
 
 def _held(clock: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray:
-    # A time stamp that is a rounding error before a sample belongs to this sample.
+    # A time stamp that precedes a sample by a rounding error belongs to this sample.
     slack = _ROUNDING * float(clock[1] - clock[0]) if len(clock) > 1 else 0.0
     last = np.searchsorted(time, clock + slack, side="right") - 1
     held: FloatArray = values[last]

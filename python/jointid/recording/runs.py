@@ -1,4 +1,4 @@
-"""Files that hold several runs: which column numbers them, and how to load one."""
+"""Files with several runs: the column that identifies the runs, and the call that loads one."""
 
 import math
 import re
@@ -17,7 +17,7 @@ _MOST = 8  # columns that are examined: each costs time in a long file
 
 
 def shifts_of_runs(time: FloatArray, runs: Sequence[Rows]) -> FloatArray:
-    """Return by how much each row's time moves so that each run begins after the one before it, a pause between them.
+    """Return the time shift of each row, so that each run begins after the previous one with a pause between.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def shifts_of_runs(time: FloatArray, runs: Sequence[Rows]) -> FloatArray:
 
 
 def one_run(contents: Contents) -> tuple[Action, ...]:
-    """Return how to load one run or all of them, if a column numbers the runs of a file.
+    """Return the calls that load one run or all runs, if a column identifies the runs of a file.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def one_run(contents: Contents) -> tuple[Action, ...]:
     Returns
     -------
     tuple of Action
-        Empty if there is no column by whose values the rows divide into runs of increasing time.
+        Empty if no column divides the rows into runs of increasing time.
     """
     signals = {column.index for column in contents.found.values()}
     headers = contents.table.headers
@@ -57,7 +57,7 @@ def one_run(contents: Contents) -> tuple[Action, ...]:
     for column, header in others[:_MOST]:
         try:
             runs = contents.rows_of(column)
-        except InputError:  # a damaged column, or one of another length: not of use here
+        except InputError:  # a damaged column, or one of another length, is of no use here
             continue
         long = [value for value, rows in runs.items() if len(rows) >= SHORTEST]
         if long and len(runs) > 1 and _increase(contents, runs):

@@ -1,4 +1,4 @@
-"""The samples of a joint's signals, and what follows from them: what a recording holds."""
+"""The samples of a joint's signals, and quantities that follow from them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from jointid.recording.signals import (
 
 
 class Samples:
-    """What a recording holds; its attributes are set by its constructor alone."""
+    """Content of a recording; only the constructor sets the attributes."""
 
     time: FloatArray
     position: FloatArray
@@ -57,7 +57,7 @@ class Samples:
 
     @functools.cached_property
     def ranges(self) -> Mapping[str, tuple[float, float]]:
-        """Smallest and largest value of each of `signals` by name, in its unit; extra ones are not among them.
+        """Smallest and largest value of each of `signals` by name, in its unit; without extra signals.
 
         Examples
         --------
@@ -80,17 +80,17 @@ class Samples:
 
     @functools.cached_property
     def doubtful(self) -> tuple[int, ...]:
-        """First sample of each interval that is left out because of what `late` says."""
+        """First sample of each interval that is left out because of `late`."""
         late = () if self.late is None else self.late[1:]
         return tuple(np.flatnonzero(late).tolist())
 
     @functools.cached_property
     def derived(self) -> DerivedVelocity:
-        """The velocity that the position gives, and its noise, whether or not one is recorded."""
+        """Velocity derived from the position, and its noise, also if a velocity is recorded."""
         return derived_velocity(self.time, self.position, self.gaps, self.sample_period)
 
     def unit(self, signal: str) -> str:
-        """Return the unit of a signal, e.g. ``"rad/s"``; ``"1"`` for the sensor, ``""`` for an extra one of none."""
+        """Return the unit of a signal, e.g. ``"rad/s"``; ``"1"`` for the sensor, ``""`` for an extra one without."""
         if signal in self.extra:
             return unit_of_extra(self.metadata, signal)
         check_signal_name(signal, "signal")

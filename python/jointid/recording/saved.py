@@ -1,4 +1,4 @@
-"""What a saved recording says of itself beside its columns, read back."""
+"""Reading the attributes of a saved recording, which are not columns."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
     Parameters
     ----------
     text : str
-        JSON, as `save_recording` writes it.
+        JSON text from `save_recording`.
     place : str
         File and line, for messages.
 
     Raises
     ------
     InputError
-        The text is not what `save_recording` writes, or a later version wrote it.
+        The text is not from `save_recording`, or a later version wrote it.
     """
     from jointid.base.schema import read_json
     from jointid.recording.saved_schema import SAVED

@@ -1,9 +1,9 @@
-"""The description of a saved recording, as it is read back: what it must hold."""
+"""Schema of the attributes of a saved recording."""
 
 from jointid.base.schema import LARGEST, Flag, Json, ListOf, Number, OrNull, Record, TableOf, Text
 from jointid.recording.signals import KINDS
 
-_TEXT = Text(longest=LARGEST)  # as long as a user may have made a name
+_TEXT = Text(longest=LARGEST)  # a user's name may have any length up to this
 _MOST = 10_000  # joints, signals and extra columns
 _ROBOT = Record(
     {

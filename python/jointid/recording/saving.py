@@ -26,9 +26,9 @@ def save_recording(recording: Samples, path: str | os.PathLike[str]) -> None:
 
 
 def attributes_text(recording: Samples) -> str:
-    """Return what of a recording is no column, as JSON; `saved_attributes` reads it."""
+    """Return the recording's attributes that are not columns, as JSON; `saved_attributes` reads them."""
     attributes = {name: getattr(recording, name) for name in ATTRIBUTES}
-    for name in ("metadata", "truth"):  # JSON knows dict, not read-only views
+    for name in ("metadata", "truth"):  # JSON needs a dict, not a read-only view
         attributes[name] = None if attributes[name] is None else dict(attributes[name])
     import json
 
@@ -67,4 +67,4 @@ _WRITERS: dict[str, Callable[[Samples], bytes]] = {
     ".csv.gz": _compressed_csv,
     ".npz": _npz,
 }
-ENDINGS = tuple(_WRITERS)  # of the files that a recording can be written to
+ENDINGS = tuple(_WRITERS)  # endings of the files that can be written

@@ -1,4 +1,4 @@
-"""Constant delays between the signals of a recording, taken away by shifting signals in time."""
+"""Removal of constant delays between the signals of a recording by time shifts."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 
 SHIFTED = ("torque", "sensor", "velocity")
-"""Signals that may be late against the position; "torque" stands for every signal of the drive."""
+"""Signals that may lag behind the position; "torque" stands for all signals of the drive."""
 
 _DRIVE = ("torque", "motor_torque", "current")
-_LONGEST = 1.0  # [s]; a longer delay is another recording
+_LONGEST = 1.0  # [s]; a longer delay is an input error
 
 
 def checked_shift(shift: object) -> dict[str, float]:
-    """Return delays by signal, those of zero left out.
+    """Return signal → delay, without zero delays.
 
     Parameters
     ----------
     shift : mapping of str to float
-        [s]; positive: the signal is late.
+        Delays [s]; positive: the signal is late.
 
     Raises
     ------
     InputError
-        Not a mapping, a signal that cannot be shifted, or not a number of at most 1 s.
+        The argument is not a mapping, a signal cannot be shifted, or a delay is not a number of at most 1 s.
     """
     if not isinstance(shift, Mapping):
         raise InputError(
@@ -57,21 +57,21 @@ def checked_shift(shift: object) -> dict[str, float]:
 
 
 def shifted(recording: Recording, delays: Mapping[str, float]) -> Recording:
-    """Return a recording whose late signals are moved to the position's clock; extra signals are on it already.
+    """Return a recording with late signals moved to the position's clock; extra signals are not moved.
 
-    A signal is interpolated linearly between its samples, which for a held torque is the mean over the
-    interval. The samples at the edges of a stretch, where a moved signal is not known, are left out.
+    Signals are interpolated linearly between samples; for a held torque this gives the mean over the
+    interval. Samples at the edges of a stretch are left out if a moved signal is not known there.
 
     Parameters
     ----------
     recording : Recording
     delays : mapping of str to float
-        As `checked_shift` returns it.
+        Result of `checked_shift`.
 
     Raises
     ------
     InputError
-        A velocity that was derived from the position, a signal that is not there, or a delay longer than
+        The velocity was derived from the position, the recording lacks a signal, or a delay is longer than
         the recording.
     """
     if not delays:

@@ -1,4 +1,4 @@
-"""The sides of a gear: what a motor's encoder and torque say at the joint."""
+"""The sides of a gear: conversion of motor-side signals to the joint side."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -13,7 +13,7 @@ JOINT, MOTOR = "joint", "motor"
 SIDES = (JOINT, MOTOR)
 _MOTION = ("position", "velocity", "reference")
 READ_FROM = "torque_read_from"
-"""Entry of the metadata: the signal that became the torque, where it is another one."""
+"""Metadata key: the signal that became the torque, if it was another one."""
 
 
 def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
@@ -22,7 +22,7 @@ def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
     Raises
     ------
     InputError
-        It is no finite number, or 0.
+        The ratio is not a finite number, or is 0.
     """
     if not is_finite(gear_ratio) or gear_ratio == 0:
         raise InputError(
@@ -40,29 +40,29 @@ def at_joint(
     gear_ratio: float | None,
     other_sides: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, Any]:
-    """Return the arguments of `Recording` at the joint, as far as the gear ratio is known.
+    """Return the arguments of `Recording` on the joint side, if the gear ratio is known.
 
-    Position, velocity and reference of the motor are divided by the ratio, torque and motor torque multiplied by
-    it, each by its own side. What stays on the motor's side says so in ``metadata["side"]``; its motor torque is
-    then the torque.
+    Motor-side position, velocity and reference are divided by the ratio; motor-side torque and motor torque are
+    multiplied by it. Without a ratio, signals stay on the motor side: ``metadata["side"]`` is then "motor", and
+    the motor torque is the torque.
 
     Parameters
     ----------
     fields : mapping
         Arguments of `Recording`, as arrays.
     side : str
-        "joint" or "motor": where position, velocity, reference and torque are.
+        Side of position, velocity, reference and torque: "joint" or "motor".
     gear_ratio : float or None
-        Signed; None: not known.
+        Signed ratio. None: not known.
     other_sides : mapping of str to str
-        Signal → its side, where that is another one. Default: none.
+        Signal → its side, if it differs from `side`. Default: none.
 
     Raises
     ------
     InputError
         Signals are on both sides, and the ratio is not known.
     """
-    if side == MOTOR and fields.get("torque") is None:  # its motor torque is then the torque
+    if side == MOTOR and fields.get("torque") is None:  # the motor torque is then the torque
         other_sides = {name: each for name, each in other_sides.items() if name != "torque"}
     there = {name: each for name, each in other_sides.items() if fields.get(name) is not None}
     if there and gear_ratio is None:
@@ -93,19 +93,19 @@ def at_joint(
 def stated_sides(
     side: str, other_sides: Mapping[str, str], stated: Mapping[str, str] | None
 ) -> tuple[str, Mapping[str, str]]:
-    """Return the side of the position and of what is on the other one, as the call states them.
+    """Return the side of the position, and the signals on the other side, as the call states them.
 
     Parameters
     ----------
     side, other_sides
-        As the headers say.
+        Sides from the headers.
     stated : mapping of str to str, or None
-        Signal → "joint" or "motor", as given to `load`.
+        Signal → "joint" or "motor", same as in `load`.
 
     Raises
     ------
     InputError
-        Another signal, or another side.
+        The signal has no side, or the side is neither "joint" nor "motor".
     """
     if not stated:
         return side, other_sides
@@ -131,21 +131,21 @@ def at_stated_sides(
     other_sides: Mapping[str, str] = MappingProxyType({}),
     place: str = "",
 ) -> dict[str, Any]:
-    """Return the arguments of `Recording` at the joint, the sides as the headers and the call state them.
+    """Return the arguments of `Recording` on the joint side; headers and the call state the sides.
 
     Parameters
     ----------
     fields, gear_ratio, side, other_sides
-        As in `at_joint`, before the call is heard.
+        Same as in `at_joint`, without the sides from the call.
     stated : mapping of str to str, or None
-        As in `stated_sides`.
+        Same as in `stated_sides`.
     place : str
         The file, for messages. Default: none.
 
     Raises
     ------
     InputError
-        As `at_joint` and `stated_sides`.
+        Same errors as `at_joint` and `stated_sides`.
     """
     try:
         own, others = stated_sides(side, other_sides, stated)
@@ -162,7 +162,7 @@ def at_stated_sides(
 def _unstated_torque(
     fields: Mapping[str, Any], stated: Mapping[str, str], gear_ratio: float | None
 ) -> bool:
-    """Whether the call puts a motion on the motor's side of a gear and nothing says on which side the torque is."""
+    """Whether the call sets the motion to the motor side, and the side of the torque is not stated."""
     at_motor = MOTOR in stated.values() and "torque" not in stated
     geared = gear_ratio is not None and abs(gear_ratio) != 1.0
     named = AT_THE_LINK in (fields.get("metadata") or {})

@@ -20,9 +20,9 @@ TORQUES = ("torque", "motor_torque", "current")  # one of them is needed
 Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]
 KINDS: tuple[str, ...] = get_args(Kind)
-SHORTEST = 8  # samples: fewer give no window with a residual
+SHORTEST = 8  # samples: with fewer, no window has a residual
 
-# For a revolute and for a prismatic joint; the first dimension is the one stored.
+# Dimensions for a revolute and for a prismatic joint; the first one is stored.
 _DIMENSIONS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "time": (("time",), ("time",)),
     "position": (("angle",), ("length",)),
@@ -37,7 +37,7 @@ _DIMENSIONS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "current": (("current",), ("current",)),
     "late": (("cycles",), ("cycles",)),
 }
-# Dimension → its SI unit in texts and in headers.
+# Dimension → SI unit in texts, and in headers.
 _SI = {
     "time": ("s", "s"),
     "angle": ("rad", "rad"),
@@ -56,7 +56,7 @@ _SI = {
 
 
 def dimensions(signal: str, kind: str | None) -> tuple[str, ...]:
-    """Return the dimensions a signal may have in a joint of a kind, of either kind for None."""
+    """Return the possible dimensions of a signal for a kind of joint; None: for both kinds."""
     revolute, prismatic = _DIMENSIONS[signal]
     if kind is None:
         return tuple(dict.fromkeys(revolute + prismatic))
@@ -79,13 +79,13 @@ def header_unit(signal: str, kind: str) -> str:
 
 
 def check_signal_name(name: object, argument: str) -> None:
-    """Raise `InputError` for what is no signal's name, with a suggestion.
+    """Raise `InputError` with a suggestion if the name is not a signal's.
 
     Parameters
     ----------
     name : object
     argument : str
-        The argument that the name is part of.
+        Argument that contains the name.
     """
     if name not in SIGNALS:
         close = closest(name, SIGNALS)
@@ -102,7 +102,7 @@ def check_signal_name(name: object, argument: str) -> None:
 
 
 def closest(name: object, known: Collection[str], cutoff: float = 0.6) -> str | None:
-    """Return the known name closest to a misspelt one, or None below a likeness of `cutoff`."""
+    """Return the known name closest to a misspelt one, or None if the similarity is below `cutoff`."""
     import difflib
 
     by_folded = {each.casefold(): each for each in known}
@@ -111,14 +111,14 @@ def closest(name: object, known: Collection[str], cutoff: float = 0.6) -> str | 
 
 
 def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArray:
-    """Return values as a read-only contiguous float64 array of one dimension.
+    """Return values as a read-only, contiguous, one-dimensional float64 array.
 
-    They are copied, unless they are such an array already.
+    Values are copied, unless they are already such an array.
 
     Parameters
     ----------
     name : str
-        Argument that the values come from; ``""`` where `place` says it.
+        Argument that the values come from; ``""`` if `place` states it.
     values : array_like, shape (n,)
     place : str
         File and column, for messages. Default: none.
@@ -126,11 +126,11 @@ def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArra
     Raises
     ------
     InputError
-        They are not numbers, masked, or not one-dimensional.
+        Values are not numbers, are masked, or are not one-dimensional.
     """
     if _frozen(values):
         return values
-    # Only what has a mask is worth the import of numpy.ma.
+    # Import numpy.ma only for values with a mask.
     if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray) and values.mask.any():
         index = int(np.flatnonzero(values.mask)[0])
         raise InputError(
@@ -143,7 +143,7 @@ def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArra
         raise no_numbers from None
     if array.dtype.kind not in "biufO":
         raise no_numbers
-    if array.dtype.kind == "O":  # text that looks like a number is still text
+    if array.dtype.kind == "O":  # text that looks like a number is refused
         _check_numbers(name, array, place)
     try:
         with np.errstate(over="ignore"):
@@ -161,7 +161,7 @@ def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArra
 
 
 def _frozen(values: object) -> TypeGuard[FloatArray]:
-    """Whether this is a signal's array already: contiguous, owning its memory, read-only."""
+    """Whether this is already a signal's array: contiguous, read-only, and owner of its memory."""
     return (
         type(values) is np.ndarray
         and values.dtype == np.float64
@@ -174,7 +174,7 @@ def _frozen(values: object) -> TypeGuard[FloatArray]:
 
 def _check_numbers(name: str, array: npt.NDArray[np.object_], place: str) -> None:
     for index, value in enumerate(array.flat):
-        # Older NumPys take a list of one number for the number.
+        # Older NumPy versions convert a list of one number to this number.
         other = isinstance(value, str | bytes) or (isinstance(value, np.ndarray) and value.ndim > 0)
         try:
             number = not other and float(value) is not None
@@ -193,23 +193,23 @@ def check_signals(
     source: str = "",
     time_remedy: Callable[[], tuple[str | Action, ...]] = tuple,
 ) -> None:
-    """Raise `InputError` for signals that no recording can hold.
+    """Raise `InputError` for signals that cannot form a recording.
 
     Parameters
     ----------
     signals : mapping of str to ndarray, each of shape (n,)
-        ``"time"`` among them.
+        Signals by name, with ``"time"``.
     place : callable
-        Takes a signal and an index, returns where this sample is. Default: ``"index 5"``.
+        Takes signal and index, returns the place of this sample. Default: e.g. ``"index 5"``.
     source : str
-        The file, the place of what concerns no single sample. Default: none.
+        The file, for messages about no single sample. Default: none.
     time_remedy : callable
-        Returns what to do about time stamps that go back. Default: nothing.
+        Returns remedies for time stamps that go back. Default: none.
 
     Raises
     ------
     InputError
-        Different lengths, fewer than 8 samples, a value that is not finite, time stamps that do
+        Lengths differ, there are fewer than 8 samples, a value is not finite, or time stamps do
         not strictly increase.
     """
     time = signals["time"]

@@ -1,4 +1,4 @@
-"""Slices of a recording: the samples between two times, or of each of several parts."""
+"""Slices of a recording: the samples between two times, or of consecutive parts."""
 
 import itertools
 from collections.abc import Sequence

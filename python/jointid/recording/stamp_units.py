@@ -1,4 +1,4 @@
-"""The unit of stamps for which none is stated: their size and their steps decide together."""
+"""The unit of stamps without a stated unit, from their size and their steps."""
 
 from collections.abc import Sequence
 
@@ -11,42 +11,42 @@ from jointid.recording.plausibility import slow_stamps
 from jointid.recording.signals import FloatArray
 from jointid.recording.units import UNITS, Unit
 
-FILE_TIME = Unit(name="100 ns", dimension="time", factor=1e-7)  # of Windows: since 1601
+FILE_TIME = Unit(name="100 ns", dimension="time", factor=1e-7)  # Windows file time, since 1601
 _EXAMINED = 100_000  # stamps
 _STEPS = (4.5e-5, 0.11)  # s: from 9 Hz to 22 kHz
 _DATES = (978_307_200.0, 4_102_444_800.0)  # s since 1970: 2001 to 2100
-_UPTIME = 1e8  # s: no clock runs for three years since it was switched on
+_UPTIME = 1e8  # s, three years: no clock runs longer after power-on
 _FILE_TIMES = (1.2e17, 1.5e17)  # 1981 to 2076
 _ETHERCAT = (5e17, 9e17)  # ns since 2000: 2015 to 2028
 _COUNTED = Action("call", {"sample_period": ...}, "if they count the rows", "load")
-_HOPELESS = 1e10  # a step that is long in every unit
+_HOPELESS = 1e10  # a step that is too long in every unit
 
 
 def unit_of_stamps(first: float, since: FloatArray, place: str) -> Unit | None:
-    """Return the unit that stamps without a stated one are in.
+    """Return the unit of stamps without a stated unit.
 
-    A unit is likely where the stamps are then a date between 2001 and 2100, or the time since a start less than
-    three years ago, and their steps between 45 µs and 110 ms. Digits alone do not tell: 13 of them are
-    milliseconds since 1970, or nanoseconds since a start half an hour ago.
+    A unit is likely if it meets two conditions. The stamps are a date between 2001 and 2100, or a time since a
+    start less than three years ago. Their steps are between 45 µs and 110 ms. The number of digits is not enough:
+    13 digits are milliseconds since 1970, or nanoseconds since a start half an hour ago.
 
     Parameters
     ----------
     first : float
         The first stamp, in the file's unit.
     since : ndarray, shape (n,)
-        Stamps less the first.
+        Stamps minus the first one, in the file's unit.
     place : str
-        For messages.
+        File and column, for messages.
 
     Returns
     -------
     Unit or None
-        None: seconds may be assumed, no date confirms them.
+        None: seconds may be assumed, but no date confirms them.
 
     Raises
     ------
     InputError
-        Two units are as likely, or none is; the remedies name them.
+        Two units are equally likely, or none is likely; the remedies name them.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def unit_of_stamps(first: float, since: FloatArray, place: str) -> Unit | None:
     if step <= _STEPS[1] and (second in fitting or not fitting):
         return second if _dated(size) else None
     likely = [unit for unit in fitting if _STEPS[0] <= step * unit.factor <= _STEPS[1]]
-    # A count of rows has the steps of milliseconds, too.
+    # A row counter has the same steps as milliseconds.
     if [unit.name for unit in likely] == ["ms"] and second in fitting:
         likely = [UNITS["ms"], second]
     if len(likely) == 1:
@@ -80,7 +80,7 @@ def _dated(size: float) -> bool:
 
 
 def _of_size(size: float) -> list[Unit]:
-    """The units in which a stamp is a date, or a time since a start."""
+    """Return the units in which a stamp is a date, or a time since a start."""
     fitting = [
         unit
         for unit in (UNITS[name] for name in ("s", "ms", "us", "ns"))
@@ -94,7 +94,7 @@ def _of_size(size: float) -> list[Unit]:
 
 
 def _nearest(units: Sequence[Unit], step: float) -> list[Unit]:
-    """The two units whose steps are nearest to those of a recording, the nearest first."""
+    """Return the two units with steps nearest to usual sample periods, nearest first."""
     if step > _HOPELESS:
         return []
     middle = float(np.log(_STEPS).mean())

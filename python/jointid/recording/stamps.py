@@ -1,4 +1,4 @@
-"""Time stamps that no float holds: ISO 8601, integers since an epoch, seconds with nanoseconds beside them."""
+"""Time stamps that a float cannot hold: ISO 8601, integers since an epoch, seconds with a column of nanoseconds."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -20,8 +20,8 @@ _DAY_FIRST = rf"(\d{{1,2}})([./])(\d{{1,2}})\2(\d{{4}}),?[T ]+{_CLOCK}"
 _NUMBER = r"(-?\d+)(?:[.,](\d+))?"
 _EPOCH = datetime(1970, 1, 1)
 _LARGE = 10**12  # smaller integers are exact as floats of seconds
-_LONGEST = 25  # digits: more are no stamps
-_KNOWN = 10_000  # seconds that are kept
+_LONGEST = 25  # digits: longer numbers are not stamps
+_KNOWN = 10_000  # number of cached seconds
 _WHOLE = r"(.*?)_?(tv_)?(?:secs?|seconds)"
 _PARTS = (
     (r"(.*?)_?(tv_)?(?:n(?:ano)?secs?|nanoseconds)", 1e9),
@@ -38,11 +38,11 @@ class Stamps:
     Attributes
     ----------
     seconds : ndarray, shape (n,)
-        Since the first stamp [s], exact to 1 ns.
+        Time since the first stamp [s], exact to 1 ns.
     first : str
-        The first stamp, as the file has it.
+        The first stamp in the form of the file.
     recognised : str
-        Unit that their size and steps show. Default: the file states it.
+        Unit recognised from size and steps. Default: the file states the unit.
     """
 
     seconds: FloatArray
@@ -51,7 +51,7 @@ class Stamps:
 
 
 def looks_exact(cell: str) -> bool:
-    """Whether a cell is a stamp that a float would round, or no number at all but a date with a time."""
+    """Whether a cell is a stamp that a float would round, or a date with a time."""
     number = re.fullmatch(_NUMBER, cell.strip())
     if number is None:
         return any(re.fullmatch(each, cell.strip()) for each in (_ISO, _DAY_FIRST, _CLOCK))
@@ -62,22 +62,22 @@ def looks_exact(cell: str) -> bool:
 def stamps_of(cells: Sequence[str], unit: Unit | None, place: str = "") -> Stamps | None:
     """Return stamps as seconds since the first, or None for cells that are no such stamps.
 
-    They are subtracted as integers. In 01.11.2025 the day is first; 01/11/2025 is read where the month
-    cannot be taken for the day, or all dates are the same. Clock times alone go on after midnight.
-    A time of day without a zone is taken as UTC throughout.
+    Stamps are subtracted as integers. In 01.11.2025 the day is first. 01/11/2025 is read only if month and day
+    cannot be confused, or if all dates are equal. Clock times without a date continue after midnight.
+    A time of day without a zone is taken as UTC.
 
     Parameters
     ----------
     cells : sequence of str
     unit : Unit or None
-        As stated for numbers. None: recognised by their size and steps.
+        Stated unit of numbers. None: recognised from size and steps.
     place : str
-        For messages. Default: none.
+        File and column, for messages. Default: none.
 
     Raises
     ------
     InputError
-        They may be in either of two units.
+        Two units are possible.
 
     Examples
     --------
@@ -106,18 +106,18 @@ def stamps_of(cells: Sequence[str], unit: Unit | None, place: str = "") -> Stamp
 def stamps_of_integers(
     values: npt.NDArray[Any], unit: Unit | None, place: str = ""
 ) -> Stamps | None:
-    """Return integers as seconds since the first, or None where floats hold them as well.
+    """Return integers as seconds since the first, or None if floats hold them exactly.
 
     Parameters
     ----------
     values : ndarray of int, shape (n,)
     unit, place
-        As in `stamps_of`.
+        Same as in `stamps_of`.
 
     Raises
     ------
     InputError
-        As `stamps_of`.
+        Same errors as `stamps_of`.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def stamps_of_clock(values: npt.NDArray[Any]) -> Stamps:
     Parameters
     ----------
     values : ndarray of datetime64 or timedelta64, shape (n,)
-        Without NaT; not empty.
+        Stamps without NaT; not empty.
     """
     nanoseconds = (values - values[0]).astype("m8[ns]").astype(np.int64)
     return Stamps(seconds=nanoseconds.astype(np.float64) / _SECOND, first=str(values[0]))
@@ -155,7 +155,7 @@ def _with_unit(
 
 
 def fraction_of(headers: Sequence[str], whole: int) -> tuple[int, float] | None:
-    """Return the column beside one of whole seconds that has their fraction, and its parts in a second.
+    """Return the column with the fraction of a column of whole seconds, and its units per second.
 
     Examples
     --------
@@ -174,13 +174,13 @@ def fraction_of(headers: Sequence[str], whole: int) -> tuple[int, float] | None:
 
 
 def fractions(headers: Sequence[str]) -> frozenset[int]:
-    """Return the columns that are the fraction of another's seconds."""
+    """Return the columns that hold the fraction of another column's seconds."""
     found = (fraction_of(headers, k) for k, each in enumerate(headers) if "sec" in each.casefold())
     return frozenset(each[0] for each in found if each)
 
 
 def with_fraction(whole: FloatArray, fraction: FloatArray, parts: float) -> FloatArray | None:
-    """Return seconds since the first stamp; None where one is no fraction, or the other not whole."""
+    """Return seconds since the first stamp; None if the seconds are not whole, or the fraction is out of range."""
     with np.errstate(invalid="ignore"):
         plain_parts = (fraction >= 0.0) & (fraction < parts) & (whole == np.floor(whole))
     if len(whole) != len(fraction) or not len(whole) or not plain_parts.all():
@@ -218,7 +218,7 @@ def _of_any_dates(cells: Sequence[str]) -> list[int] | None:
 
 
 def _iso(cells: Iterable[str], day: int, month: int) -> Iterator[str]:
-    """Yield dates with the year last as ISO 8601, up to one that is none."""
+    """Yield dates with the year last as ISO 8601, up to the first cell that is not such a date."""
     for cell in cells:
         match = re.fullmatch(_DAY_FIRST, cell.strip())
         if match is None:
@@ -228,7 +228,7 @@ def _iso(cells: Iterable[str], day: int, month: int) -> Iterator[str]:
 
 
 def _on_one_day(cells: Iterable[str]) -> Iterator[str]:
-    """Yield clock times as dates, up to one that is none."""
+    """Yield clock times as dates, up to the first cell that is not a clock time."""
     for cell in cells:
         match = re.fullmatch(_CLOCK, cell.strip())
         if match is None:
@@ -242,7 +242,7 @@ def _of_clocks(cells: Sequence[str]) -> list[int] | None:
         return None
     days, before = 0, found[0]
     for k, each in enumerate(found):
-        if each < before - _DAY // 2:  # midnight; a clock that is set back goes less far
+        if each < before - _DAY // 2:  # midnight; a clock adjustment goes back less
             days += 1
         before = each
         found[k] = each + days * _DAY
@@ -250,7 +250,7 @@ def _of_clocks(cells: Sequence[str]) -> list[int] | None:
 
 
 def _of_dates(cells: Iterable[str]) -> list[int] | None:
-    seconds: dict[str, int] = {}  # of a date and time without fraction, which many stamps have
+    seconds: dict[str, int] = {}  # cache by date and time without fraction, which many stamps share
     zones: dict[str, int] = {"": 0}
     found = []
     for cell in cells:
@@ -274,7 +274,7 @@ def _of_dates(cells: Iterable[str]) -> list[int] | None:
 
 
 def _zone(text: str) -> int:
-    """Nanoseconds that a zone is ahead of UTC."""
+    """Return the offset of a zone from UTC [ns]."""
     digits = re.sub(r"\D", "", text)
     if not digits:
         return 0
@@ -283,7 +283,7 @@ def _zone(text: str) -> int:
 
 
 def _of_numbers(cells: Sequence[str]) -> tuple[list[int], int] | None:
-    """Return numbers as integers, and how many of these make one of the file's unit."""
+    """Return numbers as scaled integers, and the scale: integers per unit of the file."""
     digits = 0
     for cell in cells:
         match = re.fullmatch(_NUMBER, cell.strip())

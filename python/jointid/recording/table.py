@@ -12,46 +12,46 @@ MOST_COLUMNS = 10_000
 
 
 class Table(Protocol):
-    """Named columns, wherever they come from."""
+    """Named columns of a file or data frame."""
 
     @property
     def source(self) -> str:
-        """What the messages call it, e.g. the file's path."""
+        """Name of the table in messages, e.g. the file's path."""
 
     @property
     def headers(self) -> tuple[str, ...]:
-        """One for each column."""
+        """Headers of the columns, one per column."""
 
     @property
     def other_names(self) -> Mapping[str, int]:
-        """Names that `columns=` may use besides the headers → their columns."""
+        """Names that `columns=` may use in addition to the headers → their columns."""
 
     @property
     def header_place(self) -> str:
-        """Where the headers are, for messages."""
+        """Place of the headers, for messages."""
 
     @property
     def saved(self) -> Mapping[str, Any] | None:
-        """Attributes of a saved recording; None for a table that `Recording.save` did not write."""
+        """Attributes of a saved recording; None if `Recording.save` did not write the table."""
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as numbers, each of shape (n,); raise `InputError` for a cell that is none."""
+        """Return columns as numbers, each of shape (n,); raise `InputError` for a cell that is not a number."""
 
     def text(self, column: int) -> list[str]:
         """Return a column as text."""
 
     def place(self, column: int, row: int) -> str:
-        """Return where a cell is, for messages."""
+        """Return the place of a cell, for messages."""
 
 
 def first_cell(table: Table, column: int) -> str:
-    """Return the first cell of a column as it stands in the file; empty where cells are no text."""
+    """Return the first cell of a column as it is in the file; empty if cells are not text."""
     found: str = table.first_cell(column) if hasattr(table, "first_cell") else ""
     return found
 
 
 def raw_values(table: Table, column: int) -> npt.NDArray[Any] | None:
-    """Return a column as the file has it, integers and dates not rounded; None where cells are text."""
+    """Return a column as the file has it, with integers and dates not rounded; None if cells are text."""
     if not hasattr(table, "raw"):
         return None
     values = table.raw(column)
@@ -59,17 +59,17 @@ def raw_values(table: Table, column: int) -> npt.NDArray[Any] | None:
 
 
 class RenamedTable:
-    """Columns of another table under other headers; what a reader changes in them it overrides.
+    """Columns of another table under other headers; subclasses override what they change.
 
     Parameters
     ----------
     table : Table
     headers : sequence of str, optional
-        Default: those of the table.
-    other_names : mapping of str to int, optional
-        Default: those of the table.
+        New headers. Default: those of the table.
+            other_names : mapping of str to int, optional
+                New alternative names. Default: those of the table.
     indices : sequence of int, optional
-        Number of each column in the table. Default: all in order.
+        Number of each column in the other table. Default: all columns in order.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class RenamedTable:
 
     @property
     def notes(self) -> dict[str, Any]:
-        """How the file was read."""
+        """Metadata entries on how the file was read."""
         return {**getattr(self._table, "notes", {}), **self._own_notes}
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
@@ -100,7 +100,7 @@ class RenamedTable:
         return self._table.text(self._indices[column])
 
     def first_cell(self, column: int) -> str:
-        """Return the first cell of a column as it stands in the file."""
+        """Return the first cell of a column as it is in the file."""
         return first_cell(self._table, self._indices[column])
 
     def raw(self, column: int) -> npt.NDArray[Any] | None:
@@ -108,5 +108,5 @@ class RenamedTable:
         return raw_values(self._table, self._indices[column])
 
     def place(self, column: int, row: int) -> str:
-        """Return where a cell is."""
+        """Return the place of a cell."""
         return self._table.place(self._indices[column], row)

@@ -1,4 +1,4 @@
-"""The time column of a table read without rounding, where its stamps ask for it."""
+"""Reading the time column of a table without rounding, if its stamps require it."""
 
 from typing import Any
 
@@ -20,18 +20,18 @@ from jointid.recording.table import Table, first_cell, raw_values
 
 
 def exact_time(table: Table, column: Column) -> Stamps | None:
-    """Return the stamps of a time column that numbers would round; None if they would not.
+    """Return the stamps of a time column if floats would round them; otherwise None.
 
     Parameters
     ----------
     table : Table
     column : Column
-        That holds the time.
+        The time column.
 
     Raises
     ------
     InputError
-        Their unit is in doubt, or one is missing.
+        The unit of the stamps is in doubt, or a stamp is missing.
     """
     beside = fraction_of(table.headers, column.index)
     if beside is not None:
@@ -68,7 +68,7 @@ def _of_raw(table: Table, column: Column, raw: npt.NDArray[Any], place: str) -> 
 
 
 def stamps_note(stamps: Stamps) -> dict[str, Any]:
-    """Return what a recording's metadata say about its stamps."""
+    """Return the metadata entries on a recording's stamps."""
     note: dict[str, Any] = {"first_stamp": stamps.first}
     if stamps.recognised:
         note["recognised_units"] = {"time": stamps.recognised}

@@ -13,22 +13,22 @@ OPENING, CLOSING = "# jointid run ", "# jointid session "
 
 
 def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
-    """Remove from a session's text what is no row: a truncated line, the opening and the closing line.
+    """Remove the lines of a session's text that are not rows: a truncated line, the opening and the closing line.
 
     Parameters
     ----------
     text : str
-        Text of a file that begins with `CSV_MARK`.
+        Text of a file with `CSV_MARK` at its beginning.
 
     Returns
     -------
     str
-        The same text if it is not a session's.
+        Text without these lines; unchanged if it is not a session's.
     dict or None
-        The metadata of the two lines; with ``"truncated": True`` if there is no closing line (the
-        session was killed, or the power failed). None if it is not a session's text.
+        Metadata of the opening and closing line, with ``"truncated": True`` if there is no closing line
+        (the session was killed, or the power failed). None if it is not a session's text.
     """
-    # Not by `metadata`: that is kept when the recording is saved again, complete.
+    # Do not decide by `metadata`: it stays when the complete recording is saved again.
     end = text.find("\n")
     if not _is_session(_json_object(text[len(CSV_MARK) : max(end, 0)])):
         return text, None
@@ -64,7 +64,7 @@ def with_metadata(saved: Mapping[str, Any], metadata: Mapping[str, Any]) -> dict
 
 
 def no_sample(metadata: Mapping[str, Any]) -> str:
-    """Return the reason why a session's file has no sample."""
+    """Return the reason why a session's file has no samples."""
     reason = metadata.get("stop")
     if reason:
         return f"the session ended before its first sample: {reason}"
@@ -73,10 +73,10 @@ def no_sample(metadata: Mapping[str, Any]) -> str:
 
 
 def unrecorded(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> list[str]:
-    """Return the signals that a session's file has a column for, but no values.
+    """Return the signals with a column but without values in a session's file.
 
-    These are a current with missing numbers, a sensor that reads exactly 0 throughout, and a run in which
-    nothing was late.
+    These are a current with missing numbers, a sensor that is exactly 0 throughout, and `late` in a run
+    without delays.
     """
     metadata = saved.get("metadata")
     if not (isinstance(metadata, Mapping) and metadata.get("session") is True):

@@ -22,13 +22,13 @@ class Unit:
     Attributes
     ----------
     name : str
-        As in a header, e.g. ``"rad_s"``.
+        Name as in a header, e.g. ``"rad_s"``.
     dimension : str
-        What it measures, in words: ``"angle"``, ``"torque"``, ...
+        Physical quantity: ``"angle"``, ``"torque"``, ...
     factor : float
         Factor to SI. Default 1.
     offset : float
-        Added after the factor, in SI units. Default 0; only temperatures have one.
+        Offset in SI units, added after the factor. Default 0; only temperatures have one.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Unit:
         if self.factor == 1.0 and self.offset == 0.0:
             return values
         parts = round(1.0 / self.factor)
-        # An overflow becomes inf, which the recording refuses, by signal.
+        # An overflow becomes inf, which the recording refuses with the signal's name.
         with np.errstate(over="ignore", under="ignore"):
             if parts > 1 and self.factor == 1.0 / parts:
                 # NOTE: 9 ms / 1000 is the double 0.009, 9 ms * 1e-3 is its neighbour.
@@ -134,7 +134,7 @@ _ALIASES: dict[str, str] = {
     }.items()
     for alias in aliases.split()
 }
-_PLURALS = {"degs": "deg", "rads": "rad"}  # per second among velocities; else a plural
+_PLURALS = {"degs": "deg", "rads": "rad"}  # per second for velocities; otherwise a plural
 _BY_FOLDED: dict[str, Unit] = {name.casefold(): unit for name, unit in UNITS.items()}
 
 
@@ -147,9 +147,9 @@ def find_unit(text: str) -> Unit | None:
 
 
 def is_mega(text: str) -> bool:
-    """Whether a text is a unit's name with the prefix mega: MNm, Mrad/s. In capitals alone, MNM, it is milli.
+    """Whether a text is a unit's name with the prefix mega: MNm, Mrad/s. In capitals only (MNM), M is milli.
 
-    A time is never in megaseconds: Msec is another way to write ms.
+    A time is never in megaseconds: Msec means ms.
     """
     name = _plain(text)
     unit = _folded(name)
@@ -175,16 +175,16 @@ def _folded(name: str) -> Unit | None:
 def unit_named(
     text: str, *, dimensions: tuple[str, ...] = (), argument: str = "unit", place: str = ""
 ) -> Unit:
-    """Return the unit that a text names, or list the known ones.
+    """Return the unit that a text names, or raise an error with the known units.
 
     Parameters
     ----------
     text : str
         A unit's name.
     dimensions : tuple of str
-        Dimensions whose units are listed when the name is unknown. Default: all.
+        Dimensions of the units that an error lists. Default: all.
     argument : str
-        The argument that the text was given for. Default ``"unit"``.
+        Argument that contains the text. Default ``"unit"``.
     place : str
         The file, for messages. Default: none.
 
@@ -220,7 +220,7 @@ def unit_named(
 
 
 def unit_names(dimensions: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return the names of the units of some dimensions; without any, of all."""
+    """Return the names of the units of these dimensions. Default: of all dimensions."""
     return tuple(
         name for name, unit in UNITS.items() if not dimensions or unit.dimension in dimensions
     )

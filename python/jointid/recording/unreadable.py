@@ -1,4 +1,4 @@
-"""Cells that are no numbers, among numbers: a table that reads them as missing, for rows that may be left out."""
+"""Unreadable cells in columns of numbers: they are read as missing, so that their rows can be left out."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from jointid.recording.table import RenamedTable, Table
 def read_leniently(
     read: Callable[[Table], Contents], table: Table, *, drop_invalid: bool
 ) -> Contents:
-    """Return the contents of a table; cells that are no numbers are NaN if damaged rows may be left out.
+    """Return the contents of a table; unreadable cells become NaN if damaged rows may be left out.
 
     Raises
     ------
     InputError
-        As `read`; where leaving out rows would help and is not asked for, it says so.
+        Same errors as `read`. If leaving out rows would help, the message proposes it.
     """
     if drop_invalid:
         return read(TolerantTable(table))
     try:
         return read(table)
-    except (TooLargeError, RepeatedHeaderError):  # as text its cells would hold still more
+    except (TooLargeError, RepeatedHeaderError):  # as text, the cells would need even more memory
         raise
     except InputError as error:
         refused = error
@@ -48,7 +48,7 @@ def read_leniently(
 
 
 class TolerantTable(RenamedTable):
-    """A table whose empty and unreadable cells are NaN, in columns where they are few.
+    """A table with NaN for empty and unreadable cells, in columns with few of them.
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ class TolerantTable(RenamedTable):
     """
 
     def __getattr__(self, name: str) -> Any:
-        """What only some tables have, such as the cells' own numbers."""
+        """Return attributes that only some tables have, such as their own numbers of cells."""
         return getattr(self._table, name)
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as numbers; raise `InputError` for one with many cells that are none."""
+        """Return columns as numbers; raise `InputError` for a column with many unreadable cells."""
         try:
             return self._table.numbers(columns)
         except TooLargeError:
@@ -76,6 +76,6 @@ class TolerantTable(RenamedTable):
         except InputError:
             cells = (number_in(cell) for cell in self._table.text(column))
             values = np.array([np.nan if each is None else float(each) for each in cells])
-            if not few(np.isfinite(values)):  # a column of another kind, not damaged rows
+            if not few(np.isfinite(values)):  # another kind of column, not damaged rows
                 raise
         return values

@@ -1,4 +1,4 @@
-"""Angles that start again after a turn: the wraps are found by what moves around them, and taken out."""
+"""Unwrapping of angles that start again after a turn, based on the motion around each wrap."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from jointid.recording.recording import Recording
 from jointid.recording.signals import FloatArray
 
 _TURN = 2.0 * math.pi
-_NEAR = 6  # steps on either side that say how the joint moves there
-_AWAY = 3.0  # times these steps: what may be left of a wrap without its turn
+_NEAR = 6  # steps on either side that show the joint's motion there
+_AWAY = 3.0  # times these steps: largest step that may remain after unwrapping
 _SLACK = 0.02  # of a turn
-_ALIKE = 0.03  # of another wrap's size
-_MANY = 3  # wraps that show a size other than a turn
+_ALIKE = 0.03  # tolerance of the size, relative to another wrap
+_MANY = 3  # wraps needed to show a size other than a turn
 
 
 def unwrapped(run: Recording) -> tuple[FloatArray, int, float] | None:
-    """Return the position without its wraps, how many there are, and their size; None where there is none.
+    """Return the position without wraps, the number of wraps, and their size; None if there is no wrap.
 
-    A wrap is a jump of a turn that the velocity, or the steps around it, contradict. A jump of another size is
-    one if several are alike and as large as the range of the position.
+    A wrap is a jump of one turn that contradicts the velocity or the steps around it. Jumps of another size are
+    wraps if several have the same size, and this size equals the range of the position.
     """
     if run.kind != "revolute":
         return None
@@ -58,12 +58,12 @@ def unwrapped(run: Recording) -> tuple[FloatArray, int, float] | None:
 
 
 def _least(position: FloatArray, steps: FloatArray) -> float:
-    """Smaller steps are no wraps: half of the range, or of a turn."""
+    """Return the smallest size of a wrap: half of the range, or of a turn."""
     return 0.5 * min(_TURN, float(np.ptp(position))) if len(steps) else math.inf
 
 
 def _between(steps: FloatArray, least: float) -> NDArray[np.intp]:
-    """Rows on the way of a jump that takes two steps: angles that were interpolated over a wrap."""
+    """Return the rows inside a jump of two steps: angles that were interpolated over a wrap."""
     rows = np.flatnonzero(np.abs(steps[1:] + steps[:-1]) > least)
     rows = rows[(rows > 0) & (rows < len(steps) - 2)]
     size, beside = np.abs(steps), np.maximum(np.abs(steps[rows - 1]), np.abs(steps[rows + 2]))
@@ -72,7 +72,7 @@ def _between(steps: FloatArray, least: float) -> NDArray[np.intp]:
 
 
 def _near(steps: FloatArray, large: NDArray[np.intp]) -> FloatArray:
-    """The steps near each large one; those that are large themselves count as none."""
+    """Return the steps near each large step; neighbours that are large themselves count as zero."""
     small = steps.copy()
     small[large] = 0.0
     reach = np.concatenate([np.arange(-_NEAR, 0), np.arange(1, _NEAR + 1)])
@@ -80,7 +80,7 @@ def _near(steps: FloatArray, large: NDArray[np.intp]) -> FloatArray:
 
 
 def _size(position: FloatArray, jumps: FloatArray) -> float:
-    """The size of the wraps: a turn, unless several alike are as large as the position's range."""
+    """Return the size of the wraps: a turn, or the position's range if several jumps have this size."""
     usual = median(np.abs(jumps))
     alike = np.abs(np.abs(jumps) / usual - 1.0) < _ALIKE
     whole = float(np.ptp(position))

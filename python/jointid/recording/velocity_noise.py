@@ -10,7 +10,7 @@ from jointid.recording.recording import Recording
 
 
 def follows_position(recording: Recording) -> bool:
-    """Whether the velocity is the one that the position gives."""
+    """Whether the velocity is the derivative of the position."""
     return recording.velocity_derived and np.array_equal(
         recording.velocity, recording.derived.velocity
     )
@@ -20,7 +20,7 @@ def noise_of_velocity(recording: Recording) -> float:
     """Return the standard deviation of the velocity's noise, a median over the samples [rad/s or m/s].
 
     For a derived velocity it follows from the position's noise. For a recorded velocity it follows from its own
-    steps and differences, which show neither a delay nor a filter.
+    quantization steps and differences. These do not show a delay or a filter.
     """
     if follows_position(recording):
         return median(recording.derived.noise)

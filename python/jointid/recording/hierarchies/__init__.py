@@ -1,1 +1,1 @@
-"""HDF5 files and MATLAB files of version 7.3: their datasets as columns, and groups that repeat."""
+"""HDF5 files and MATLAB files of version 7.3: their datasets as columns, and repeated groups."""

@@ -1,4 +1,4 @@
-"""The datasets of an HDF5 file that hold numbers, each split into vectors."""
+"""The numeric datasets of an HDF5 file, each split into vectors."""
 
 import math
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ _LONGEST = 1_000_000  # bytes of an attribute
 _LARGE_FILE, _LARGE = (
     20_000_000,
     200_000_000,
-)  # bytes; a small file's texts may be no more than large
+)  # bytes of texts that any file may hold, however small it is
 _LONGEST_PATH = 1000  # characters
 _WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
 _MATLAB_NUMBERS = (
@@ -34,15 +34,15 @@ class Vector:
     path : str
         Path of the dataset, without the first slash.
     field : tuple of str
-        The field of a table, and those inside it. Empty: the dataset has none.
+        Names of a table's field and of the fields inside it. Empty: the dataset has no fields.
     part : int, optional
-        0-based number of the column of a matrix. Default: the dataset is no matrix.
+        0-based column of a matrix. Default: the dataset is not a matrix.
     by_rows : bool
-        Whether the matrix has a row for each signal instead of a column.
+        Whether the matrix has one row per signal instead of one column.
     unit : str
-        From the dataset's attributes; empty if there is none.
+        Unit from the dataset's attributes; empty if there is none.
     name : str
-        A name that the file gives instead of that of the dataset. Default: none.
+        A name from the file that replaces the dataset's name. Default: none.
     """
 
     path: str
@@ -54,30 +54,30 @@ class Vector:
 
     @property
     def last(self) -> str:
-        """Its own name, without the groups."""
+        """Name of the dataset or field, without the groups."""
         return self.name or (".".join(self.field) if self.field else self.path.rpartition("/")[2])
 
     @property
     def group(self) -> str:
-        """The group that holds its dataset; empty for the file itself."""
+        """Path of the group that holds the dataset; empty for the file itself."""
         return self.path.rpartition("/")[0]
 
 
 def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
-    """Return the vectors of an open file, and what is not read.
+    """Return the vectors of an open file, and the objects that are not read.
 
     Parameters
     ----------
     file : h5py.File
     room : Room
-        For names that are read, too.
+        Counts the memory, also of the names.
 
     Raises
     ------
     InputError
-        An object's path or an attribute is far too long. More columns than may be looked through are cut.
+        An object's path or an attribute is far too long. Columns beyond the largest number are ignored.
     Exception
-        Whatever h5py raises for damaged bytes.
+        Any error that h5py raises for damaged bytes.
     """
     import h5py
 
@@ -85,9 +85,9 @@ def vectors_of(file: Any, room: Room) -> tuple[list[Vector], list[str]]:
     left_out: list[str] = []
 
     def visit(path: str, thing: Any) -> None:
-        if path.startswith("#"):  # MATLAB's own: contents of cells and objects
+        if path.startswith("#"):  # MATLAB's internal contents of cells and objects
             return
-        if len(path) > _LONGEST_PATH:  # of a group's long name, each object below it has its own
+        if len(path) > _LONGEST_PATH:  # each object in a group with a long name repeats that name
             raise InputError(
                 f"the path of an object has {len(path)} characters; at most {_LONGEST_PATH} are read",
                 place=str(file.filename),
@@ -145,7 +145,7 @@ def values_of(file: Any, vector: Vector) -> Any:
     Raises
     ------
     Exception
-        Whatever h5py raises for damaged bytes.
+        Any error that h5py raises for damaged bytes.
     """
     dataset = file[vector.path]
     if vector.field:
@@ -159,7 +159,7 @@ def values_of(file: Any, vector: Vector) -> Any:
 
 
 def _named_blocks(file: Any, vectors: list[Vector], room: Room) -> list[Vector]:
-    """Name the columns of a pandas frame's blocks, which stand in a dataset beside them."""
+    """Name the columns of a pandas frame's blocks by the dataset that holds their names."""
     named = []
     labels: dict[str, Any] = {}
     for vector in vectors:
@@ -178,7 +178,7 @@ def _named_blocks(file: Any, vectors: list[Vector], room: Room) -> list[Vector]:
 
 
 def _labels(items: Any, room: Room) -> Any:
-    """Return the names of a block's columns; none where they are no texts, or far too many."""
+    """Return the names of a block's columns; none if they are not texts, or far too many."""
     if items is None or items.dtype.kind != "S" or items.ndim != 1 or len(items) > _WIDEST:
         return ()
     hdf5_chunks.take(items, room)
@@ -202,12 +202,12 @@ def _flag(thing: Any, name: str) -> bool:
 
 
 def _attribute(thing: Any, name: str) -> str:
-    """Return an attribute that is a text, or some of which it is the first; else nothing.
+    """Return an attribute's text, or the first of its texts; empty if it is neither.
 
     Raises
     ------
     InputError
-        It holds far more: texts of any length may be one and the same in the file, and many when they are read.
+        It holds far more texts. A file may store one long text once and refer to it many times.
     """
     if name not in thing.attrs:
         return ""
@@ -225,7 +225,7 @@ def _attribute(thing: Any, name: str) -> str:
 
 
 def _text(value: Any) -> str:
-    """Return a text that an attribute holds; empty for anything else."""
+    """Return the text of an attribute; empty for any other value."""
     value = getattr(value, "flat", [value])
     first = next(iter(value), None) if not isinstance(value, str | bytes) else value
     if isinstance(first, bytes):

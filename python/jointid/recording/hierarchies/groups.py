@@ -1,4 +1,4 @@
-"""Groups of an HDF5 file that repeat: episodes or runs, of which one is chosen."""
+"""Repeated groups of an HDF5 file (episodes or runs), and the choice of one."""
 
 from collections.abc import Sequence
 
@@ -19,9 +19,9 @@ def chosen_vectors(place: str, vectors: Sequence[Vector], group: str | None) -> 
     place : str
         The file, for messages.
     vectors : sequence of Vector
-        All of the file.
+        All vectors of the file.
     group : str or None
-        A group's path; None if there is only one recording.
+        Path of a group. None: the file holds only one recording.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def chosen_vectors(place: str, vectors: Sequence[Vector], group: str | None) -> 
 
 
 def _repeated(vectors: Sequence[Vector]) -> list[str]:
-    """Return the groups that each hold a time and a position, or the like, of their own."""
+    """Return the groups with the same datasets, such as a time and a position in each."""
     times: dict[str, list[str]] = {}
     for vector in vectors:
         if ALIASES.get(parsed(vector.last)[0]) == "time":
@@ -67,7 +67,7 @@ def _repeated(vectors: Sequence[Vector]) -> list[str]:
 
 
 def _branches(groups: Sequence[str]) -> list[str]:
-    """Return where the paths of groups part: the episode, not the group of its observations."""
+    """Return the part of each path up to the first difference: the episode, not the group of its observations."""
     parts = [group.split("/") if group else [] for group in groups]
     shared = 0
     while all(len(p) > shared for p in parts) and len({p[shared] for p in parts}) == 1:
@@ -89,7 +89,7 @@ def _inside(vector: Vector, group: str) -> bool:
 
 
 def _above(vector: Vector, group: str) -> bool:
-    """Whether the dataset stands in a group that holds this one, e.g. a time for all of them."""
+    """Whether the dataset is in a parent of this group, e.g. one time for all groups."""
     return not vector.group or (
         f"{group}/".startswith(f"{vector.group}/") and vector.group != group
     )

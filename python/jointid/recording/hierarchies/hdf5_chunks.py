@@ -1,4 +1,4 @@
-"""What the packed chunks of an HDF5 dataset hold: the library unpacks all of it, also more than the dataset has."""
+"""Size checks of an HDF5 dataset's packed chunks: the library unpacks a chunk even if it exceeds the dataset."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from jointid.base.unpacking import Room
 
 _DEFLATE, _SHUFFLE, _CHECKSUM, _LZF = 1, 2, 3, 32000  # HDF5's numbers of filters
 _SUM = 4  # bytes of a checksum
-_REFERENCE = 16  # bytes of one to a text of any length
-# What these make depends on numbers in the file that the library does not check.
+_REFERENCE = 16  # bytes of a reference to a text of any length
+# The output size of these filters depends on numbers in the file that the library does not check.
 _UNREAD = {4: "szip", 5: "N-bit", 6: "scale-offset"}
 _TIMES = (
-    4  # what all chunks of a dataset may hold, of what there is room for: their edges are not read
+    4  # times the room: limit for all chunks of a dataset, as parts beyond its edges are not read
 )
 
 
@@ -28,7 +28,7 @@ class _Chunk(NamedTuple):
 
 
 def take(dataset: Any, room: Room) -> None:
-    """Count what a dataset takes when it is read.
+    """Count the memory that reading a dataset needs.
 
     Parameters
     ----------
@@ -38,18 +38,18 @@ def take(dataset: Any, room: Room) -> None:
     Raises
     ------
     InputError
-        It takes more than there is room for, or its chunks are packed by filters that are not read.
+        The dataset needs more memory than is allowed, or its chunks use filters that are not read.
     ValueError, zlib.error
-        A chunk is damaged: it does not hold what a chunk does, or cannot be unpacked. The library reads what is
-        in memory behind one that holds less.
+        A chunk is damaged: its size is wrong, or it cannot be unpacked. For a chunk that is too short, the
+        library would read memory behind it.
     """
     before = room.left
-    room.take(max(dataset.nbytes, 8 * dataset.size))  # as numbers are converted
+    room.take(max(dataset.nbytes, 8 * dataset.size))  # the conversion to float64 included
     if dataset.chunks is None:
         return
     element, known = _stored(dataset.id.get_type())
     size = math.prod(dataset.chunks) * element  # may be more than the dataset
-    if size > max(room.left, dataset.nbytes):  # one after the other, not counted together
+    if size > max(room.left, dataset.nbytes):  # each chunk counts alone
         room.take(size)
     if size * dataset.id.get_num_chunks() > _TIMES * before:
         room.take(size * dataset.id.get_num_chunks())
@@ -68,13 +68,11 @@ def take(dataset: Any, room: Room) -> None:
             remedy="save it with gzip or lzf",
         )
     for code, _, values, _ in described:
-        if code == _LZF and (
-            len(values) < 3 or values[2] < size
-        ):  # as much as is made, and no more
+        if code == _LZF and (len(values) < 3 or values[2] < size):  # exactly the expected size
             raise ValueError(f"an LZF filter makes less than a chunk of {size} bytes")
     most = dataset.file.id.get_filesize()
     for chunk, place in _chunks(dataset):
-        if chunk.size > most:  # the library would reserve as much
+        if chunk.size > most:  # the library would reserve this much memory
             raise ValueError(f"a chunk says that it takes {chunk.size} bytes of {most}")
         held = _held(dataset, chunk, place, filters, size)
         if known and held is not None and held != size:
@@ -85,11 +83,11 @@ def take(dataset: Any, room: Room) -> None:
 def _held(
     dataset: Any, chunk: Any, place: tuple[int, ...], filters: Sequence[int], size: int
 ) -> int | None:
-    """Return how many bytes a chunk holds, at most one more than it should; None where its filters are others'."""
+    """Return the bytes in a chunk, at most one more than expected; None if its filters are unknown here."""
     used = [code for k, code in enumerate(filters) if not chunk.filter_mask >> k & 1]
     if set(used) - {_DEFLATE, _SHUFFLE, _CHECKSUM}:
         return None
-    # The last chunks of a dimension may be left as they are, which h5py does not tell.
+    # The last chunks of a dimension may be stored unfiltered, which h5py does not report.
     edges = zip(place, dataset.chunks, dataset.shape, strict=True)
     plain = chunk.size == size and any(start + length > end for start, length, end in edges)
     if _DEFLATE not in used:
@@ -107,7 +105,7 @@ def _held(
 
 
 def _stored(kind: Any) -> tuple[int, bool]:
-    """Return how many bytes an element takes in the file, and whether that is sure."""
+    """Return the bytes of an element in the file, and whether this number is certain."""
     import h5py
 
     size = int(kind.get_size())
@@ -128,14 +126,14 @@ def _stored(kind: Any) -> tuple[int, bool]:
 
 
 def _chunks(dataset: Any) -> Iterator[tuple[Any, tuple[int, ...]]]:
-    """Yield size and filters of each chunk that is stored, and where it begins."""
+    """Yield size, filters and first index of each stored chunk."""
     if hasattr(dataset.id, "chunk_iter"):
         found: list[Any] = []
         dataset.id.chunk_iter(found.append)
         if all(_begins_at(dataset, chunk.chunk_offset) for chunk in found):
             yield from ((chunk, tuple(chunk.chunk_offset)) for chunk in found)
             return
-    # Some versions tell other places, also where they are asked for one. Only by reading it a chunk is sure.
+    # Some versions return wrong places. Only reading a chunk shows that its place is right.
     for place in product(*map(range, [0] * dataset.ndim, dataset.shape, dataset.chunks)):
         with suppress(
             OSError, RuntimeError, ValueError

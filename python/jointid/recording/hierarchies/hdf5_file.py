@@ -1,4 +1,4 @@
-"""An HDF5 file that is open, with its damage as one sentence and without garbage collection."""
+"""Opening an HDF5 file: damage becomes one clear error, and garbage collection is paused."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jointid.base.errors import InputError
 
 @contextmanager
 def _without_garbage_collection() -> Iterator[None]:
-    """Pause it; where several threads do, it goes on when the first one ends."""
+    """Pause garbage collection; with several threads it resumes when the first one ends."""
     resume = gc.isenabled()
     try:
         gc.disable()
@@ -26,11 +26,11 @@ def _without_garbage_collection() -> Iterator[None]:
 
 @contextmanager
 def opened(path: Path) -> Iterator[Any]:
-    """Open an HDF5 file to read it.
+    """Open an HDF5 file for reading.
 
-    No garbage is collected as long as it is open. When h5py makes an exception of the library's error, Python
-    before 3.12 may collect garbage at each object it makes; garbage with an HDF5 object in it is closed then,
-    which deletes the error's text before h5py has read it.
+    Garbage collection is paused while the file is open. Before version 3.12, Python may collect garbage while
+    h5py converts a library error to an exception. If the garbage holds an HDF5 object, closing it deletes the
+    error's text before h5py reads it.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ def opened(path: Path) -> Iterator[Any]:
     Raises
     ------
     InputError
-        The file is no HDF5 file, or is damaged: whatever is raised inside the block, as HDF5 documents no errors
-        for damaged bytes.
+        The file is not an HDF5 file, or is damaged. Any exception inside the block counts as damage, because HDF5
+        documents no errors for damaged bytes.
     OSError
         The file cannot be read.
     ModuleNotFoundError
@@ -52,7 +52,7 @@ def opened(path: Path) -> Iterator[Any]:
     """
     import h5py
 
-    path.open("rb").close()  # h5py would say less of a file that cannot be read
+    path.open("rb").close()  # for an unreadable file this error says more than h5py's
     try:
         with _without_garbage_collection():
             if not h5py.is_hdf5(path):

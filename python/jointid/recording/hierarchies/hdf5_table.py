@@ -21,20 +21,20 @@ from jointid.recording.table import MOST_COLUMNS
 class Hdf5Table:
     """An HDF5 file as a table of columns; only the columns used are read.
 
-    A column is a vector (n, n x 1 or 1 x n) or a field of a table, named by its dataset or field; by its whole
-    path where this name alone is not unique. The columns of a matrix are ``NAME(:,1)``, ``NAME(:,2)`` as
-    of other MATLAB files, or ``joint_1.NAME``, ``joint_2.NAME``; it has a row for each joint if it is wider than long.
+    A column is a vector (n, n x 1 or 1 x n) or a field of a table. Its name is that of its dataset or field, or the
+    whole path if this name is not unique. The columns of a matrix are ``NAME(:,1)``, ``NAME(:,2)`` as in other MATLAB
+    files, or ``joint_1.NAME``, ``joint_2.NAME``. A matrix that is wider than long has one row per joint.
 
     Parameters
     ----------
     path : Path
     group : str or None
-        Only what is below this group is read, and what stands beside it or above it. Default: everything.
+        Only this group is read, with the datasets of its parent groups. Default: the whole file.
 
     Raises
     ------
     InputError
-        The file is damaged, no HDF5 file, has no vectors, no such group, or several alike.
+        The file is damaged or not an HDF5 file, or it has no vectors, no such group, or several groups alike.
     ModuleNotFoundError
         h5py is not installed.
     """
@@ -60,7 +60,7 @@ class Hdf5Table:
                 remedy="save time and position as vectors",
             )
         self._vectors = chosen_vectors(str(path), vectors, group)
-        groups: dict[str, set[str]] = {}  # of what is called alike
+        groups: dict[str, set[str]] = {}  # name → groups that hold a vector of this name
         for vector in self._vectors:
             groups.setdefault(vector.last, set()).add(vector.group)
         names = [_name(vector, groups[vector.last]) for vector in self._vectors]
@@ -102,7 +102,7 @@ class Hdf5Table:
         return [f"{value:g}" for value in self.numbers([column])[0].tolist()]
 
     def place(self, column: int, row: int) -> str:
-        """Return file, dataset and 0-based index of a value."""
+        """Return the place of a value: file, dataset and 0-based index."""
         return f"{self.source}, dataset {self.headers[column]!r}, index {row}"
 
     def _read(self, columns: Sequence[int]) -> list[npt.NDArray[Any]]:
@@ -118,14 +118,14 @@ def _not_read(left_out: Sequence[str]) -> str:
 
 
 def _name(vector: Vector, groups: set[str]) -> str:
-    """Return a vector's name: of a matrix the number of its column behind it, as in other MATLAB files."""
+    """Return a vector's name, with the column number for a matrix, as in other MATLAB files."""
     if vector.name or vector.part is None:
         return _joint_group(vector, groups) + vector.last
     return f"{vector.last}(:,{vector.part + 1})"
 
 
 def _as_of_a_joint(vector: Vector) -> tuple[str, ...]:
-    """Return the other names of a matrix's column: the joint's number before that of the signal."""
+    """Return the other names of a matrix's column: the joint's number, then the signal."""
     if vector.name or vector.part is None:
         return ()
     name = f"joint_{vector.part + 1}.{vector.last}"
@@ -133,7 +133,7 @@ def _as_of_a_joint(vector: Vector) -> tuple[str, ...]:
 
 
 def _joint_group(vector: Vector, groups: set[str]) -> str:
-    """Return the group before the name where each of several groups holds one joint."""
+    """Return the group as prefix of the name if each of several groups holds one joint."""
     return f"{vector.group.rpartition('/')[2]}." if len(groups) > 1 and vector.group else ""
 
 

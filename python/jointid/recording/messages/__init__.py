@@ -1,1 +1,1 @@
-"""Messages of robots' logs (MCAP, ROS bags): their topics, their bytes as numbers, and a table of joints."""
+"""Messages in robots' logs (MCAP, ROS bags): topics, decoding to numbers, and a table of joints."""

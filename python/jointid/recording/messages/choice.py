@@ -1,4 +1,4 @@
-"""Which topic of a file is the recording: the one with joints, or the one that was named."""
+"""Choice of the topic to read: the named one, or the only one with joints."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -22,14 +22,14 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None, incomple
     topics : sequence of Topic
         All topics of the file.
     name : str or None
-        The one that was asked for; None for the only one with joints.
+        Name of the topic. None: the only topic with joints.
     incomplete : str
-        Why the file ends early; empty if it does not.
+        Reason why the file ends early; empty if it is complete.
 
     Raises
     ------
     InputError
-        There is no such topic, none with joints, or several.
+        There is no such topic, or no topic or several topics hold joints.
     """
     if not topics:
         why = f": {incomplete}" if incomplete else ""
@@ -56,7 +56,7 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None, incomple
 
 
 def _named(path: Path, topics: Sequence[Topic], name: str) -> Topic:
-    for slashes in ("", "/"):  # /joint_states is also found as joint_states
+    for slashes in ("", "/"):  # joint_states also finds /joint_states
         found = [each for each in topics if _bare(each.name, slashes) == _bare(name, slashes)]
         if found:
             return max(found, key=lambda topic: (is_joint_kind(topic.kind), topic.encoding in READ))

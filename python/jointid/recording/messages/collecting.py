@@ -11,7 +11,7 @@ from jointid.recording.messages.joints import Column
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 from jointid.recording.table import MOST_COLUMNS
 
-_MESSAGES, _BYTES = 4096, 4 << 20  # of a batch
+_MESSAGES, _BYTES = 4096, 4 << 20  # limits of a batch
 READ = ("cdr", "ros1", "json")
 """Encodings that are read."""
 
@@ -24,11 +24,11 @@ class Collected:
     ----------
     blocks : tuple of Block
     stamps : ndarray of int, shape (messages,), optional
-        Their own stamps [ns]; None if they have none, or only zeros.
+        Stamps in the messages [ns]; None if there are none, or only zeros.
     log_times : ndarray of int, shape (messages,)
-        When each was logged [ns].
+        Log time of each message [ns].
     not_compared : int
-        Topics with as many messages whose stamps were not compared with these: there are too many.
+        Number of topics with equally many messages that were not compared because there are too many topics.
     """
 
     blocks: tuple[Block, ...]
@@ -44,7 +44,7 @@ def collect(source: Source, topic: Topic) -> Collected:
     ----------
     source : Source
     topic : Topic
-        One of its topics, in an encoding that is read.
+        One of the source's topics, in a supported encoding.
 
     Raises
     ------

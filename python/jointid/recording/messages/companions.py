@@ -1,4 +1,4 @@
-"""Other topics whose messages have the same stamps: more columns of the same rows."""
+"""Other topics with the same stamps: they add columns to the same rows."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -11,17 +11,17 @@ from jointid.recording.messages.decoding import Block
 from jointid.recording.messages.joints import is_joint_kind
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
-_TRIED = 16  # messages whose stamps are compared before a topic is read
-_MOST_TOPICS, _LEAST_TOPICS = 256, 64  # that are compared
+_TRIED = 16  # first messages that are compared before a topic is read
+_MOST_TOPICS, _LEAST_TOPICS = 256, 64  # limits of the number of compared topics
 _PASSED = (
-    10_000_000  # messages of all that may be looked through for them: for each, those of the file
+    10_000_000  # messages that may be scanned in total: each topic needs one pass over the file
 )
 
 
 def with_companions(source: Source, chosen: Topic, collected: Collected) -> Collected:
-    """Return a topic's messages with the numbers of those topics that have exactly its stamps.
+    """Return a topic's messages, joined with those of the topics that have exactly the same stamps.
 
-    Their columns are ``TOPIC.FIELD``. Other topics are not put on the rows of this one: that would be
+    The added columns are ``TOPIC.FIELD``. Topics with other stamps are not added, because that would need
     interpolation.
 
     Parameters
@@ -29,7 +29,7 @@ def with_companions(source: Source, chosen: Topic, collected: Collected) -> Coll
     source : Source
     chosen : Topic
     collected : Collected
-        Its messages.
+        The topic's messages.
     """
     if collected.stamps is None or not is_joint_kind(chosen.kind):
         return collected
@@ -56,7 +56,7 @@ def _blocks(source: Source, topic: Topic, collected: Collected) -> list[Block]:
         if some is None or stamps is None or not np.array_equal(some, stamps[: len(some)]):
             return []
         found = collect(source, topic)
-    except DamageError:  # of a topic that nobody asked for
+    except DamageError:  # damage in a topic that was not requested
         return []
     if found.stamps is None or not np.array_equal(found.stamps, stamps):
         return []

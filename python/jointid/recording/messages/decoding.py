@@ -1,4 +1,4 @@
-"""Messages as blocks of numbers: those that are built alike are read together."""
+"""Decoding of messages to blocks of numbers; messages with the same layout are decoded together."""
 
 from collections.abc import Iterator, Sequence
 
@@ -20,21 +20,21 @@ from jointid.recording.messages.topic import DamageError, Topic
 from jointid.recording.signals import FloatArray
 
 _NANO = 1_000_000_000
-_MOST_LAYOUTS = 64  # that are tried on a message before it is walked by itself
+_MOST_LAYOUTS = 64  # layouts that are tried on a message before it is decoded field by field
 _Key = tuple[tuple[Path, ...], tuple[tuple[Path, str], ...]]  # places of the numbers, and names
 Integers = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """The numbers of some messages with the same columns.
+    """The numbers of messages with the same columns.
 
     Attributes
     ----------
     columns : tuple of Column
     values : ndarray, shape (columns, messages)
     messages : ndarray of int, shape (messages,)
-        Their numbers in the topic.
+        Numbers of the messages in the topic.
     """
 
     columns: tuple[Column, ...]
@@ -44,7 +44,7 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """A layout, ready to be applied to many messages."""
+    """A layout, prepared for many messages."""
 
     places: npt.NDArray[np.intp]
     bytes_there: Bytes
@@ -63,7 +63,7 @@ class BinaryDecoder:
     Raises
     ------
     DamageError
-        Its type is not defined.
+        The topic's type is not defined.
     """
 
     def __init__(self, topic: Topic) -> None:
@@ -72,13 +72,13 @@ class BinaryDecoder:
         self._known: dict[int, list[_Known]] = {}
 
     def decode(self, batch: Sequence[bytes], first: int) -> tuple[list[Block], Integers | None]:
-        """Return the blocks of some messages, and their own stamps [ns] if they have one.
+        """Return the blocks of some messages, and the stamps in the messages [ns] if there are any.
 
         Parameters
         ----------
         batch : sequence of bytes
         first : int
-            Number of its first message in the topic.
+            Number of the batch's first message in the topic.
 
         Raises
         ------
@@ -155,7 +155,7 @@ class JsonDecoder:
         self._known: dict[_Key, tuple[dict[Column, int], tuple[int, int] | None]] = {}
 
     def decode(self, batch: Sequence[bytes], first: int) -> tuple[list[Block], Integers | None]:
-        """As `BinaryDecoder.decode`."""
+        """Same as `BinaryDecoder.decode`."""
         stamps = np.zeros(len(batch), dtype=np.int64)
         stamped = True
         groups: dict[_Key, tuple[list[int], list[tuple[float, ...]]]] = {}
@@ -200,7 +200,7 @@ def _nanoseconds(seconds: float, rest: float, number: int) -> int:
 
 def _known(layout: Layout, message: bytes, kind: str) -> _Known:
     paths: list[Path] = []
-    owners: list[tuple[int, int]] = []  # part, and element in it
+    owners: list[tuple[int, int]] = []  # part, and element in the part
     for part, (path, _, _, count) in enumerate(layout.numbers):
         paths += [(*path, k) for k in range(count)] if count else [path]
         owners += [(part, k) for k in range(max(count, 1))]

@@ -1,4 +1,4 @@
-"""Message types: the fields of each, from the definition that a file holds."""
+"""Message types: the fields of each, from the definition in the file."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -9,7 +9,7 @@ from jointid.recording.messages.topic import DamageError, Topic
 
 _LONGEST = 200_000  # characters of a definition
 
-Field = tuple[str, Any]  # name, and the description as rosbags writes it
+Field = tuple[str, Any]  # name, and its description in the form of rosbags
 Types = Mapping[str, Sequence[Field]]
 
 
@@ -28,12 +28,12 @@ def normal_kind(kind: str) -> str:
 def types_of(topic: Topic) -> Types:
     """Return the fields of a topic's type and of all types inside it.
 
-    What the file does not define is looked up among the common types of ROS 2.
+    Types that the file does not define are taken from the common types of ROS 2.
 
     Raises
     ------
     DamageError
-        The definition cannot be read, or there is none.
+        The definition cannot be read or is missing.
     """
     return _types(topic.kind, topic.definition, topic.definition_format)
 
@@ -49,7 +49,7 @@ def _types(kind: str, definition: str, form: str) -> Types:
         try:
             idl = form == "ros2idl"
             found = get_types_from_idl(definition) if idl else get_types_from_msg(definition, kind)
-        # The parser documents no other error, and definitions come from anybody.
+        # The parser documents no other error, and a file's definition may be anything.
         except Exception as error:
             raise DamageError(
                 f"the definition of {kind} cannot be read ({reason_of(error)})"

@@ -1,4 +1,4 @@
-"""What the numbers of a message are: which joint and which signal, or a field by its name."""
+"""Meaning of a message's numbers: joint and signal, or a field by its name."""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,7 +6,7 @@ from jointid.recording.messages.topic import DamageError
 
 Path = tuple[str | int, ...]
 
-# Field that names the joints → where each signal's values stand, the first that has values.
+# Field with the joints' names → fields of each signal's values; the first one with values counts.
 _SIGNALS: dict[str, dict[str, tuple[tuple[str, ...], ...]]] = {
     "JointState": {
         "position": (("position",),),
@@ -22,7 +22,7 @@ _SIGNALS: dict[str, dict[str, tuple[tuple[str, ...], ...]]] = {
 }
 _NAMES = {"JointState": "name", "JointTrajectoryControllerState": "joint_names"}
 _LISTED = {
-    # One record a joint: the list, its name, and the values in it.
+    # One record per joint: the list, its name, and the values in it.
     "JointStates": ("joints", "name"),
 }
 JOINT_KINDS = (*_SIGNALS, "DynamicJointState", *_LISTED)
@@ -34,9 +34,9 @@ _STAMPS = ("header", "stamp", "timestamp")
 
 
 def may_name(path: Path) -> bool:
-    """Whether a text at this place may name a joint: it stands in a list, or is called so.
+    """Whether a text at this place may name a joint: it is in a list, or its field is called a name.
 
-    Only these decide on what the numbers are; other texts, such as a frame's, may be anything.
+    Only these texts determine the meaning of the numbers; other texts, such as frame names, are ignored.
     """
     return path[-1] == "name" or isinstance(path[-1], int)
 
@@ -52,16 +52,16 @@ def short(kind: str) -> str:
 
 
 def unit_of(signal: str, kind: str) -> str:
-    """Return the unit of a joint's signal in a message: SI, by REP 103; empty if it is none of them."""
+    """Return the unit of a joint's signal in a message: SI, by REP 103; empty for any other field."""
     return _UNITS[kind].get(signal, "")
 
 
 Column = tuple[str, str]
-"""Joint, or nothing; and signal, or the field's path."""
+"""A joint's name or ""; and a signal or the field's path."""
 
 
 def stamp_of(numbers: Sequence[Path]) -> tuple[int, int] | None:
-    """Return the indices of a message's own stamp, seconds and nanoseconds; None if it has none."""
+    """Return the indices of the stamp in a message, seconds and nanoseconds; None if there is no stamp."""
     where = {path: index for index, path in enumerate(numbers)}
     for place in (("header", "stamp"), ("timestamp",), ("stamp",)):
         for seconds, rest in (("sec", "nanosec"), ("sec", "nsec"), ("secs", "nsecs")):
@@ -71,20 +71,20 @@ def stamp_of(numbers: Sequence[Path]) -> tuple[int, int] | None:
 
 
 def columns_of(kind: str, numbers: Sequence[Path], names: Mapping[Path, str]) -> dict[Column, int]:
-    """Return column → index of its number, for one layout of messages.
+    """Return column → index of its number, for one layout.
 
     Parameters
     ----------
     kind : str
-        The messages' type.
+        Type of the messages.
     numbers : sequence of paths
     names : mapping of path to str
-        The texts.
+        Texts in the message.
 
     Raises
     ------
     DamageError
-        The numbers do not fit the names, or a name stands twice.
+        The numbers do not fit the names, or a name occurs twice.
     """
     where = {path: index for index, path in enumerate(numbers)}
     type_name = short(kind)

@@ -7,7 +7,7 @@ from jointid.recording.messages.joints import Path, may_name
 from jointid.recording.messages.topic import DamageError
 
 _DEEPEST = 32
-_MOST = 8192  # numbers of a message
+_MOST = 8192  # numbers in a message
 
 
 def flattened(message: bytes) -> tuple[tuple[Path, ...], tuple[float, ...], dict[Path, str]]:
@@ -16,7 +16,7 @@ def flattened(message: bytes) -> tuple[tuple[Path, ...], tuple[float, ...], dict
     Raises
     ------
     DamageError
-        It is no JSON object, or a very large one.
+        The message is not a JSON object, or is very large.
     """
     try:
         value = json.loads(message)
@@ -54,4 +54,4 @@ def _flatten(
             _flatten(part, (*path, key), paths, numbers, names)
 
 
-_WHOLE = ("sec", "nsec", "nanosec", "secs", "nsecs")  # of a stamp: exact
+_WHOLE = ("sec", "nsec", "nanosec", "secs", "nsecs")  # parts of a stamp, kept exact

@@ -1,8 +1,8 @@
-"""Where the numbers of a serialised message stand (CDR of ROS 2, serialisation of ROS 1).
+"""Places of the numbers in a serialised message (CDR of ROS 2, serialisation of ROS 1).
 
-The messages of a topic are nearly all built alike: the lengths of their sequences and strings are the same, so
-that each number stands at the same place. One message is walked field by field; all others whose lengths and names
-are equal, byte for byte, are then read together.
+Nearly all messages of a topic have the same layout: their sequences and strings have the same lengths, so that each
+number is at the same place. One message is decoded field by field. All messages with the same lengths and names,
+byte for byte, are then decoded together.
 """
 
 import struct
@@ -35,24 +35,24 @@ _CODES = {
     "float64": "f8",
 }
 _BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4  # kinds of a field's description in rosbags
-_LONGEST = 1024  # numbers of a sequence that become columns: a longer one is an image or a scan
+_LONGEST = 1024  # numbers of a sequence; a longer sequence is an image or a scan
 _DEEPEST = 32
-_MOST = 8192  # numbers, and as many texts, of a message
-_SPARE = 10_000  # elements of a message beside one for each byte: some take none
+_MOST = 8192  # numbers in a message, and also texts
+_SPARE = 10_000  # elements of a message in addition to one per byte: some elements take no bytes
 
 
 @dataclass
 class Layout:
-    """The places of one message, which all messages like it share.
+    """The places of the numbers and names in messages with the same layout.
 
     Attributes
     ----------
     numbers : list of (path, offset, dtype, count)
-        Each number (count 0), or sequence of numbers, whose paths have their index behind this path.
+        Each number (count 0), or sequence of numbers; the paths of its elements are this path with their index.
     names : dict of path to str
         The texts that may name joints.
     fixed : list of (start, stop)
-        Bytes that decide on the layout: lengths, and the texts themselves.
+        Bytes that determine the layout: lengths and texts.
     """
 
     numbers: list[tuple[Path, int, str, int]] = field(default_factory=list)
@@ -67,15 +67,15 @@ def layout_of(message: bytes, kind: str, types: Types, encoding: str) -> Layout:
     ----------
     message : bytes
     kind : str
-        Its type.
+        Type of the message.
     types : mapping
-        As `types_of` returns it.
+        Types from `types_of`.
     encoding : {"cdr", "ros1"}
 
     Raises
     ------
     DamageError
-        The bytes are no message of this type.
+        The bytes are not a message of this type.
     """
     walk = _Walk(message, types, encoding)
     try:
@@ -89,19 +89,19 @@ def layout_of(message: bytes, kind: str, types: Types, encoding: str) -> Layout:
 
 
 def fixed_places(layout: Layout) -> npt.NDArray[np.intp]:
-    """Return the indices of the bytes that decide on a layout."""
+    """Return the indices of the bytes that determine a layout."""
     parts = [np.arange(start, stop, dtype=np.intp) for start, stop in layout.fixed]
     return np.concatenate(parts) if parts else np.empty(0, dtype=np.intp)
 
 
 def read_numbers(block: Bytes, offset: int, code: str, count: int) -> npt.NDArray[Any]:
-    """Return the numbers that stand at a place of many messages, shape (messages, count or 1).
+    """Return the numbers at one place of many messages, shape (messages, count or 1).
 
     Parameters
     ----------
     block : ndarray of uint8, shape (messages, bytes of each)
     offset, code, count
-        As in `Layout.numbers`.
+        Same as in `Layout.numbers`.
     """
     width = int(code[-1]) * max(count, 1)
     return np.ascontiguousarray(block[:, offset : offset + width]).view(code)
@@ -166,7 +166,7 @@ class _Walk:
 
     def _numbers(self, path: Path, code: str, count: int, *, each: bool) -> None:
         """Note a number, or a sequence of numbers with a column each."""
-        if not count:  # then nothing is aligned either
+        if not count:  # an empty sequence has no alignment
             return
         size = int(code[-1])
         if self._aligned:

@@ -1,4 +1,4 @@
-"""MCAP files: topics from the summary, else from the whole file; messages chunk by chunk."""
+"""MCAP files: topics from the summary, or without one from the whole file; messages chunk by chunk."""
 
 import struct
 import zlib
@@ -18,11 +18,11 @@ _SCHEMA, _CHANNEL, _MESSAGE = 3, 4, 5  # kinds of record
 _UNPACKING = {"zstd": of_zstandard, "lz4": of_lz4}
 _RECORD = struct.Struct("<BQ")
 _HEADER = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
-_LARGE = 1 << 16  # bytes that may be asked for
+_LARGE = 1 << 16  # bytes that may be requested at once
 
 
 class _Stream(BufferedReader):
-    """A file of which no more is asked than it holds: memory is reserved for what a damaged length says."""
+    """A file that never reads more than its size, because a damaged length would reserve too much memory."""
 
     def __init__(self, path: Path, size: int) -> None:
         super().__init__(path.open("rb", buffering=0))
@@ -44,7 +44,7 @@ class McapSource:
     Raises
     ------
     DamageError
-        It is no MCAP file, or damaged.
+        The file is not an MCAP file, or is damaged.
     """
 
     def __init__(self, path: Path) -> None:
@@ -82,7 +82,7 @@ class McapSource:
         from mcap.reader import SeekingReader
 
         summary = None
-        # The library documents no error for damaged bytes. Without a summary all is read in order.
+        # The library documents no error for damaged bytes. Without a summary the file is read in order.
         try:
             reader = SeekingReader(stream, record_size_limit=self._size)
         except Exception:
@@ -147,7 +147,7 @@ class McapSource:
                     yield time, data
 
     def _all(self, stream: BinaryIO) -> Iterator[tuple[int, int, bytes]]:
-        """Yield channel, log time and bytes of all messages, in order, as far as the file goes."""
+        """Yield channel, log time and bytes of all messages, in order, up to the file's end."""
         from mcap.records import Channel, Chunk, Footer, Schema
         from mcap.records import Message as Record
         from mcap.stream_reader import StreamReader

@@ -1,4 +1,4 @@
-"""The messages of a topic as a table: one row a stamp, one column a joint's signal."""
+"""The messages of a topic as a table: one row per stamp, one column per joint and signal."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,19 +23,19 @@ TIME, LOG_TIME = 0, 1  # the first two columns
 class MessageTable:
     """The messages of one topic as a table of columns.
 
-    Columns are ``time [s]``, ``log_time [s]`` and ``JOINT.position [rad]`` and so on; without the joint's
-    name where there is only one. Times are seconds since the first.
+    Columns are ``time [s]``, ``log_time [s]``, ``JOINT.position [rad]`` and so on. With a single joint, its
+    name is omitted. Times are seconds since the first.
 
     Parameters
     ----------
     path : Path
     topic : Topic
     collected : Collected
-        Its messages, at least one.
+        The topic's messages, at least one.
     kind : {"revolute", "prismatic"}
-        Kind of the joints, which messages do not state.
+        Kind of the joints; messages do not state it.
     incomplete : str
-        Why the file ends early; empty if it does not.
+        Reason why the file ends early; empty if it is complete.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -47,7 +47,7 @@ class MessageTable:
         self.header_place = self.source
         self._blocks = collected.blocks
         self._rows, stamps, self._logged = rows_of(collected)
-        self._time = _seconds(stamps)  # once: each joint of a robot asks for it
+        self._time = _seconds(stamps)  # computed once for all joints of a robot
         columns = list(dict.fromkeys(c for block in self._blocks for c in block.columns))
         self._columns = [column for column in columns if self._holds_numbers(column)]
         joints = dict.fromkeys(joint for joint, _ in self._columns if joint)
@@ -69,13 +69,13 @@ class MessageTable:
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,).
 
-        Where a topic's messages hold different joints, the rows are those that hold any of these columns;
-        without a time among them, those of the last call with one.
+        If messages hold different joints, only rows with at least one of these columns are returned. Without a
+        time among the columns, the rows are those of the last call with a time.
 
         Raises
         ------
         InputError
-            Such a row does not hold all of them, or two nodes published the same joint.
+            Such a row lacks one of the columns, or two nodes published the same joint.
         """
         kept = self._rows_with(columns)
         self._shown = kept
@@ -89,13 +89,13 @@ class MessageTable:
         return found
 
     def text(self, column: int) -> list[str]:
-        """Return the values of a column as text, of the same rows as the last numbers."""
+        """Return the values of a column as text, in the same rows as the last numbers."""
         values = self._values(column)
         values = values if self._shown is None else values[self._shown]
         return [f"{value:g}" for value in values.tolist()]
 
     def place(self, column: int, row: int) -> str:
-        """Return file, topic, message and column of a value."""
+        """Return the place of a value: file, topic, message and column."""
         if self._shown is not None:
             row = int(self._shown[row])
         message = self._rows.message(row)
@@ -114,13 +114,13 @@ class MessageTable:
         return values
 
     def _rows_with(self, columns: Sequence[int]) -> npt.NDArray[np.intp] | None:
-        """Return the rows that hold any of some columns; None for all rows."""
+        """Return the rows with at least one of these columns; None for all rows."""
         numbers = [column for column in columns if column > LOG_TIME]
         wanted = {self._columns[column - 2] for column in numbers}
         if all(wanted.issubset(block.columns) for block in self._blocks):
             return None if len(numbers) < len(columns) else self._shown
         there = np.array([self._present(column) for column in numbers])
-        alone = len(numbers) == len(columns)  # their time was asked for before
+        alone = len(numbers) == len(columns)  # their time was read before
         if not alone:
             kept = np.flatnonzero(there.any(axis=0))
         else:
@@ -133,7 +133,7 @@ class MessageTable:
         return kept
 
     def _check_publisher(self, column: int, values: FloatArray) -> None:
-        """Refuse positions of two publishers: the messages do not say whose each is."""
+        """Refuse positions of two publishers: the messages do not name their publisher."""
         if column <= LOG_TIME or self._columns[column - 2][1] != "position":
             return
         jump = jump_between_publishers(values)
@@ -146,7 +146,7 @@ class MessageTable:
             )
 
     def _present(self, column: int) -> npt.NDArray[np.bool_]:
-        """Whether each row's messages hold a column."""
+        """Return for each row whether its messages hold a column."""
         present = np.zeros(len(self._time), dtype=np.bool_)
         for block in self._blocks:
             if self._columns[column - 2] in block.columns:
@@ -171,7 +171,7 @@ class MessageTable:
         )
 
     def _holds_numbers(self, column: Column) -> bool:
-        """Whether any value is a number: drivers fill what they do not measure with NaN."""
+        """Whether any value is a number: drivers fill unmeasured values with NaN."""
         return any(
             bool(np.isfinite(block.values[block.columns.index(column)]).any())
             for block in self._blocks

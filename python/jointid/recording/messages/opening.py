@@ -1,4 +1,4 @@
-"""A file of messages as a table: its topic chosen, its messages read."""
+"""Opening a file of messages as a table: choose its topic, read its messages."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -22,7 +22,7 @@ def opened(
     source : callable
         Opens the file.
     topic : str or None
-        Default: the only topic with joints.
+        Name of the topic. Default: the only topic with joints.
     kind : {"revolute", "prismatic"}, optional
         Kind of the joints. Default: revolute.
 

@@ -1,25 +1,25 @@
-"""What robots' logs pack with Zstandard and LZ4, as far as the file has room for it."""
+"""Unpacking of Zstandard and LZ4 in robots' logs, within the memory limit of the file."""
 
 from jointid.base.unpacking import Room
 
 _PART = 1 << 20  # bytes
-_WINDOW = 1 << 27  # bytes that Zstandard looks back at most
+_WINDOW = 1 << 27  # largest window of Zstandard, in bytes
 
 
 def of_zstandard(content: bytes, room: Room) -> bytes:
-    """Return what Zstandard has packed.
+    """Return the content of Zstandard data.
 
     Raises
     ------
     InputError
-        The file holds more than it may.
-    zstandard.ZstdError
-        It is damaged.
+        The content exceeds the memory limit.
+            zstandard.ZstdError
+                The data are damaged.
     """
     import zstandard
 
     parts = []
-    # Not in one call: that allocates whatever size the frame states.
+    # Not in one call: that would allocate whatever size the frame states.
     with zstandard.ZstdDecompressor(max_window_size=_WINDOW).stream_reader(content) as stream:
         while part := stream.read(_PART):
             room.take(len(part))
@@ -28,14 +28,14 @@ def of_zstandard(content: bytes, room: Room) -> bytes:
 
 
 def of_lz4(content: bytes, room: Room) -> bytes:
-    """Return what LZ4 has packed.
+    """Return the content of LZ4 data.
 
     Raises
     ------
     InputError
-        The file holds more than it may.
-    RuntimeError
-        It is damaged, or cut off.
+        The content exceeds the memory limit.
+            RuntimeError
+                The data are damaged or truncated.
     """
     import lz4.frame
 

@@ -1,20 +1,20 @@
-"""Two nodes that publish the same joint on one topic: their messages alternate, and so do the positions."""
+"""Detection of two nodes that publish the same joint on one topic: the positions alternate between both."""
 
 import numpy as np
 
 from jointid.recording.signals import FloatArray
 
-_SMALLEST = 1e-2  # rad or m: an encoder's noise stays below it
-_RETURN = 0.2  # of the jump: what moves stands nearly where it stood two messages ago
+_SMALLEST = 1e-2  # rad or m: an encoder's noise is smaller
+_RETURN = 0.2  # of the jump: a moving joint is nearly at its position of two messages ago
 _BLOCK = 4096
-_SHARE = 0.2  # of the messages: noise alone makes 0.1
+_SHARE = 0.2  # share of the messages: noise alone gives 0.1
 
 
 def jump_between_publishers(position: FloatArray) -> float | None:
-    """Return the jump between the positions of two publishers; None where there seems to be one.
+    """Return the jump between the positions of two publishers; None if there seems to be only one publisher.
 
-    A position jumps and jumps back with the next message, again and again: no joint moves like this between
-    two messages, and noise comes back to where it was in one of ten cases only.
+    The position jumps and returns with the next message, again and again. No joint moves like this between two
+    messages, and noise returns in one of ten cases only.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def jump_between_publishers(position: FloatArray) -> float | None:
     """
     count, jump = 0, 0.0
     with np.errstate(all="ignore"):  # positions too large to subtract are refused later
-        for start in range(0, len(position), _BLOCK):  # of a long log no copies
+        for start in range(0, len(position), _BLOCK):  # in blocks, to avoid copies of a long log
             steps = np.diff(position[start : start + _BLOCK])
             there, back = steps[:-1], steps[1:]
             size = np.abs(there)

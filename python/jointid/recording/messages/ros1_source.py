@@ -1,4 +1,4 @@
-"""ROS 1 bags: records in order, so that a bag without its index is read as well."""
+"""ROS 1 bags: records are read in order, so that a bag without its index is also readable."""
 
 import struct
 from collections.abc import Iterator
@@ -34,7 +34,7 @@ class Ros1Source:
     Raises
     ------
     DamageError
-        It is no such bag, or damaged.
+        The file is not such a bag, or is damaged.
     """
 
     def __init__(self, path: Path) -> None:
@@ -72,7 +72,7 @@ class Ros1Source:
                 yield time, message
 
     def _all(self) -> Iterator[tuple[int, int, bytes]]:
-        """Yield connection, log time and bytes of all messages, as far as the file goes."""
+        """Yield connection, log time and bytes of all messages, up to the file's end."""
         self._room.again()
         with self._path.open("rb") as stream:
             if stream.read(len(_MAGIC)) != _MAGIC:
@@ -95,7 +95,7 @@ class Ros1Source:
         while place < len(content):
             header_start, header_end = _span(content, place)
             start, place = _span(content, header_end)
-            # Most records are messages of few fields: only these are looked at.
+            # Most records are messages with few fields: only these fields are read.
             header = _fields(content[header_start:header_end])
             kind = header.get(b"op")
             if kind == _MESSAGE:
@@ -141,7 +141,7 @@ def _part(stream: BinaryIO, size: int) -> bytes:
 
 
 def _span(content: bytes, place: int) -> tuple[int, int]:
-    """Return begin and end of the part whose length stands at a place."""
+    """Return begin and end of the part with its length at this place."""
     try:
         (length,) = _LENGTH.unpack_from(content, place)
     except struct.error:

@@ -21,7 +21,7 @@ from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
 _ENDING = re.compile(r"\.(db3|mcap)(\.zstd)?$", re.IGNORECASE)
 _MOST_TOPICS = 10_000
-_ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0
+_ZSTANDARD = b"\x28\xb5\x2f\xfd"  # first bytes of a compressed message; CDR begins with 0
 
 
 class SqliteSource:
@@ -34,7 +34,7 @@ class SqliteSource:
     Raises
     ------
     DamageError
-        It is no such file, or damaged.
+        The file is not such a file, or is damaged.
     """
 
     def __init__(self, path: Path) -> None:
@@ -112,7 +112,7 @@ class SqliteSource:
         return {normal_kind(kind): (form, text) for kind, form, text in rows}
 
     def _few(self, rows: sqlite3.Cursor) -> list[tuple[Any, ...]]:
-        """Return rows of a table that describes topics; they may share the pages of their texts."""
+        """Return the rows of a table that describes topics, up to a limit; many rows may share one long text."""
         found = []
         for row in rows:
             self._room.take(sum(len(value) for value in row if isinstance(value, str | bytes)))
@@ -132,11 +132,11 @@ class FolderSource:
     Raises
     ------
     DamageError
-        A file of it is damaged.
+        A file in the folder is damaged.
     """
 
     def __init__(self, path: Path) -> None:
-        self._folder: Path | None = None  # of files that were compressed as a whole
+        self._folder: Path | None = None  # for files that were compressed as a whole
         files = sorted(
             (self._unpacked(each) for each in path.iterdir() if _ENDING.search(each.name)),
             key=lambda each: (len(each.name), each.name),  # bag_2 before bag_10
@@ -185,7 +185,7 @@ class FolderSource:
 
     @property
     def incomplete(self) -> str:
-        """Why a file of the bag ends early."""
+        """Reason why a file of the bag ends early."""
         return next((source.incomplete for source in self._sources if source.incomplete), "")
 
     def messages(self, topic: Topic) -> Iterator[Message]:
@@ -198,7 +198,7 @@ class FolderSource:
 
 
 def _in_order(connection: sqlite3.Connection, numbers: list[int]) -> Iterator[tuple[Any, Any]]:
-    """Yield time and data of the rows of topics."""
+    """Yield time and data of the rows of these topics."""
     where = (
         "FROM messages WHERE typeof(topic_id) IN ('integer', 'real') "
         f"AND topic_id IN ({','.join('?' * len(numbers))}) ORDER BY"
@@ -210,7 +210,7 @@ def _in_order(connection: sqlite3.Connection, numbers: list[int]) -> Iterator[tu
     ):
         yield from connection.execute(direct, numbers)
         return
-    # Without an index, what is sorted goes to the disk: rows may share the pages of one message.
+    # Without an index, SQLite sorts on disk, where rows that share one message take its size each: sort numbers only.
     time = "CASE typeof(timestamp) WHEN 'integer' THEN timestamp END"
     for at, number in connection.execute(f"SELECT {time}, _rowid_ {where} {time}", numbers):
         row = connection.execute("SELECT data FROM messages WHERE _rowid_ = ?", (number,))

@@ -1,4 +1,4 @@
-"""Which row of a table each message belongs to: rows in the order of their stamps, one for each stamp."""
+"""Assignment of messages to rows of a table: one row per stamp, in the order of stamps."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -10,12 +10,12 @@ from jointid.base.values import dataclass
 from jointid.recording.messages.collecting import Collected
 
 _LATE = (
-    1_000_000_000  # ns: a message that comes later than this after a younger one begins another run
+    1_000_000_000  # ns: a message with a stamp that goes back further than this begins another run
 )
 Integers = npt.NDArray[np.int64]
-# Lines, columns, and values of each line.
+# Row numbers, columns, and values of each row.
 _Part = tuple[Integers, npt.NDArray[np.intp], npt.NDArray[np.float64]]
-_CELLS = 8_000_000  # of a table: 72 MB
+_CELLS = 8_000_000  # cells of a table: 72 MB
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,11 +25,11 @@ class Rows:
     Attributes
     ----------
     row : ndarray of int, shape (messages,), optional
-        The row of each message, -1 for a repeated one. None: its own number.
+        Row of each message, -1 for a repeated message. None: message k is row k.
     repeated : int
-        Messages left out because they repeat another one.
+        Number of messages left out because they repeat another one.
     reordered : int
-        Messages that stand behind a younger one.
+        Number of messages that come after one with a later stamp.
     """
 
     row: Integers | None
@@ -48,9 +48,9 @@ class Rows:
 def rows_of(collected: Collected) -> tuple[Rows, Integers, Integers]:
     """Return the rows of messages, and the stamp and log time of each row [ns].
 
-    Messages that stand a little behind a younger one (less than 1 s) are put in order; what goes back further is
-    left as it is, and refused later. Messages with equal stamps become one row if they hold
-    different joints, and are left out if they repeat all values.
+    Messages with stamps that go back by less than 1 s are put in order. Larger steps back stay, and are refused
+    later. Messages with equal stamps become one row if they hold different joints, and are left out if they repeat
+    all values.
 
     Parameters
     ----------
@@ -84,9 +84,9 @@ def rows_of(collected: Collected) -> tuple[Rows, Integers, Integers]:
 def _joined(
     collected: Collected, order: npt.NDArray[np.intp], equal: npt.NDArray[np.bool_]
 ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Return which messages, in order, join the row of the one before, and which of them only repeat."""
+    """Return masks of the messages, in order, that join the previous row, and of those that only repeat it."""
     shared = np.flatnonzero(equal | np.append(equal[1:], False))
-    place = np.full(len(order), -1, dtype=np.int64)  # message → line of the tables
+    place = np.full(len(order), -1, dtype=np.int64)  # message → line of the table
     place[order[shared]] = np.arange(len(shared))
     numbers = {
         column: number
@@ -107,7 +107,7 @@ def _joined(
     while first < len(starts) - 1:
         last = max(first + 1, bisect_right(starts, starts[first] + most) - 1)
         start, end = starts[first], starts[last]
-        if end - start <= most:  # more are of one stamp: no robot has so many joints
+        if end - start <= most:  # a larger group has one stamp: no robot has this number of joints
             there, values = _table(parts, start, end, len(numbers))
             for k in range(first, last):
                 lines_of = slice(starts[k], starts[k + 1])
@@ -119,7 +119,7 @@ def _joined(
 def _table(
     parts: Sequence[_Part], start: int, end: int, count: int
 ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
-    """Return which columns some lines have, and their values."""
+    """Return for these lines the mask of present columns, and the values."""
     there = np.zeros((end - start, count), dtype=np.bool_)
     values = np.zeros((end - start, count))
     for lines, where, given in parts:
@@ -140,7 +140,7 @@ def _join_group(
     joined: npt.NDArray[np.bool_],
     dropped: npt.NDArray[np.bool_],
 ) -> None:
-    """Decide on the messages of one stamp: all of them agree and join, or none does."""
+    """Decide whether the messages with one stamp join: all of them agree, or none joins."""
     first = lines.start - start
     seen, known = there[first].copy(), values[first].copy()
     repeats = []

@@ -1,4 +1,4 @@
-"""An SQLite file that is read with limits, and never written to, not even by SQLite's own recovery."""
+"""An SQLite file that is read within limits and never changed, not even by SQLite's own recovery."""
 
 import sqlite3
 from collections.abc import Iterator
@@ -7,10 +7,10 @@ from pathlib import Path
 
 from jointid.base.error_text import reason_of
 
-# A row takes some 30, and more than 12 bytes.
+# Limits on steps of SQLite's machine. A row takes some 30 steps, and more than 12 bytes.
 _STEPS, _STEPS_A_BYTE, _STEPS_AT_ONCE = 1000, 8, 1000
 _LONGEST_STATEMENT, _SCHEMA_STEPS = 20_000, 1000  # of a schema; a bag's takes 60 steps
-_UNFINISHED = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # how a journal begins that is to be put back
+_UNFINISHED = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # start of a journal that SQLite would restore
 
 
 class SqliteFile:
@@ -23,11 +23,11 @@ class SqliteFile:
     Attributes
     ----------
     size : int
-        Bytes.
+        Size in bytes.
     incomplete : str
-        What a recorder left beside it that was killed; else empty. It is not read: a log that was copied with
-        another state of the file would take messages away, and a journal may name any file of the machine,
-        which SQLite would remove.
+        Description of the log or journal that a killed recorder left next to the file; otherwise empty. It is not
+        read: a log of another state of the file would remove messages. A journal may name any file, and
+        SQLite would delete that file.
 
     Raises
     ------
@@ -36,7 +36,7 @@ class SqliteFile:
     """
 
     def __init__(self, path: Path) -> None:
-        path.open("rb").close()  # SQLite would say less of a file that cannot be read
+        path.open("rb").close()  # for an unreadable file this error says more than SQLite's
         self._path = path.resolve()
         self.size = path.stat().st_size
         self.incomplete = _left_beside(self._path)
@@ -48,20 +48,20 @@ class SqliteFile:
         Raises
         ------
         sqlite3.Error
-            It is no SQLite file; later, that it is damaged or takes far too long.
+            The file is not an SQLite file. Later: it is damaged, or a query takes far too long.
         """
         connection = sqlite3.connect(f"{self._path.as_uri()}?mode=ro&immutable=1", uri=True)
         try:
-            # Nothing that a table holds is larger than the file; SQLite's own texts may be.
+            # No value in a table is larger than the file; SQLite's own texts may be.
             longest = min(max(self.size, 1_000_000), 1_000_000_000)
             connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
-            # SQLite parses each statement of the schema, of which there may be any number.
+            # SQLite parses each statement of the schema, and there may be any number of them.
             before = connection.setlimit(sqlite3.SQLITE_LIMIT_SQL_LENGTH, _LONGEST_STATEMENT)
             schema = iter(range(_SCHEMA_STEPS // 100))
             connection.set_progress_handler(lambda: self._ends(schema), 100)
             connection.execute("SELECT COUNT(*) FROM sqlite_master")
             connection.setlimit(sqlite3.SQLITE_LIMIT_SQL_LENGTH, before)
-            # Pages that name each other have rows without an end.
+            # Pages that refer to each other give an endless number of rows.
             steps = iter(range(_STEPS + self.size * _STEPS_A_BYTE // _STEPS_AT_ONCE))
             connection.set_progress_handler(lambda: self._ends(steps), _STEPS_AT_ONCE)
         except BaseException:
@@ -74,15 +74,15 @@ class SqliteFile:
         return self._exhausted
 
     def reason(self, error: Exception) -> str:
-        """Return why it cannot be read, with what a recorder left beside it.
+        """Return why the file cannot be read, and what a killed recorder left next to it.
 
         Raises
         ------
         KeyboardInterrupt
-            It was Ctrl-C that stopped SQLite.
+            Ctrl-C stopped SQLite.
         """
         code = getattr(error, "sqlite_errorcode", None)
-        # SQLite hides what ends our function.
+        # SQLite hides the exception of our progress function.
         if code == sqlite3.SQLITE_INTERRUPT and not self._exhausted:
             raise KeyboardInterrupt
         return "; ".join(filter(None, (reason_of(error), self.incomplete)))

@@ -1,4 +1,4 @@
-"""What the tables of a ROS 2 bag in SQLite must be, so that little is made of a small file."""
+"""Checks of the tables of a ROS 2 bag in SQLite, so that a small file cannot fill the memory."""
 
 import sqlite3
 from collections.abc import Sequence
@@ -7,25 +7,25 @@ from jointid.recording.messages.topic import DamageError
 
 _READ = {
     "topics": ("id", "name", "type", "serialization_format"),
-    "messages": ("topic_id", "timestamp"),  # whose data are read one by one
+    "messages": ("topic_id", "timestamp"),  # message data are read one by one
     "message_definitions": ("topic_type", "encoding", "encoded_message_definition"),
 }
 _LONGEST_DEFAULT = 1000  # characters
 
 
 def check_tables(connection: sqlite3.Connection, size: int) -> None:
-    """Refuse tables of which SQLite makes as many rows as it likes, of any size.
+    """Refuse tables that SQLite could expand to any number of rows of any size.
 
     Parameters
     ----------
     connection : sqlite3.Connection
     size : int
-        Bytes of the file.
+        Size of the file in bytes.
 
     Raises
     ------
     DamageError
-        A table is a view or computed, or holds more than the file.
+        A table is a view, has computed columns, or holds more than the file.
     sqlite3.Error
         The file is damaged.
     """
@@ -35,7 +35,7 @@ def check_tables(connection: sqlite3.Connection, size: int) -> None:
             "AND type IN ('table', 'view') AND NOT (type = 'table' AND rootpage > 0)",
             (name,),
         )
-        # A default stands in each row that ends before its column.
+        # Each row that ends before a column gets the column's default.
         computed, long = connection.execute(
             "SELECT SUM(hidden <> 0), SUM(length(dflt_value) > ?) FROM pragma_table_xinfo(?)",
             (_LONGEST_DEFAULT, name),
@@ -48,7 +48,7 @@ def check_tables(connection: sqlite3.Connection, size: int) -> None:
             )
         for column in _passed_over(connection, name, read):
             held = 0
-            sizes = connection.execute(  # a blob's is known without reading it
+            sizes = connection.execute(  # the size of a blob is known without reading it
                 f"SELECT CASE typeof({column}) WHEN 'blob' THEN length({column}) "
                 f"WHEN 'text' THEN length(CAST({column} AS BLOB)) ELSE 0 END FROM {name} NOT INDEXED"
             )
@@ -61,9 +61,9 @@ def check_tables(connection: sqlite3.Connection, size: int) -> None:
 
 
 def _passed_over(connection: sqlite3.Connection, table: str, read: Sequence[str]) -> list[str]:
-    """Return the columns before the last one that is read; there are none in a bag of ROS 2.
+    """Return the unread columns before the last one that is read; a bag of ROS 2 has none.
 
-    SQLite goes from page to page to what stands behind a long value, as often as it says. These are no steps.
+    To reach a column behind a long value, SQLite follows the value's pages, which the limit on steps does not count.
     """
     columns = [
         name
@@ -75,6 +75,6 @@ def _passed_over(connection: sqlite3.Connection, table: str, read: Sequence[str]
 
 
 def _is_row_number(connection: sqlite3.Connection, table: str, column: str) -> bool:
-    """Whether a column is another name of the row's number, which holds nothing else."""
+    """Whether a column is an alias of the row number, and so holds no other value."""
     code = {step[1] for step in connection.execute(f"EXPLAIN SELECT {column} FROM {table}")}
     return "Column" not in code and not code.isdisjoint({"Rowid", "IdxRowid"})

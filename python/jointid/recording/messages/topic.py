@@ -1,4 +1,4 @@
-"""What a file of messages offers: topics, and the messages of each in the order of the file."""
+"""Interface of a file of messages: its topics, and the messages of each in file order."""
 
 from collections.abc import Iterator
 from typing import Protocol
@@ -10,7 +10,7 @@ Message = tuple[int, bytes]
 
 
 class DamageError(Exception):
-    """Bytes that are no message of their type, or a damaged file; the text says which."""
+    """Bytes that are not a message of their type, or a damaged file; the text says which."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,9 +20,9 @@ class Topic:
     Attributes
     ----------
     name : str
-        E.g. ``"/joint_states"``.
+        Name of the topic, e.g. ``"/joint_states"``.
     kind : str
-        Message type as ROS 2 writes it, ``"sensor_msgs/msg/JointState"``.
+        Message type in the form of ROS 2, ``"sensor_msgs/msg/JointState"``.
     encoding : str
         ``"cdr"``, ``"ros1"``, ``"json"``, or another one that is not read.
     definition : str
@@ -30,7 +30,7 @@ class Topic:
     definition_format : str
         ``"ros2msg"``, ``"ros1msg"``, ``"ros2idl"``, ``"jsonschema"`` or ``""``.
     count : int, optional
-        Number of messages. Default: the file does not say.
+        Number of messages. Default: unknown.
     """
 
     name: str
@@ -46,11 +46,11 @@ class Source(Protocol):
 
     @property
     def topics(self) -> tuple[Topic, ...]:
-        """All topics, in the order of the file."""
+        """Return all topics, in file order."""
 
     def messages(self, topic: Topic) -> Iterator[Message]:
         """Yield the messages of a topic; raise `DamageError` where the file is damaged."""
 
     @property
     def incomplete(self) -> str:
-        """Why the file ends early, known when the messages were read; empty if it does not."""
+        """Reason why the file ends early, known after the messages are read; empty if it is complete."""

@@ -1,4 +1,4 @@
-"""Text in which each group of channels has a time column of its own: X,Y pairs, as recorders export them."""
+"""Text with a separate time column for each group of channels: X,Y pairs, as recorders export them."""
 
 import re
 from collections.abc import Sequence
@@ -13,25 +13,25 @@ from jointid.recording.units import find_unit
 
 _SEPARATORS = ("\t", ";", ",")
 _TIMES = ("x", "t", "time", "zeit", "timestamp", "x_value", "x_axis")
-_HEADERS, _ROWS = 12, 20  # lines that are looked at
-_MILLISECONDS = (0.1, 100.0)  # steps without a unit: a recorder takes 10 rows a second, or more
+_HEADERS, _ROWS = 12, 20  # lines that are examined
+_MILLISECONDS = (0.1, 100.0)  # steps that count as ms without a unit: 10 rows/s or more
 
 
 @dataclass(frozen=True, kw_only=True)
 class Paired:
-    """Where the channels of such a text are.
+    """Layout of the channels in such a text.
 
     Attributes
     ----------
     separator : str
     lines : int
-        That stand above the rows.
+        Number of lines above the rows.
     names, units : tuple of str
         Name and unit of each column; a time column has no name.
     time_unit : str
-        As a header states it; empty where none does.
+        Unit of time as the header states it; empty if it states none.
     recognised : bool
-        Whether the unit of the times was told by their steps alone.
+        Whether the unit of time follows from the steps alone.
     """
 
     separator: str
@@ -64,7 +64,7 @@ def _is_row(cells: Sequence[str], separator: str) -> bool:
 
 
 def _times(cells: Sequence[str]) -> list[int]:
-    """Return the columns of a line that are times, if there are several and each has a channel behind it."""
+    """Return the time columns of a line if there are several, each followed by a channel."""
     names = [re.sub(r"_?\d+$", "", parsed(cell)[0]) for cell in cells]
     found = [k for k, name in enumerate(names) if name in _TIMES and name == names[0]]
     ends = [*found[1:], len(cells)]
@@ -79,7 +79,7 @@ def _layout(
     axes = table[line]
     channels = [k for k, cell in enumerate(axes) if cell and k not in times]
     own = [axes[k] for k in channels]
-    if len(set(own)) < len(own):  # Y, Y, Y: the names stand above, over either column of a pair
+    if len(set(own)) < len(own):  # Y, Y, Y: the names are in the line above
         above = next((row for row in reversed(table[:line]) if any(row)), [])
         above = [*above, *[""] * (len(axes) - len(above))]
         own = [above[k] or (above[k - 1] if k - 1 in times else "") for k in channels]
@@ -93,7 +93,7 @@ def _layout(
     if recognised := not unit and _are_milliseconds(table, first, separator):
         unit = "ms"
     if looks_exact(table[first][0]):
-        unit = "ms"  # in which ScopeTable has them
+        unit = "ms"  # the unit of times in ScopeTable
     names = dict(zip(channels, own, strict=True))
     return Paired(
         separator=separator,

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from jointid.base.errors import InputError
 
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
-BLANK = " "  # separates the cells of controllers' logs, one or several of them
+BLANK = " "  # one or several blanks separate the cells of controllers' logs
 _TOKEN = r'"[^"]*"|\S+'
 _UNITS = r"[\[(][^\])]*[\])]|\S+"
-_LONG = 10_000  # characters of a line whose brackets are not looked for
+_LONG = 10_000  # characters: brackets in longer lines are ignored
 _OPEN = r"[\[(][^\[\]()]*$"
 _DECIMAL_COMMA = r"(?i)[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?"
 # 1,234 may mean 1234 or 1.234; 0,25 and 1,5 and 1234,567 are unambiguous.
@@ -33,7 +33,7 @@ def cells_of(line: str, separator: str) -> list[str]:
 
 
 def _between_blanks(line: str) -> list[str]:
-    """Return what stands between blanks; a bracket belongs to the word before it: `time [s]`."""
+    """Return the words between blanks; a bracket belongs to the word before it: `time [s]`."""
     if len(line) > _LONG or not any(sign in line for sign in '"[('):
         return line.split()
     if line.lstrip()[:1] in ("[", "("):  # a row of units
@@ -48,7 +48,7 @@ def _between_blanks(line: str) -> list[str]:
 
 
 def number_of(cell: str, separator: str = ",") -> float | None:
-    """Return a cell's number as numpy's parser does, or None.
+    """Return a cell's number, parsed like numpy, or None.
 
     A decimal comma is accepted unless commas separate the cells.
     """
@@ -67,11 +67,11 @@ def separator_named(line: str) -> str | None:
 
 
 def separator_of(header: str, row: str, place: str) -> str:
-    """Return the separator of the cells, from the first line and the one below it.
+    """Return the separator of the cells, from the first two lines.
 
-    A separator fits when it divides both lines into the same number of cells, at least two; of
-    several, the one with the most numbers is chosen. When none fits, the row is damaged, and the
-    first line alone decides.
+    A separator fits if it divides both lines into the same number of cells, at least two. If several
+    fit, the separator with the most numbers is chosen. If none fits, the row is damaged, and the first
+    line alone decides.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def _cells_or_none(line: str, separator: str) -> list[str] | None:
 
 
 def decimal_comma(columns: Sequence[Sequence[str]]) -> tuple[int, int, str] | None:
-    """Return why a comma in these cells cannot be read as the decimal sign, or None.
+    """Return the reason why a comma in these cells is not clearly a decimal sign, or None.
 
     Parameters
     ----------
@@ -132,8 +132,8 @@ def decimal_comma(columns: Sequence[Sequence[str]]) -> tuple[int, int, str] | No
     Returns
     -------
     tuple of int, int, str, or None
-        Column, row and reason: a decimal point elsewhere, or only numbers like ``1,234``, which
-        may mean 1234.
+        Column, row and reason. Reasons are a decimal point elsewhere, or only numbers such as
+        ``1,234``, which may mean 1234.
     """
     commas = points = None
     unambiguous = False

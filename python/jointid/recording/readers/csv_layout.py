@@ -1,4 +1,4 @@
-"""Where the table of a text file begins: its separator, its header, a row of units, what stands above."""
+"""Start of the table in a text file: its separator, header, row of units, and the lines above."""
 
 import csv
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from jointid.recording.stamps import looks_exact
 from jointid.recording.units import find_unit
 
 MARKS = ("#", "%", "//")  # of a comment
-SEARCHED = 400  # lines: no program writes more above its table
+SEARCHED = 400  # lines: programs write fewer lines above a table
 _SEPARATORS = (";", "\t", ",", BLANK)
 
 
@@ -29,14 +29,14 @@ class Layout:
     Attributes
     ----------
     separator : str
-        Separator of the cells; a blank means any number of blanks.
+        Separator of the cells; a blank stands for any number of blanks.
     headers : tuple of str
     header_line : int
-        1-based; of the first row where there is no header.
+        1-based line number of the header; of the first row if there is no header.
     below : int
         0-based number of the first line that may be a row.
     bare : bool
-        Whether there is no header: the headers are then ``"column 0"``, ...
+        Whether the file has no header; the headers are then ``"column 0"``, ...
     """
 
     separator: str
@@ -52,11 +52,11 @@ def is_comment(line: str) -> bool:
 
 
 def layout_of(lines: Sequence[str], source: str, mark: str) -> Layout:
-    """Return where the table of a file begins.
+    """Return the layout of a file's table.
 
-    The first line that is no comment is the header, or the first row where all that is a number below
-    is one in it, too. Where the line below does not fit it, the first rows of numbers are searched, and
-    the header is the line above them that names most signals; a row of units may stand between.
+    The first line that is not a comment is the header. It is the first row if it has numbers wherever the next
+    line has numbers. If the next line does not fit, the first rows of numbers are searched. The header is then the
+    line above them that names most signals; a row of units may be between them.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def layout_of(lines: Sequence[str], source: str, mark: str) -> Layout:
     source : str
         The file, for messages.
     mark : str
-        Beginning of a line that is never a header.
+        Prefix of lines that are never a header.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def layout_of(lines: Sequence[str], source: str, mark: str) -> Layout:
         There is no table.
     """
     each = (k for k, line in enumerate(lines) if line.strip() and not is_comment(line))
-    filled = list(islice(each, 3))  # most tables begin at once
+    filled = list(islice(each, 3))  # most tables begin in the first lines
     named = separator_named(lines[filled[0]]) if filled else None
     if named:
         filled = filled[1:]
@@ -109,7 +109,7 @@ def _bare(separator: str, count: int, first: int) -> Layout:
 
 
 def _fits(first: str, second: str) -> bool:
-    """Whether some separator divides both lines alike, and the second is a row."""
+    """Whether a separator divides both lines into equally many cells, and the second is a row."""
     for separator in _SEPARATORS:
         above, below = _safe_cells(first, separator), _safe_cells(second, separator)
         if len(above) == len(below) > 1 and any(_number(cell, separator) for cell in below):
@@ -118,7 +118,7 @@ def _fits(first: str, second: str) -> bool:
 
 
 def _is_row(cells: Sequence[str], below: Sequence[str], separator: str) -> bool:
-    """Whether a line is a row, and not the header of the line below."""
+    """Whether a line is a row, not the header of the next line."""
     numbers = [number_of(cell, separator) is not None for cell in cells]
     if all(numbers):
         return True
@@ -135,7 +135,7 @@ def _number(cell: str, separator: str) -> bool:
 
 
 def _searched(lines: Sequence[str], filled: Sequence[int], mark: str) -> Layout | None:
-    """Return the table whose rows begin further down, below lines of another form."""
+    """Return the layout of a table that begins further down, below other lines."""
     for k in range(1, len(filled) - 1):
         rows = [lines[j] for j in filled[k : k + 3]]
         for separator in _SEPARATORS:
@@ -153,7 +153,7 @@ def _searched(lines: Sequence[str], filled: Sequence[int], mark: str) -> Layout 
 def _below_headers(
     lines: Sequence[str], first: int, separator: str, count: int, mark: str
 ) -> Layout | None:
-    """Return the table that begins in a line, with the header among the lines above it."""
+    """Return the layout of the table with its first row in this line and its header in the lines above."""
     names: list[tuple[int, list[str]]] = []
     units: list[str] = []
     for k in reversed(range(max(0, first - SEARCHED), first)):
@@ -167,7 +167,7 @@ def _below_headers(
             units = cells
         else:
             names.append((k, cells))
-    if not names:  # units alone may be a header of letters, too: t, m, N
+    if not names:  # a header of letters may look like units: t, m, N
         return None
     line, headers = max(
         names, key=lambda each: sum(understood(cell).meaning is not None for cell in each[1])
@@ -188,7 +188,7 @@ def _are_units(cells: Sequence[str]) -> bool:
 
 
 def _cells(line: str, separator: str, place: str) -> list[str]:
-    """Return the cells of a header; the dash of a list (``- q_1``) is no part of a name."""
+    """Return the cells of a header without the dash of a list (``- q_1``)."""
     try:
         return [
             cell[2:].lstrip() if cell.startswith("- ") else cell

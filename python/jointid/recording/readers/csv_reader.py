@@ -1,4 +1,4 @@
-"""Reading .csv and .csv.gz files: plain numbers in the core, others by numpy; the cell that is none is located."""
+"""Reading .csv and .csv.gz files: the core parses plain numbers, numpy the others; errors name the cell."""
 
 import csv
 import re
@@ -34,30 +34,30 @@ from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
 from jointid.recording.truncated import no_sample, session_text, with_metadata
 
-_LONG = 1 << 20  # characters: a longer file is read as a stream if it holds only numbers
-_BEGINS_AT_ONCE = re.compile(r"[^\s#%/]").match  # a line that is surely no comment
-_SHORT = 1 << 15  # characters: most tables begin within
-_FEW = 12  # columns: of more, only those used are converted
-_INNER = "\x1f"  # separates cells that are joined again: no text file contains it
+_LONG = 1 << 20  # characters: a longer file of numbers only is read as a stream
+_BEGINS_AT_ONCE = re.compile(r"[^\s#%/]").match  # a line that is certainly not a comment
+_SHORT = 1 << 15  # characters: most tables begin within this length
+_FEW = 12  # columns: in wider tables only used columns are converted
+_INNER = "\x1f"  # separator for joined cells; no text file contains it
 
 
 class CsvTable:
     """A .csv or .csv.gz file as a table of columns with one header.
 
-    Commas, semicolons, tabs or blanks separate the cells; where commas do not, they may be the decimal
-    sign. Comments begin with ``#``, ``%`` or ``//``; if numbers follow without a header, the last
-    of those above may be the header. Without a header the headers are ``"column 0"``, ``"column 1"``, ...
+    Commas, semicolons, tabs or blanks separate the cells. If commas do not, they may be the decimal sign.
+    Comments begin with ``#``, ``%`` or ``//``; if numbers follow without a header, the last comment may be
+    the header. Without a header the headers are ``"column 0"``, ``"column 1"``, ...
 
     Parameters
     ----------
     path : Path
     text : str
-        What it holds, where it was read before. Default: the file is read.
+        Content of the file, if it was read before. Default: the file is read.
 
     Raises
     ------
     InputError
-        The file cannot be read, is not text, has no rows or rows of different lengths.
+        The file cannot be read or is not text, or it has no rows or rows of different lengths.
     """
 
     other_names: Mapping[str, int] = MappingProxyType({})
@@ -66,7 +66,7 @@ class CsvTable:
         self.source = str(path)
         self._texts = Texts(path)
         self._content = text or text_of(path)
-        ending: Mapping[str, Any] | None = None  # of a session's file
+        ending: Mapping[str, Any] | None = None  # last line of a session's file
         if self._content.startswith(CSV_MARK):
             self._content, ending = session_text(self._content)
         self._table: FloatArray | None = None
@@ -126,7 +126,7 @@ class CsvTable:
             self._refuse_ragged_rows()
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as arrays of shape (n,), or raise `InputError` for the cell that is no number."""
+        """Return columns as arrays of shape (n,), or raise `InputError` for a cell that is not a number."""
         if self._table is not None:
             return [np.ascontiguousarray(self._table[:, column]) for column in columns]
         if self._stream is not None:
@@ -162,7 +162,7 @@ class CsvTable:
         return self._columns([column])[0]
 
     def list_widths(self) -> dict[int, int]:
-        """Return column → numbers in its first cell, for those whose cells are lists."""
+        """Return column → count of numbers in its first cell, for columns of lists."""
         first = self._first_row if self._table is None and self._stream is None else ""
         if not any(bracket in first for bracket in "[("):
             return {}
@@ -188,8 +188,8 @@ class CsvTable:
         return cells[column] if column < len(cells) else ""
 
     def place(self, column: int, row: int) -> str:
-        """Return file, line and column of a cell."""
-        # Here no list is made: this may be the only line of a million that is asked for.
+        """Return the place of a cell: file, line and column."""
+        # No list of lines: this may be the only line needed of a million.
         numbered = enumerate(each_line(self._content), 1)
         below = (k for k, line in numbered if k > self._below and _is_row(line))
         line = next(islice(below, row, None))
@@ -197,7 +197,7 @@ class CsvTable:
 
     @cached_property
     def _first_row(self) -> str:
-        """The first line below the header that is not blank, as far as lines are searched for one."""
+        """Return the first non-blank line below the header, within the searched lines."""
         for length in (_SHORT, _LONG):
             lines = _lines(self._content[:length])[self._below :]
             if length < min(_LONG, len(self._content)):
@@ -208,19 +208,19 @@ class CsvTable:
 
     @cached_property
     def _line_numbers(self) -> list[int]:
-        """1-based line number of each row; blank lines are no rows."""
+        """1-based line number of each row; blank lines do not count."""
         self._texts.count(self._content)
         below = _lines(self._content)[self._below :]
         return [number for number, line in enumerate(below, self._below + 1) if _is_row(line)]
 
     @cached_property
     def _rows(self) -> list[str]:
-        numbers = self._line_numbers  # which counts what the lines take
+        numbers = self._line_numbers  # this counts the memory of the lines
         lines = _lines(self._content)
         return [lines[number - 1] for number in numbers]
 
     def _with_points(self, columns: Sequence[int]) -> list[str]:
-        """Return the rows with these columns only, decimal points for decimal commas."""
+        """Return the rows with these columns only, with points instead of decimal commas."""
         cells = self._columns(columns)
         doubt = decimal_comma(cells)
         if doubt is not None:
@@ -296,7 +296,7 @@ def _is_row(line: str) -> bool:
 
 
 def _first_lines(text: str) -> list[str]:
-    """Return as many lines of a text as decide where its table begins: all, or more than are searched."""
+    """Return the lines that determine where the table begins: all, or more than are searched."""
     for length in (_SHORT, _LONG):
         if len(text) > length:
             lines = _lines(text[:length])[:-1]
@@ -308,7 +308,7 @@ def _first_lines(text: str) -> list[str]:
 
 
 def _more_than(count: int, lines: Sequence[str]) -> bool:
-    """Return whether so many of the lines are neither empty nor comments."""
+    """Return whether more than `count` lines are neither empty nor comments."""
     if len(lines) > count and all(map(_BEGINS_AT_ONCE, lines[: count + 1])):
         return True
     return next(islice(filter(_is_row, lines), count, None), None) is not None
@@ -326,7 +326,7 @@ def _no_number(cell: str) -> str:
 
 
 def _opened(path: Path) -> Table:
-    """Return a text file as a table, whichever program wrote it."""
+    """Return a text file from any program as a table."""
     text = text_of(path)
     top = _top(text, 100)
     separator = separator_of_scope(top)
@@ -337,7 +337,7 @@ def _opened(path: Path) -> Table:
 
 
 def _table_of_pairs(path: Path, text: str, paired: Paired) -> ScopeTable:
-    """Return a text of pairs, read like an export of TwinCAT Scope."""
+    """Return a text of X,Y pairs, read like an export of TwinCAT Scope."""
     above = re.match(rf"(?:[^\r\n]*(?:\r\n|\r|\n)){{{paired.lines}}}", text)
     names = paired.separator.join(name or "Name" for name in paired.names)
     units = paired.separator.join(("Unit", *paired.units[1:]))

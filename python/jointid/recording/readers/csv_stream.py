@@ -1,4 +1,4 @@
-"""Long text files read as a stream: a million rows as separate texts take more time and memory than their numbers."""
+"""Reading long text files as a stream: a list of a million lines takes more time and memory than the numbers."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ _LINE = re.compile(r"([^\r\n]*)(?:\r\n|\r|\n|\Z)")
 
 
 def each_line(text: str) -> Iterator[str]:
-    """Yield the lines of a text one by one, without a list of them; after the last one may come an empty one."""
+    """Yield the lines of a text one by one, without a list; an empty line may follow the last one."""
     for match in _LINE.finditer(text):
         yield match[1]
 
@@ -28,9 +28,9 @@ def plain_numbers(
     count: int,
     columns: Sequence[int] | None = None,
 ) -> FloatArray | None:
-    """Return cells below the header of a file in which they are only numbers, else None.
+    """Return the cells below the header if all are plain numbers; otherwise None.
 
-    The parser is the same as for other files, but it reads the file as a stream.
+    The parser is the same as for short files, but it reads a stream.
 
     Parameters
     ----------
@@ -40,9 +40,9 @@ def plain_numbers(
         Lines above the rows.
     separator : str
     count : int
-        Columns that are expected.
+        Expected number of columns.
     columns : sequence of int, optional
-        Those to read. Default: all.
+        Columns to read. Default: all.
     """
     try:
         table = np.loadtxt(
@@ -53,7 +53,7 @@ def plain_numbers(
             skiprows=below,
             usecols=columns,
             ndmin=2,
-            encoding="latin-1",  # numbers are ASCII, whatever the header is
+            encoding="latin-1",  # numbers are ASCII, and the header does not matter
         )
     except ValueError:
         return None
@@ -61,7 +61,7 @@ def plain_numbers(
 
 
 def even_rows(text: str, below: int, separator: str, count: int) -> bool:
-    """Whether every line below the header has as many separators as the header, none is blank.
+    """Whether every line below the header has the header's number of separators, and no line is blank.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def even_rows(text: str, below: int, separator: str, count: int) -> bool:
         Lines above the rows.
     separator : str
     count : int
-        Cells of a row.
+        Number of cells per row.
     """
     if "\r" in text and "\r\n" not in text:
         return False

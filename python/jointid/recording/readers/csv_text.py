@@ -11,18 +11,18 @@ from jointid.base.unpacking import Room
 
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"
-_LEAST = 100_000_000  # bytes that the numbers of any packed text may take
-# The same, where its lines and cells become texts of Python; of a larger file, so many times what is over it.
+_LEAST = 100_000_000  # bytes that the numbers of any packed text may use, however small the file is
+# The same for lines and cells as Python texts; a larger file may use this multiple of its additional size.
 _LEAST_AS_TEXTS, _USUAL, _TIMES_AS_TEXTS = 250_000_000, 3_000_000, 200
-_LINE, _CELL = 110, 64  # bytes that each takes as a text, beside a line's characters
+_LINE, _CELL = 110, 64  # bytes of each Python text, in addition to a line's characters
 # Characters on which Latin-1 and Windows-1252 agree.
-# Characters that make all of a text take 4 or 2 bytes each.
+# A text with one of these characters uses 4 or 2 bytes for every character.
 _ANY_OF_FOUR, _ANY_OF_TWO = rb"[\xf0-\xf4][\x80-\xbf]{3}", rb"[\xc4-\xef][\x80-\xbf]"
 _LATIN = rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*"
 
 
 def text_of(path: Path) -> str:
-    """Return the text of a file: UTF-8, or Latin-1 if its bytes cannot mean anything else.
+    """Return the text of a file: UTF-8, or Latin-1 if the bytes are clearly Latin-1.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def text_of(path: Path) -> str:
 
 
 class Texts:
-    """What a packed file may take whose lines become separate texts; a plain one may hold what it likes.
+    """Memory limit for the lines of a packed file as separate texts; plain files have no limit.
 
     Parameters
     ----------
@@ -59,18 +59,18 @@ class Texts:
             self._room = Room(path, least=_LEAST_AS_TEXTS + more)
 
     def count(self, text: str, cells: int = 0) -> None:
-        """Count a text that is cut into lines, and so many of its cells if these become separate texts, too.
+        """Count the memory of a text that is split into lines, and of its cells if they also become separate texts.
 
         Raises
         ------
         InputError
-            The file holds more than it may.
+            The file exceeds the memory limit.
         """
         if self._room is None:
             return
         pairs = text.count("\r\n")
         lines = text.count("\n") + text.count("\r") - pairs
-        copied = 1 + ("\r" in text) + (cells > 0)  # lines of one kind, the lines, their cells
+        copied = 1 + ("\r" in text) + (cells > 0)  # normalized text, lines, cells
         self._room.again()
         self._room.take(copied * len(text) + _LINE * lines + _CELL * cells)
 
@@ -79,7 +79,7 @@ def _decoded(path: Path, content: bytes) -> str:
     try:
         text = (content[len(_BOM) :] if content.startswith(_BOM) else content).decode("utf-8")
     except UnicodeDecodeError as error:
-        if re.fullmatch(_LATIN, content):  # older Windows programs write the degree sign like this
+        if re.fullmatch(_LATIN, content):  # older Windows programs write the degree sign in Latin-1
             return content.decode("latin-1")
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(
@@ -98,8 +98,8 @@ def _decoded(path: Path, content: bytes) -> str:
 
 
 def _count(content: bytes, room: Room) -> None:
-    """Count what a packed text takes beside its bytes: its numbers, and wide characters."""
-    blanks = content.count(b" ") - content.count(b"  ")  # of several side by side, some
+    """Count the memory of a packed text in addition to its bytes: its numbers, and wide characters."""
+    blanks = content.count(b" ") - content.count(b"  ")  # of several adjacent blanks, some count
     separators = max(blanks, *map(content.count, (b",", b";", b"\t")))
     cells = separators + content.count(b"\n")
     wide = re.search(_ANY_OF_FOUR, content) or re.search(_ANY_OF_TWO, content)

@@ -1,4 +1,4 @@
-"""A last line that a logger did not finish, because it was killed or the power failed."""
+"""Removal of an incomplete last line, left by a logger that was killed or lost power."""
 
 import csv
 
@@ -6,23 +6,23 @@ from jointid.recording.readers.csv_dialect import cells_of, number_of
 from jointid.recording.readers.csv_layout import Layout, is_comment
 
 TORN = "the last line is incomplete and left out"
-"""What a recording's metadata say of it."""
-_COMPARED = 50  # lines before the last one
-_FEW = 20  # lines that show how short a cell may be
-_LONGEST = 1 << 16  # characters in which these are looked for
+"""Remark in a recording's metadata."""
+_COMPARED = 50  # number of lines compared with the last one
+_FEW = 20  # number of lines needed to know the shortest cell
+_LONGEST = 1 << 16  # characters in which these lines are searched
 
 
 def without_torn_line(text: str, layout: Layout) -> str | None:
-    """Return a text without its last line if that is cut; None if it is not.
+    """Return a text without its last line if this line is incomplete; otherwise None.
 
-    A line is cut that has fewer cells than the header. One without a newline may be cut within its last cell: that
-    is then no number, or shorter than each of those above it.
+    A line with fewer cells than the header is incomplete. A line without a newline may be cut within its last
+    cell. That cell is then not a number, or shorter than all cells above it.
 
     Parameters
     ----------
     text : str
     layout : Layout
-        Layout of its table.
+        Layout of the text's table.
     """
     ended = text.rstrip("\r\n \t") if layout.separator != "\t" else text.rstrip("\r\n")
     cut = max(ended.rfind("\n"), ended.rfind("\r")) + 1
@@ -48,7 +48,7 @@ def without_torn_line(text: str, layout: Layout) -> str | None:
         return None
     *numbers, number = (number_of(cell, layout.separator) is not None for cell in cells)
     *wanted, expected = (number_of(cell, layout.separator) is not None for cell in whole[-1])
-    if not expected or numbers != wanted:  # what is damaged further left was not cut
+    if not expected or numbers != wanted:  # damage further left is not a cut
         return None
     shortest = min(len(row[-1]) for row in whole)
     return None if number and len(cells[-1]) >= shortest else text[:cut]

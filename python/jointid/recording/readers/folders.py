@@ -10,9 +10,9 @@ from jointid.base.errors import InputError
 
 
 def files_of(paths: Sequence[Any]) -> list[Any]:
-    """Return the files, and those of folders in the order of their names; a folder that is one recording is itself.
+    """Return the files, with folders replaced by their files in order of name; a folder that is one recording stays.
 
-    A folder without recordings stays, so that what reads it says what is wrong.
+    A folder without recordings also stays, so that its reader reports the error.
     """
     found: list[Any] = []
     for path in paths:
@@ -22,7 +22,7 @@ def files_of(paths: Sequence[Any]) -> list[Any]:
 
 
 def _inside(path: str | Path) -> list[Path]:
-    """Return the recordings that stand in a folder; none where the folder is a recording."""
+    """Return the recordings in a folder; none if the folder is one recording."""
     from jointid.recording.readers.registry import endings, reader_of
 
     folder = Path(path)
@@ -38,5 +38,5 @@ def _inside(path: str | Path) -> list[Path]:
         for each in folder.iterdir()
         if each.name.lower().endswith(known) and not each.name.startswith(".")
     )
-    # A .json file beside other recordings is an estimate, or a logger's settings.
+    # A .json file next to other recordings is an estimate, or a logger's settings.
     return [each for each in inside if each.suffix != ".json"] or inside

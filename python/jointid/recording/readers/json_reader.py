@@ -1,4 +1,4 @@
-"""Reading .json files: records or rows under one key or several, and the values that stand beside them."""
+"""Reading .json files: records or rows under one or several keys, and the values next to them."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ from jointid.recording.signals import FloatArray, signal_array
 RUN = "run"
 """Header of the column that names the runs of a file with several."""
 _TESTS = {"slow-forward", "slow-backward", "fast-forward", "fast-backward"}
-# Rows of WPILib's SysId have no names: of a mechanism, and of a drivetrain.
+# Columns of WPILib's SysId, which writes no names: for a mechanism, and for a drivetrain.
 _ROWS: dict[int, tuple[str, ...]] = {
     4: ("time [s]", "voltage [V]", "position", "velocity"),
     9: (
@@ -29,7 +29,7 @@ _ROWS: dict[int, tuple[str, ...]] = {
         *("left.velocity", "right.velocity", "gyroscope [rad]", "gyroscope rate [rad/s]"),
     ),
 }
-# It writes rotations, and how many of its units one is: unit → ours, and the factor to it.
+# SysId writes rotations, and its units per rotation: SysId's unit → our unit, and units per rotation.
 _UNITS: dict[object, tuple[str, float]] = {
     "Radians": ("rad", 1.0),
     "Degrees": ("deg", 1.0),
@@ -38,16 +38,16 @@ _UNITS: dict[object, tuple[str, float]] = {
     "Feet": ("m", 0.3048),
     "Inches": ("m", 0.0254),
 }
-_LONGEST = 200  # characters of a text beside the rows
+_LONGEST = 200  # characters of a text next to the rows
 _Key = tuple[str | int, ...]
 
 
 class JsonTable:
     """A .json file as a table of columns.
 
-    Records give columns by their keys, a list inside of them one column for each element. Rows under the names of
-    SysId's tests have the columns that SysId documents. Several lists are runs, one after the other, and the column
-    `RUN` names them. Numbers and texts beside the rows are `notes["stated"]`.
+    The keys of records are columns; a list in a record gives one column per element. Rows under the names of SysId's
+    tests have the columns that SysId documents. Several lists are consecutive runs, and the column `RUN` names them.
+    Numbers and texts next to the rows are in `notes["stated"]`.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class JsonTable:
         return [self._numbers(column) for column in columns]
 
     def raw(self, column: int) -> npt.NDArray[Any] | None:
-        """Return the values of a column as the file has them; None where they are changed."""
+        """Return the values of a column as the file has them; None if they were converted."""
         if self._shift is not None or self.headers[column] in self._factors:
             return None
         return np.array(self._values(column), dtype=object)
@@ -108,7 +108,7 @@ class JsonTable:
         return str(self._values(column)[0])
 
     def place(self, column: int, row: int) -> str:
-        """Return file, 0-based number of the row, and column of a value."""
+        """Return the place of a value: file, 0-based row and column."""
         return f"{self.source}, row {row}, column {self.headers[column]!r}"
 
     def _values(self, column: int) -> list[Any]:
@@ -132,7 +132,7 @@ class JsonTable:
         return array if header not in self._factors else array * self._factors[header]
 
     def _name_as_sysid(self, stated: Mapping[str, Any]) -> None:
-        """Name the rows of SysId, and convert rotations to the unit that it states."""
+        """Name the columns of SysId's rows, and convert rotations to the stated unit."""
         names = _ROWS.get(len(self._keys) - (len(self._keys) == 10))
         if names is None:
             return
@@ -151,11 +151,11 @@ class JsonTable:
             )
 
     def _put_in_order(self, ends: npt.NDArray[np.int_]) -> None:
-        """Put runs in the order of their times; where they overlap, each begins after the one before it."""
+        """Sort runs by time; if they overlap, shift each run to begin after the previous one."""
         self._time = next((each for each in self._keys if _is_time(each)), "")
         try:
             time = self._numbers(self.headers.index(self._time))
-        except (InputError, ValueError):  # there is none, or its stamps are text
+        except (InputError, ValueError):  # there is no time, or its stamps are text
             return
         runs = np.split(np.arange(len(time)), ends)
         by_time = sorted(runs, key=lambda run: float(time[run[0]]))
@@ -173,7 +173,7 @@ def _is_time(header: str) -> bool:
 
 
 def _lists(content: Any, name: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Yield the lists of records or of rows, and lists of numbers side by side as rows of their own."""
+    """Yield the lists of records or rows; parallel lists of numbers are joined to rows."""
     if isinstance(content, list):
         if all(isinstance(each, dict | list) for each in content):
             yield name, content
@@ -197,7 +197,7 @@ def _is_column(value: Any) -> bool:
 
 
 def _stated(content: Any, name: str = "") -> Iterator[tuple[str, str | float]]:
-    """Yield numbers and texts that stand beside the rows."""
+    """Yield the numbers and texts next to the rows."""
     if isinstance(content, dict):
         for key, value in content.items():
             yield from _stated(value, f"{name}.{key}" if name else key)
@@ -206,7 +206,7 @@ def _stated(content: Any, name: str = "") -> Iterator[tuple[str, str | float]]:
 
 
 def _keys(rows: list[Any]) -> dict[str, _Key]:
-    """Return header → where its value is in a row, for all that the rows hold."""
+    """Return header → place of its value in a row, for all values of the rows."""
     found: dict[str, _Key] = {}
     seen: set[tuple[Any, ...]] = set()
     for row in rows:

@@ -1,4 +1,4 @@
-"""Tables of LeRobot datasets: lists named by joints, and episodes that follow one another on one clock."""
+"""Tables of LeRobot datasets: lists with joint names, and consecutive episodes on one clock."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from jointid.recording.table import RenamedTable, Table
 from jointid.recording.wide.finding_joints import joint_headers
 
 INFO = "meta/info.json"
-"""What every dataset has, from its top folder."""
+"""A file that every dataset has, by its path from the top folder."""
 
 _STATE = "observation.state"
 _SIGNALS = {
@@ -31,27 +31,27 @@ _SIGNALS = {
     "action": "reference",
 }
 _ELEMENT = rf"({'|'.join(map(re.escape, _SIGNALS))})(?:_(\d+))?"
-_BEHIND = r"\.(pos|vel|torque|effort)$"  # what newer datasets put behind a motor's name
-_ABOVE = 4  # folders of a file that may be the dataset's top
+_BEHIND = r"\.(pos|vel|torque|effort)$"  # suffix of a motor's name in newer datasets
+_ABOVE = 4  # parent folders of a file that are searched for the dataset's top
 _EPISODE, _FRAME, _TIME = "episode_index", "frame_index", "timestamp"
 _UNIT = "lerobot"
 _MOST_SHOWN = 100  # episodes in the metadata
 
 
 def with_episodes(table: Table, path: Path) -> Table:
-    """Return the table of a LeRobot dataset with named joints; any other table as it is.
+    """Return the table of a LeRobot dataset with named joints; any other table unchanged.
 
     Parameters
     ----------
     table : Table
-        With a column for each element of its lists.
+        Table with one column per list element.
     path : Path
         The dataset's folder, or one of its files.
 
     Raises
     ------
     InputError
-        ``meta/info.json`` is there, and cannot be read.
+        ``meta/info.json`` exists, but cannot be read.
     """
     headers = set(table.headers)
     of_states = any(_is_element(each, _STATE) for each in headers)
@@ -66,7 +66,7 @@ def _is_element(header: str, feature: str) -> bool:
 
 
 def _info(path: Path) -> Mapping[str, Any]:
-    """Return what the dataset says of itself; nothing for a file that stands alone."""
+    """Return the dataset's description; empty for a single file."""
     folders = [path] if path.is_dir() else [*path.resolve().parents][:_ABOVE]
     file = next((each / INFO for each in folders if (each / INFO).is_file()), None)
     if file is None:
@@ -79,7 +79,7 @@ def _info(path: Path) -> Mapping[str, Any]:
 
 
 def joint_names(info: Mapping[str, Any], feature: str, count: int) -> list[str]:
-    """Return the names of a feature's elements; their numbers where the dataset names none, or not so many."""
+    """Return the names of a feature's elements; their numbers if the dataset does not name all of them."""
     features = info.get("features")
     own = features.get(feature) if isinstance(features, Mapping) else None
     names = own.get("names") if isinstance(own, Mapping) else None
@@ -95,7 +95,7 @@ def joint_names(info: Mapping[str, Any], feature: str, count: int) -> list[str]:
 
 
 def _named(headers: Sequence[str], info: Mapping[str, Any]) -> tuple[list[str], list[str]]:
-    """Return the headers, with a joint's name where the table has an element of a list, and features of no joint."""
+    """Return the headers, with joint names for list elements, and the features that belong to no joint."""
     elements = [re.fullmatch(_ELEMENT, header) for header in headers]
     counts = Counter(each[1] for each in elements if each is not None)
     names = {name: joint_names(info, name, count) for name, count in counts.items()}
@@ -103,7 +103,7 @@ def _named(headers: Sequence[str], info: Mapping[str, Any]) -> tuple[list[str], 
     of_none = []
     for feature, own in names.items():
         known = set(joints) & set(own) if joints[0] != "0" != own[0] else set()
-        if len(own) == len(joints) and not known:  # in the order of the states
+        if len(own) == len(joints) and not known:  # without names, in the order of the states
             names[feature] = joints
         elif not known:
             of_none.append(feature)
@@ -125,7 +125,7 @@ def _named(headers: Sequence[str], info: Mapping[str, Any]) -> tuple[list[str], 
 
 
 class LeRobotTable(RenamedTable):
-    """A dataset's rows: states are positions, actions wanted positions, episodes runs one after the other.
+    """A dataset's rows: states are positions, actions are references, episodes are consecutive runs.
 
     Parameters
     ----------
@@ -144,14 +144,14 @@ class LeRobotTable(RenamedTable):
 
     @cached_property
     def _episodes(self) -> tuple[FloatArray, list[npt.NDArray[np.intp]]]:
-        """Each row's episode, and the rows of each run of one."""
+        """Return each row's episode, and the rows of each run."""
         (episodes,) = self._table.numbers([self._table.headers.index(_EPISODE)])
         ends = np.flatnonzero(np.diff(episodes)) + 1
         return episodes, np.split(np.arange(len(episodes)), ends)
 
     @property
     def notes(self) -> dict[str, Any]:
-        """How the file was read."""
+        """Metadata entries on how the file was read."""
         found = super().notes
         episodes, runs = self._episodes
         if len(runs) > 1:
@@ -169,7 +169,7 @@ class LeRobotTable(RenamedTable):
         ]
 
     def _clock(self, stamps: FloatArray) -> FloatArray:
-        """Return the time of all rows: of frames at the dataset's rate where the stamps say the same."""
+        """Return the time of all rows: frame numbers over the dataset's rate if the stamps agree with them."""
         if isinstance(self._rate, int | float) and self._rate > 0.0:
             (frames,) = self._table.numbers([self._table.headers.index(_FRAME)])
             even = frames / float(self._rate)

@@ -27,7 +27,7 @@ class StackedTable:
     Raises
     ------
     InputError
-        There is no file of rows, or two have other columns.
+        There is no file with rows, or two files differ in columns.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -51,7 +51,7 @@ class StackedTable:
         return [np.concatenate(column) for column in zip(*each, strict=True)]
 
     def raw(self, column: int) -> npt.NDArray[Any] | None:
-        """Return integers and dates as the files have them, None for other columns."""
+        """Return integers and dates as the files have them; None for other columns."""
         values = [raw_values(part, column) for part in self._parts]
         known = [each for each in values if each is not None]
         return np.concatenate(known) if len(known) == len(values) else None
@@ -61,7 +61,7 @@ class StackedTable:
         return [cell for part in self._parts for cell in part.text(column)]
 
     def list_widths(self) -> dict[int, int]:
-        """Return column → numbers in its first cell, for those whose cells are lists of numbers."""
+        """Return column → count of numbers in its first cell, for columns of lists."""
         return self._parts[0].list_widths()
 
     def lists(self, column: int, width: int) -> FloatArray:
@@ -69,7 +69,7 @@ class StackedTable:
         return np.concatenate([part.lists(column, width) for part in self._parts])
 
     def place(self, column: int, row: int) -> str:
-        """Return file, 0-based row and column of a value."""
+        """Return the place of a value: file, 0-based row and column."""
         part = int(np.searchsorted(self._starts, row, side="right")) - 1
         part = min(part, len(self._parts) - 1)
         return self._parts[part].place(column, row - int(self._starts[part]))

@@ -1,4 +1,4 @@
-"""Columns whose cells are lists of numbers, shown as one column for each element: ``torques_0``, ``torques_1``, ..."""
+"""Columns of lists of numbers, split into one column per element: ``torques_0``, ``torques_1``, ..."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -11,18 +11,18 @@ from jointid.recording.signals import FloatArray
 from jointid.recording.table import MOST_COLUMNS, Table, first_cell, raw_values
 
 _LIST = re.compile(r"(?:array\('[df]', *|array\()?([\[(])(.*)[\])]\)?", re.DOTALL)
-_SCALAR = re.compile(r"np\.float\d+\(([^()]*)\)")  # as NumPy 2 writes the numbers of a Python list
+_SCALAR = re.compile(r"np\.float\d+\(([^()]*)\)")  # NumPy 2's form of a number in a list
 _UNIT = re.compile(r"\s*[\[(][^\[\]()]*[\])]\s*$")
 
 
 class HasLists(Table, Protocol):
-    """A table that may have such columns."""
+    """A table that may have columns of lists."""
 
     def list_widths(self) -> Mapping[int, int]:
-        """Return column → numbers in its first cell, for those whose cells are lists."""
+        """Return column → count of numbers in its first cell, for columns of lists."""
 
     def lists(self, column: int, width: int) -> FloatArray:
-        """Return such a column, of shape (n, width); raise `InputError` for a cell that is no such list."""
+        """Return a column of lists, of shape (n, width); raise `InputError` for a cell that is not such a list."""
 
 
 def list_of(cell: str) -> list[float] | None:
@@ -37,7 +37,7 @@ def list_of(cell: str) -> list[float] | None:
 
 
 def with_list_columns(table: Table) -> Table:
-    """Return a table in which every column holds one number a row."""
+    """Return a table with one number per row in every column."""
     widths = table.list_widths() if hasattr(table, "list_widths") else {}
     if not 0 < sum(widths.values()) <= MOST_COLUMNS:
         return table
@@ -45,13 +45,13 @@ def with_list_columns(table: Table) -> Table:
 
 
 class ListColumns:
-    """A table with a column for each element of its lists; a list of one keeps its header.
+    """A table with one column per list element; a list of one element keeps its header.
 
     Parameters
     ----------
     table : HasLists
     widths : mapping of int to int
-        As `HasLists.list_widths` returns them.
+        Result of `HasLists.list_widths`.
     """
 
     def __init__(self, table: HasLists, widths: Mapping[int, int]) -> None:
@@ -73,13 +73,13 @@ class ListColumns:
 
     @property
     def notes(self) -> dict[str, Any]:
-        """How the file was read."""
+        """Metadata entries on how the file was read."""
         found: dict[str, Any] = getattr(self._table, "notes", {})
         return found
 
     @cached_property
     def other_names(self) -> Mapping[str, int]:
-        """Names that `columns=` may use besides the headers."""
+        """Names that `columns=` may use in addition to the headers."""
         whole = {column: k for k, (column, _) in enumerate(self._of) if column not in self._widths}
         return {n: whole[k] for n, k in self._table.other_names.items() if k in whole}
 
@@ -112,7 +112,7 @@ class ListColumns:
         return "" if own in self._widths else first_cell(self._table, own)
 
     def place(self, column: int, row: int) -> str:
-        """Return where a cell is."""
+        """Return the place of a cell."""
         return self._table.place(self._of[column][0], row)
 
     def _lists(self, column: int) -> FloatArray:

@@ -54,7 +54,7 @@ def load(
     group: str | None = None,
     unpacked: int | None = None,
 ) -> Recording:
-    """Return the recording that a file holds; the verb `load` describes the options."""
+    """Return the recording in a file; see the function `load` for the options."""
     file = require_path("path", path)
     try:
         table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)
@@ -97,7 +97,7 @@ def load(
 
 
 def _one_run(contents: Contents) -> tuple[str | Action, ...]:
-    """What to do about stamps that go back: read one run of several, or sort."""
+    """Return remedies for stamps that go back: read one of several runs, or sort."""
     from jointid.recording.runs import one_run
 
     return one_run(contents) or (_SORT,)
@@ -123,29 +123,29 @@ def load_runs(
     group: str | None = None,
     unpacked: int | None = None,
 ) -> tuple[Recording, ...]:
-    """Return the recordings of a file that holds several runs, one after the other.
+    """Return the recordings of a file with several consecutive runs.
 
     Parameters
     ----------
     path : path-like
-        As in `load`.
+        Same as in `load`.
     by : str or int
-        Header or 0-based number of the column that numbers the runs: rows with the same value
-        are one run.
+        Header or 0-based number of the column that identifies the runs: rows with the same value are
+        one run.
     joint, columns, units, scale, extra, gear_ratio, side, sample_period, kind, torque_hold, topic, group, unpacked
-        As in `load`.
+        Same as in `load`.
     name : str, optional
-        Beginning of the runs' names. Default: as in `load`.
+        Prefix of the runs' names. Default: the name as in `load`.
 
     Returns
     -------
     tuple of Recording
-        In the order in which the values of `by` first appear, each named ``"NAME BY=VALUE"``.
+        The runs in the order of first appearance of the values of `by`, named ``"NAME BY=VALUE"``.
 
     Raises
     ------
     InputError
-        As `load`; the place names the run.
+        Same errors as `load`; the place names the run.
 
     Examples
     --------
@@ -193,7 +193,7 @@ def table_of(
     kind: str | None = None,
     unpacked: int | None = None,
 ) -> Table:
-    """Return a file as a table of columns, by the ending of its name."""
+    """Return a file as a table of columns; the ending of its name selects the reader."""
     reader = reader_of(file)
     part: str | None = None
     for argument, given in (("topic", topic), ("group", group)):
@@ -247,19 +247,19 @@ def _form(file: Path, reader: Reader) -> str:
 
 
 def file_name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
-    """Return a recording's name: as given, as saved, or the file's without its ending."""
+    """Return a recording's name: from the call, from the saved recording, or the file name without its ending."""
     stem = (
         file.resolve().name
         if file.is_dir()
         else file.name[: -len(ending_of(file, reader_of(file).endings))]
     )
-    # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
+    # Bytes of a file name that are not UTF-8 become surrogates in Python, and these cannot be saved.
     stem = re.sub(_SURROGATE, "\ufffd", stem)
     return fields.get("name", stem) if name is None else name
 
 
 def _named(file: Path, fields: Mapping[str, Any], name: str | None, one: OneJoint) -> Any:
-    """The name of a recording; of a joint among several with the joint's."""
+    """Return the name of a recording; for one of several joints with the joint's name."""
     whole = file_name(file, fields, name)
     return f"{whole} joint {one.joint}".lstrip() if one.joint and name is None else whole
 

@@ -55,48 +55,48 @@ def load_robot(
     group: str | None = None,
     unpacked: int | None = None,
 ) -> RobotRecording:
-    """Return the recording of several joints that a file holds.
+    """Return the recording of several joints in a file.
 
     Parameters
     ----------
     path : path-like, or open file
-        A file as `load` reads it, or one that `RobotRecording.save` wrote.
+        Any file that `load` reads, also one from `RobotRecording.save`.
     joints : sequence of str or int, optional
-        Names or numbers of the joints, as the headers have them. A robot that has as many joints, and none of these
-        names, takes them in this order. Default, and "all": all that the headers name; of a
-        log with several clocks, as of an arm and its gripper, those on the clock of most torques, and
+        Names or numbers of the joints in the headers. If the file has this number of joints but none of these
+        names, the joints get these names in order. Default, and "all": all joints in the headers. If a log has
+        several clocks (an arm and its gripper), only the joints on the clock with most torques are read, and
         ``metadata["joints_left_out"]`` names the others.
     columns : mapping of str to str, int or None, optional
-        As in `load`; ``{joint}`` in a header stands for each joint's name:
+        Same as in `load`; ``{joint}`` in a header stands for each joint's name:
         ``{"position": "motor_encoder_pos_{joint}_linkside_rad"}``.
     units, scale : mapping, optional
-        As in `load`, for all joints.
+        Same as in `load`, for all joints.
     gear_ratio : sequence of float, optional
-        One a joint, in the order of `joints`; signed. Default: not known.
+        One signed value per joint, in the order of `joints`. Default: not known.
     side, sample_period, where, kind, torque_hold
-        As in `load`.
+        Same as in `load`.
     extra : collection of str, or mapping of str to str or int, optional
-        Further columns, as in `load`; with ``{joint}`` in the header one of each joint:
+        Further columns, as in `load`; ``{joint}`` in the header gives one column per joint:
         ``{"model_torque": "model_torque_{joint}_Nm"}``. Default: none.
     drop_invalid : bool
-        As in `load`: a row that is damaged in one joint is left out in all. Default False.
+        Same as in `load`. A row with damage in one joint is left out for all joints. Default False.
     name : str, optional
-        Default: as saved, else the file's name without its ending.
+        Default: the saved name, or the file name without its ending.
     topic, group : str, optional
-        As in `load`.
+        Same as in `load`.
     unpacked : int, optional
-        As in `load`.
+        Same as in `load`.
 
     Returns
     -------
     RobotRecording
-        On the side of the gear that the headers show ("motor_position_3_rad": the motor's); at the joint if
-        one joint has signals of both sides, which needs `gear_ratio`.
+        Signals on the side of the gear from the headers ("motor_position_3_rad": motor side). If one joint has
+        signals of both sides, all are on the joint side; this needs `gear_ratio`.
 
     Raises
     ------
     InputError
-        The headers name no joints, or a joint's columns are not a recording; the error names joint and header.
+        The headers name no joints, or a joint's columns do not form a recording; the error names joint and header.
 
     Examples
     --------
@@ -141,7 +141,7 @@ def load_robot(
 
     sound: dict[
         int, Rows
-    ] = {}  # by the number of the log's rows, which other clocks have others of
+    ] = {}  # by the number of the log's rows, because each clock has different rows
     if drop_invalid:
         for each, one in zip(names, tables, strict=True):
             with _of_joint(each):
@@ -169,7 +169,7 @@ def load_robot(
     fields = [fields[k] for k in kept]
     each_side = [stated_sides(one.side, one.other_sides, side) for one in tables]
     sides = {own for own, _ in each_side}
-    if whole is not None:  # its headers do not say the side
+    if whole is not None:  # a saved robot's headers do not state the side
         sides = {whole.side}
         if gear_ratio is None and whole.gear_ratio is not None:
             gear_ratio = [whole.gear_ratio[whole.names.index(each)] for each in names]
@@ -185,7 +185,7 @@ def load_robot(
         fields = _at_joint(names, tables, fields, gear_ratio, each_side)
         sides = {JOINT}
     first = {key: value for key, value in fields[0].items() if key not in ROBOT_SIGNALS}
-    # Of a long log only one copy at a time: the table and its columns are no longer needed.
+    # Keep only one copy of a long log: the table and its columns are no longer needed.
     del table, tables, one, held
     return RobotRecording(
         time=first["time"],
@@ -209,7 +209,7 @@ def load_robot(
 def _metadata(
     first: Mapping[str, Any], left_out: Mapping[str, str], *, dropped: int, listed: bool
 ) -> Mapping[str, Any]:
-    """Return how the file was read, which joints and how many rows were not, and whether the joints were listed."""
+    """Return metadata: how the file was read, joints and rows left out, and whether the joints were listed."""
     found = dict(first.get("metadata") or {})
     if left_out:
         found["joints_left_out"] = dict(left_out)
@@ -220,7 +220,7 @@ def _metadata(
 
 @contextmanager
 def _of_joint(name: str) -> Iterator[None]:
-    """Say of which joint an error is."""
+    """Add the joint to the place of an error."""
     try:
         yield
     except InputError as error:
@@ -236,7 +236,7 @@ def _count(held: Contents, rows: Rows | None) -> int:
 
 
 def _once(contents: Sequence[Contents], rows: Rows | None) -> list[dict[str, Any]]:
-    """Return each joint's arguments, without the rows that are copies in all of them."""
+    """Return each joint's arguments, without rows that are copies for all joints."""
     if rows is None:
         rows = np.arange(len(contents[0].values["time"]))
     every = [each.once(rows) for each in contents]
@@ -254,7 +254,7 @@ def _at_joint(
     gear_ratio: Sequence[float] | FloatArray | float | None,
     sides: Sequence[tuple[str, Mapping[str, str]]],
 ) -> list[dict[str, Any]]:
-    """Return all signals at the joint: those of one joint are on both sides of its gear."""
+    """Return all signals on the joint side, because one joint has signals of both sides."""
     ratios = checked_ratios(gear_ratio, len(names)) or (None,) * len(names)
     found = []
     for name, one, held, ratio, (own, others) in zip(
@@ -290,7 +290,7 @@ def _wanted(
 def _of_present(
     values: Mapping[str, Any] | None, one: JointTable, present: Collection[str]
 ) -> Mapping[str, Any] | None:
-    """Units and factors without those of signals that only other joints have; what none has is refused later."""
+    """Return units and factors without signals that only other joints have; signals of no joint are refused later."""
     if not isinstance(values, Mapping):
         return values
     absent = {*present} - _signals(one)
@@ -298,14 +298,14 @@ def _of_present(
 
 
 def _signals(one: JointTable) -> set[str]:
-    """Signals of a joint that a column is chosen for or that a header names, in whatever unit."""
+    """Return the signals of a joint with a chosen column or a matching header, in any unit."""
     meanings = [understood(header).meaning for header in one.headers]
     named = {each.signal for each in meanings if each is not None}
     return {each for each in named | {*one.columns} if one.columns.get(each, ...) is not None}
 
 
 def _stacked(fields: Sequence[dict[str, Any]]) -> dict[str, FloatArray]:
-    """Return each signal's columns side by side, NaN for a joint that lacks it, and take them out of `fields`."""
+    """Return each signal's columns side by side, NaN for a joint without the signal; remove them from `fields`."""
     length = len(fields[0]["time"])
     stacked = {}
     for signal in ROBOT_SIGNALS:
@@ -322,7 +322,7 @@ def _stacked(fields: Sequence[dict[str, Any]]) -> dict[str, FloatArray]:
 def _extra(
     wanted: Mapping[str, str | int], fields: Sequence[Mapping[str, Any]]
 ) -> dict[str, FloatArray]:
-    """Return each further signal: side by side where every joint has its own."""
+    """Return each extra signal; with one column per joint if every joint has its own."""
     found = {}
     for name, header in wanted.items():
         each = [own["extra"][name] for own in fields]
@@ -336,7 +336,7 @@ def _changed(
     gear_ratio: Sequence[float] | FloatArray | float | None,
     name: str | None,
 ) -> RobotRecording:
-    """Return a saved recording, or some of its joints."""
+    """Return a saved recording with the call's changes, or some of its joints."""
     if joints is not None and joints != "all":
         robot = robot.select(_wanted(joints, robot.names, robot.name))
     if gear_ratio is not None:

@@ -1,4 +1,4 @@
-"""What a file's table holds before anybody said what its columns are, and which signals they probably are."""
+"""First look at a file: its columns, and the signals that they probably are."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jointid.recording.matching import match_columns
 from jointid.recording.readers.loading import table_of
 from jointid.recording.table import Table
 
-_TRIES = 4  # proposals that follow one another: time and position, then a torque, then units
+_TRIES = 4  # consecutive proposals: time and position, then a torque, then units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,9 +29,9 @@ class LookedColumn:
     ----------
     header : str
     unit : str
-        As the header states it, by the name that `load` takes; "" where it states none.
+        Unit from the header, by its name in `load`; "" if the header states none.
     low, high : float or None
-        Smallest and largest finite value, in the file's unit; None where the cells are no numbers.
+        Smallest and largest finite value, in the file's unit; None if the cells are not numbers.
     """
 
     header: str
@@ -42,21 +42,21 @@ class LookedColumn:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FirstLook:
-    """A table and what its columns probably are.
+    """A table and the probable meaning of its columns.
 
     Attributes
     ----------
     columns : tuple of LookedColumn
     signals : mapping of str to int
-        Signal → number of its column, as headers say or as their words make probable.
+        Signal → number of its column, from clear headers or from likely words in them.
     units : mapping of str to str
-        Signal → proposed unit, where the header states none.
+        Signal → proposed unit, if the header states none.
     side : mapping of str to str
-        Signal → proposed side of the gear, where its header is the motor's.
+        Signal → proposed side of the gear, if its header names the motor.
     certain : bool
         Whether the headers alone are enough to read the file.
     problem : str
-        Why no proposal was possible; "" else.
+        Reason why no proposal was possible; otherwise "".
     """
 
     columns: tuple[LookedColumn, ...]
@@ -68,7 +68,7 @@ class FirstLook:
 
 
 def first_look(path: Path) -> FirstLook:
-    """Return what a file of one joint holds.
+    """Return the columns of a file of one joint and their probable signals.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def first_look(path: Path) -> FirstLook:
 
 
 def _take(error: InputError, arguments: dict[str, dict[str, Any]]) -> bool:
-    """Add what the error proposes; returns whether that is anything new."""
+    """Add the error's proposal to the arguments; return whether it is new."""
     for action in error.remedy:
         if not isinstance(action, Action) or action.kind != "call" or action.function != "load":
             continue
@@ -123,7 +123,7 @@ def _take(error: InputError, arguments: dict[str, dict[str, Any]]) -> bool:
 
 
 def _proposed(table: Table, arguments: Mapping[str, Mapping[str, Any]]) -> dict[str, int]:
-    """Proposed columns by their numbers."""
+    """Return signal → number of the proposed column."""
     found = {}
     for signal, column in arguments.get("columns", {}).items():
         if isinstance(column, int):

@@ -1,7 +1,7 @@
 """The elements of a MATLAB level 5 file: real and complex arrays, and structs that hold them.
 
 Written from the published format ("MAT-File Format", MathWorks). scipy.io.loadmat reads more, but
-ends the interpreter on some damaged files; here every length is checked against what is there.
+some damaged files crash it together with the interpreter. Here every length is checked.
 """
 
 import itertools
@@ -22,10 +22,10 @@ _MATRIX, _COMPRESSED = 14, 15
 _STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8"}
 _STORED |= {12: "i8", 13: "u8"}
 _STRUCT, _OPAQUE = 2, 17
-_NUMERIC = range(6, 16)  # double, single, int8 ... uint64; logical is one of them with a flag
+_NUMERIC = range(6, 16)  # double, single, int8 ... uint64; logical has one of these and a flag
 _COMPLEX = 0x0800
 
-_MOST_FIELDS, _MOST_ELEMENTS = 10_000, 100_000  # of a struct that is read
+_MOST_FIELDS, _MOST_ELEMENTS = 10_000, 100_000  # limits of a struct
 
 
 class DamageError(ValueError):
@@ -40,9 +40,9 @@ class Variable:
     ----------
     name : str
     array : ndarray, shape (rows, columns), or None
-        None: no array of numbers of two dimensions.
+        Numbers of the variable. None: not a two-dimensional array of numbers.
     fields : tuple of tuples of Variable
-        The fields of each element of a struct, by columns. Default: no struct.
+        The fields of each element of a struct, column by column. Default: not a struct.
     """
 
     name: str
@@ -56,11 +56,11 @@ def variables_of(content: bytes, order: str, room: Room) -> Iterator[Variable]:
     Parameters
     ----------
     content : bytes
-        What follows the header of 128 bytes.
+        Bytes after the header of 128 bytes.
     order : str
-        ``"<"`` or ``">"``: which end of a number comes first.
+        Byte order, ``"<"`` or ``">"``.
     room : Room
-        For what is compressed.
+        Memory limit for compressed elements.
 
     Raises
     ------
@@ -74,12 +74,12 @@ def variables_of(content: bytes, order: str, room: Room) -> Iterator[Variable]:
         if kind != _MATRIX:
             raise DamageError(f"an element of the kind {kind} is in the place of a variable")
         variable = _variable(matrix, order, nested=False)
-        if variable.name:  # what has none is for MATLAB's own objects
+        if variable.name:  # variables without a name hold MATLAB's internal objects
             yield variable
 
 
 def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
-    """Yield kind and bytes of one element after the other."""
+    """Yield kind and bytes of each element."""
     place = 0
     while place < len(content):
         head = content[place : place + 8]
@@ -122,7 +122,7 @@ def _variable(matrix: memoryview, order: str, *, nested: bool) -> Variable:
     if len(flags) < 1 or flags.dtype.kind != "u":
         raise DamageError("a variable has no class")
     kind = int(flags[0]) & 0xFF
-    if kind == _OPAQUE:  # no dimensions: its name comes at once
+    if kind == _OPAQUE:  # no dimensions: the name follows directly
         return Variable(name=_text(_next(parts)))
     shape = [int(length) for length in _numbers(_next(parts), order)]
     if any(length < 0 for length in shape):
@@ -153,7 +153,7 @@ def _struct(
     listed, step = bytes(_next(parts)[1]), int(width[0])
     fields = -(-len(listed) // step)
     if fields > _MOST_FIELDS or count * fields > _MOST_ELEMENTS:
-        return  # a list of events, no signals
+        return  # a list of events, not signals
     names = [
         listed[first : first + step].split(b"\0")[0].decode("ascii", "replace")
         for first in range(0, len(listed), step)

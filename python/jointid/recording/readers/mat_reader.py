@@ -17,17 +17,16 @@ from jointid.recording.table import Table
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEADER = 128  # bytes before the first variable
-_ORDERS = {b"IM": "<", b"MI": ">"}  # the header's last two bytes → order of a number's bytes
+_ORDERS = {b"IM": "<", b"MI": ">"}  # the header's last two bytes → byte order
 _WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
 
 
 class MatTable:
     """A .mat file as a table of columns.
 
-    A column is a vector (n x 1 or 1 x n), named by its variable or by its field of a struct, as
-    ``struct.field`` where the field's name alone is not unique. A matrix
-    gives one for each column, ``data(:,1)``, or for each row when it is wider than long,
-    ``data(1,:)``.
+    A column is a vector (n x 1 or 1 x n). Its name is that of its variable or struct field, or
+    ``struct.field`` if the field's name is not unique. A matrix gives one vector per column,
+    ``data(:,1)``, or per row if it is wider than long, ``data(1,:)``.
 
     Parameters
     ----------
@@ -36,7 +35,7 @@ class MatTable:
     Raises
     ------
     InputError
-        The file is of version 4, damaged, not a .mat file, or has no vectors.
+        The file has version 4, is damaged, is not a .mat file, or has no vectors.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -78,13 +77,13 @@ class MatTable:
 
     def _array(self, column: int) -> Array:
         array = self._arrays[column]
-        if column not in self._taken:  # as it is converted, of whatever it is stored
+        if column not in self._taken:  # count the memory as float64, after the conversion
             self._room.take(max(0, 8 * array.size - array.nbytes))
             self._taken.add(column)
         return array
 
     def place(self, column: int, row: int) -> str:
-        """Return file, variable and 0-based index of a value."""
+        """Return the place of a value: file, variable and 0-based index."""
         return f"{self.source}, variable {self.headers[column]!r}, index {row}"
 
 
@@ -106,10 +105,10 @@ def _variables(path: Path, room: Room) -> list[Variable]:
 
 
 def _columns(variable: Variable) -> Iterator[tuple[str, str, Array]]:
-    """Yield full name, name without the struct's, and values of each vector in a variable."""
+    """Yield for each vector in a variable: full name, name without the struct, and values."""
     yield from _vectors("", variable)
     for number, element in enumerate(variable.fields, start=1):
-        index = f"({number})" if len(variable.fields) > 1 else ""  # of several runs, perhaps
+        index = f"({number})" if len(variable.fields) > 1 else ""  # such as several runs
         for field in element:
             yield from _vectors(f"{variable.name}{index}.", field)
 

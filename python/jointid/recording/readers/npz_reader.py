@@ -20,7 +20,7 @@ from jointid.recording.signals import FloatArray, signal_array
 
 
 def _damages() -> tuple[type[Exception], ...]:
-    """Return what zipfile, zlib and numpy raise for damaged, encrypted or absurdly large members."""
+    """Return the exceptions of zipfile, zlib and numpy for damaged, encrypted or absurdly large members."""
     import zipfile
 
     return (
@@ -42,7 +42,7 @@ class NpzTable:
     Raises
     ------
     InputError
-        The file is no archive of arrays.
+        The file is not an archive of arrays.
     """
 
     other_names: Mapping[str, int] = MappingProxyType({})
@@ -67,7 +67,7 @@ class NpzTable:
                 f"the archive is damaged ({reason_of(error)})", place=str(path)
             ) from None
         self._archive: Mapping[str, Any] = archive
-        # Of a member at most as much is unpacked as the archive's index says; other methods have no limit.
+        # These methods unpack no more of a member than the archive's index states; other methods have no limit.
         for each in archive.zip.infolist():
             if each.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
                 raise InputError(
@@ -98,7 +98,7 @@ class NpzTable:
         return self._member(self.headers[column])
 
     def list_widths(self) -> dict[int, int]:
-        """Return column → its width, for those that are matrices of numbers with a row for each sample."""
+        """Return column → width, for matrices of numbers with one row per sample."""
         shapes = {column: self._shape(name) for column, name in enumerate(self.headers)}
         return {
             k: shape[1]
@@ -113,7 +113,7 @@ class NpzTable:
         return signal_array("", values, self._place(name)).reshape(-1, width)
 
     def _shape(self, name: str) -> tuple[int, ...]:
-        """The shape of a member, of which only the beginning is unpacked; () where it cannot be read."""
+        """Return the shape of a member by unpacking its beginning only; () if it cannot be read."""
         try:
             with self._archive.zip.open(f"{name}.npy") as member:  # type: ignore[attr-defined]
                 version = np.lib.format.read_magic(member)
@@ -134,14 +134,14 @@ class NpzTable:
         return [str(value) for value in cells.tolist()]
 
     def place(self, column: int, row: int) -> str:
-        """Return file, member and index of a value."""
+        """Return the place of a value: file, member and index."""
         return f"{self._place(self.headers[column])}, index {row}"
 
     def _place(self, name: str) -> str:
         return f"{self.source}, member {name!r}"
 
     def _member(self, name: str) -> npt.NDArray[Any]:
-        if name not in self._taken:  # a column may be asked for more than once
+        if name not in self._taken:  # a column may be read more than once
             self._room.take(self._sizes.get(name, 0))
         try:
             value = self._archive[name]
@@ -159,7 +159,7 @@ class NpzTable:
             ) from None
         if not isinstance(value, np.ndarray):
             raise InputError("it is not an array", place=self._place(name))
-        if name not in self._taken:  # as it is converted, of whatever it is stored
+        if name not in self._taken:  # count the memory as float64, after the conversion
             self._taken.add(name)
             self._room.take(max(0, 8 * value.size - self._sizes.get(name, 0)))
         return value

@@ -1,4 +1,4 @@
-"""Recordings from open files and buffers: they are read as the file that they would be."""
+"""Reading recordings from open files and buffers, through a temporary file."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ P = ParamSpec("P")
 Read = TypeVar("Read")
 
 Source = str | os.PathLike[str] | IO[str] | IO[bytes]
-"""What holds a recording: a path, or an open file or buffer."""
+"""Source of a recording: a path, or an open file or buffer."""
 
-_NAME = "recording"  # of a buffer
+_NAME = "recording"  # name of a buffer's file
 _TEXT = ".csv"
-# The first bytes of a file → its ending; what begins otherwise is a text.
+# First bytes of a file → its ending; any other file is text.
 _BEGINNINGS = (
     (b"\x1f\x8b", ".csv.gz"),
     (b"PK", ".npz"),
@@ -35,15 +35,15 @@ _BEGINNINGS = (
 
 
 def reads_open_files(function: Callable[P, Read]) -> Callable[P, Read]:
-    """Let a function that reads a file by its path take an open file, too.
+    """Let a function that reads a file by path also accept an open file.
 
-    What is left of the open file is read. Its name, if it has one, tells the format and names the recording;
-    without one the first bytes tell the format.
+    The rest of the open file is read. Its name, if any, determines the format and the recording's name.
+    Without a name the first bytes determine the format.
 
     Parameters
     ----------
     function : callable
-        Its first argument is a path.
+        Function with a path as first argument.
     """
 
     @functools.wraps(function)
@@ -60,7 +60,7 @@ def reads_open_files(function: Callable[P, Read]) -> Callable[P, Read]:
             rest = {name: value for name, value in options.items() if name != "path"}
             try:
                 return function(file, *args[1:], **rest)  # type: ignore[arg-type]
-            except InputError as error:  # nobody knows the folder
+            except InputError as error:  # the temporary folder means nothing to the user
                 error.place = error.place.replace(f"{file.parent}{os.sep}", "")
                 raise
 
@@ -68,7 +68,7 @@ def reads_open_files(function: Callable[P, Read]) -> Callable[P, Read]:
 
 
 def is_open(source: object) -> bool:
-    """Return whether it is an open file or buffer."""
+    """Return whether the source is an open file or buffer."""
     return callable(getattr(source, "read", None))
 
 
@@ -82,7 +82,7 @@ def _content(source: Any) -> bytes:
 
 
 def _file_name(source: Any, content: bytes) -> str:
-    """The name that an open file has, or would have."""
+    """Return the name of an open file, or a name with the ending of its format."""
     name = getattr(source, "name", None)
     if isinstance(name, str) and name and not name.startswith("<"):
         return Path(name).name

@@ -16,7 +16,7 @@ from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 
 _CELL = 60  # bytes of a cell as text
-_ROWS = 1024  # of a batch
+_ROWS = 1024  # rows per batch
 _BY_DIFFERENCES = {6, 7}  # DELTA_LENGTH_BYTE_ARRAY and DELTA_BYTE_ARRAY
 
 
@@ -52,7 +52,7 @@ class ParquetTable:
             names = self._file.schema_arrow.names
             self._sizes = Sizes(content)
             texts = _texts(self._file, self._sizes)
-            if texts:  # one that is repeated a million times is kept once
+            if texts:  # as a dictionary: a text that is repeated a million times is kept once
                 self._file = parquet.ParquetFile(
                     pyarrow.BufferReader(content), read_dictionary=texts
                 )
@@ -79,7 +79,7 @@ class ParquetTable:
         return [self._numbers(column) for column in columns]
 
     def raw(self, column: int) -> npt.NDArray[Any] | None:
-        """Return integers and dates as the file has them, None for other columns."""
+        """Return integers and dates as the file has them; None for other columns."""
         import pyarrow
 
         values, types = self._values(column), pyarrow.types
@@ -94,7 +94,7 @@ class ParquetTable:
             raise self._unreadable(column, error) from None
 
     def list_widths(self) -> dict[int, int]:
-        """Return column → numbers in its first cell, for those whose cells are lists of numbers."""
+        """Return column → count of numbers in its first cell, for columns of lists."""
         from pyarrow import types
 
         found = {}
@@ -145,13 +145,13 @@ class ParquetTable:
         if not pyarrow.types.is_dictionary(values.type):
             return list(map(str, values.to_pylist()))
         cells = []
-        for chunk in values.chunks:  # a text that is repeated stays one object
+        for chunk in values.chunks:  # a repeated text stays one object
             words = [*map(str, chunk.dictionary.to_pylist()), "None"]  # -1: an empty cell
             cells += [words[place] for place in chunk.indices.fill_null(-1).to_pylist()]
         return cells
 
     def place(self, column: int, row: int) -> str:
-        """Return file, 0-based row and column of a value."""
+        """Return the place of a value: file, 0-based row and column."""
         return f"{self.source}, row {row}, column {self.headers[column]!r}"
 
     def _numbers(self, column: int) -> FloatArray:
@@ -189,7 +189,7 @@ class ParquetTable:
                 place=self._place(column),
             )
         try:
-            if column not in self._taken:  # a column may be asked for more than once
+            if column not in self._taken:  # a column may be read more than once
                 own = (leaf for path, leaf in self._leaves if f"{path}.".startswith(f"{name}."))
                 cell = 8 if _is_number(kind) else _CELL
                 self._room.take(max(cell * self._sizes.rows, sum(map(self._sizes.of, own))))
@@ -199,7 +199,7 @@ class ParquetTable:
             # One thread: the columns are small, and thread pools cause trouble after a fork.
             values = self._file.read(columns=[name], use_threads=False).column(name)
             if not _is_number(kind):
-                values.validate(full=True)  # places beyond the dictionary's end
+                values.validate(full=True)  # refuses indices beyond the dictionary's end
         except InputError:
             raise
         except _damage() as error:
@@ -207,7 +207,7 @@ class ParquetTable:
         return values
 
     def _in_batches(self, name: str, kind: Any) -> Any:
-        """Texts whose length no header tells, since they begin like those before, or are all alike."""
+        """Read texts in batches if no header states their total length (repeated prefixes, or all texts equal)."""
         import pyarrow
 
         chunks = []
@@ -226,7 +226,7 @@ class ParquetTable:
 
 
 def _is_number(kind: Any) -> bool:
-    """Whether each cell of a column is a number, a date or nothing, of a few bytes."""
+    """Whether each cell of a column is a number, a date or empty, of a few bytes."""
     from pyarrow import types
 
     kind = _stored(kind)
@@ -241,12 +241,12 @@ def _is_number(kind: Any) -> bool:
 
 
 def _stored(kind: Any) -> Any:
-    """Return the type in which an extension's values are stored."""
+    """Return the storage type of an extension type."""
     return getattr(kind, "storage_type", kind)
 
 
 def _texts(file: Any, sizes: Sizes) -> list[str]:
-    """Names of the columns that hold texts, or other bytes, and can be read as a dictionary."""
+    """Return the columns of texts or other bytes that can be read as a dictionary."""
     schema = file.metadata.schema
     leaves = {schema.column(leaf).path: leaf for leaf in range(len(schema.names))}
     return [
@@ -259,7 +259,7 @@ def _texts(file: Any, sizes: Sizes) -> list[str]:
 
 
 def _damage() -> tuple[type[Exception], ...]:
-    """Return the errors that damaged bytes lead to in pyarrow, which documents none of them."""
+    """Return the errors of pyarrow for damaged bytes; pyarrow documents none of them."""
     import pyarrow
 
     return (

@@ -1,7 +1,7 @@
-"""What the columns of a Parquet file hold when they are unpacked, as its footer and its pages say.
+"""Unpacked sizes of the columns of a Parquet file, from its footer and its page headers.
 
-pyarrow prepares memory for as many rows as a group of them says, and unpacks a page whatever the footer says of its
-column, so that a file of 1 MB may fill the memory. To ask it for the metadata of a damaged column ends the process.
+pyarrow reserves memory for the number of rows that a row group states. It unpacks a page even if the footer
+contradicts it, so that a file of 1 MB may fill the memory. Reading a damaged column's metadata crashes the process.
 """
 
 from __future__ import annotations
@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-_DEEPEST = 16  # structures within each other; a footer has 6
-# Types of Thrift's compact protocol; the values of the first two are in the type.
+_DEEPEST = 16  # levels of nested structures; a footer has 6
+# Types of Thrift's compact protocol; the first two (true and false) are values themselves.
 _TRUE, _FALSE, _BYTE, _I16, _I32, _I64, _DOUBLE, _BINARY, _LIST, _SET, _MAP, _STRUCT, _UUID = range(
     1, 14
 )
 _BITS = {_I16: 16, _I32: 32, _I64: 64}
 _BYTES = {_TRUE: 1, _FALSE: 1, _BYTE: 1, _DOUBLE: 8, _UUID: 16}
-_Struct = dict[tuple[int, int], Any]  # by the number of a field and its type
+_Struct = dict[tuple[int, int], Any]  # key: number and type of a field
 
 
 class Sizes:
@@ -30,7 +30,7 @@ class Sizes:
     Raises
     ------
     ValueError
-        It is damaged, or its groups of rows hold more or fewer rows than it says.
+        The footer is damaged, or its row groups do not add up to the stated number of rows.
     """
 
     def __init__(self, content: bytes) -> None:
@@ -44,7 +44,7 @@ class Sizes:
             raise ValueError(f"its row groups hold {sum(rows)} rows, but the file has {self.rows}")
 
     def of(self, column: int) -> int:
-        """Return the bytes of a column's pages, by the number of the column in the file.
+        """Return the bytes of the unpacked pages of a column, named by its number in the file.
 
         Raises
         ------
@@ -54,12 +54,12 @@ class Sizes:
         return sum(self._of_groups(column))
 
     def encodings(self, column: int) -> set[int]:
-        """Return the numbers of the encodings in which a column's values are written."""
+        """Return the numbers of the encodings of a column's values."""
         return {
             each
             for group in self._groups
             for each in _structure(group[1, _LIST][column])[3, _STRUCT].get((2, _LIST), [])
-            if isinstance(each, int)  # in a damaged footer it may be anything
+            if isinstance(each, int)  # a damaged footer may hold anything
         }
 
     def _of_groups(self, column: int) -> Iterator[int]:
@@ -67,9 +67,9 @@ class Sizes:
         for group in self._groups:
             about = _structure(group[1, _LIST][column])[3, _STRUCT]
             packed += about[7, _I64]
-            if packed > len(self._content):  # several groups with the same pages
+            if packed > len(self._content):  # several groups refer to the same pages
                 raise ValueError("its footer is damaged")
-            if about[5, _I64] == 0:  # no value: then its pages need not be anywhere
+            if about[5, _I64] == 0:  # no values: the column needs no pages
                 continue
             start = about[9, _I64]
             if 0 < (dictionary := about.get((11, _I64), 0)) < start:
@@ -78,7 +78,7 @@ class Sizes:
 
 
 def pages_size(content: bytes, start: int, end: int) -> int:
-    """Return the bytes of all pages from start to end when they are unpacked.
+    """Return the unpacked bytes of all pages from start to end.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def _structure(value: Any) -> _Struct:
 
 
 class _Reader:
-    """Structures of Thrift's compact protocol, from one byte to another."""
+    """Reader of structures in Thrift's compact protocol, within a range of bytes."""
 
     def __init__(self, content: bytes, start: int, end: int) -> None:
         self._content, self._start, self._end = content, start, min(end, len(content))
@@ -113,7 +113,7 @@ class _Reader:
             raise self._damaged()
 
     def struct(self, depth: int) -> _Struct:
-        """Return the fields of a structure; of several alike the last, as Thrift does."""
+        """Return the fields of a structure; of repeated fields the last, like Thrift."""
         if depth > _DEEPEST:
             raise self._damaged()
         found: _Struct = {}
@@ -144,11 +144,11 @@ class _Reader:
             first = self._byte()
             count = first >> 4 if first >> 4 < 15 else self._varint()
             kinds = (first & 15,)
-        # Each takes a byte at least, and the file ends.
+        # The loop ends: each element takes at least one byte.
         return [self._value(each, depth + 1) for _ in range(count) for each in kinds]
 
     def _number(self, bits: int) -> int:
-        """A signed number of so many bits; what is more of it is cut off, as Thrift does."""
+        """Return a signed number of this number of bits; further bits are cut off, like in Thrift."""
         value = self._varint() & ((1 << bits) - 1)
         return (value >> 1) ^ -(value & 1)
 

@@ -1,4 +1,4 @@
-"""What a file format declares: its endings, how to open a file, and the package that it needs."""
+"""Description of a file format: its endings, how to open a file, and the packages that it needs."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from jointid.recording.table import Table
 
 @dataclass(frozen=True, kw_only=True)
 class Reader:
-    """How files of one format are read.
+    """A reader of one file format.
 
     Attributes
     ----------
@@ -21,13 +21,13 @@ class Reader:
     package : str or tuple of str
         Packages that `open` imports and that are not installed with jointid. Default: none.
     install : str
-        What pip installs to bring these packages. Default: the one that is missing.
+        Argument of pip that installs these packages. Default: the missing package.
     part : str
-        The argument of `load` that names a part of such a file: ``"topic"`` or ``"group"``. Default: none.
+        Argument of `load` that names a part of the file: ``"topic"`` or ``"group"``. Default: none.
     folder : tuple of str
-        A folder with files of these endings is read as one file. Default: no folder is.
+        A folder with files of these endings is read as one file. Default: none.
     marker : str
-        A folder that holds this file, by its path inside, is read as one file. Default: no folder is.
+        A folder that contains this relative path is read as one file. Default: none.
     """
 
     endings: tuple[str, ...]

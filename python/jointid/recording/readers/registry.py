@@ -1,4 +1,4 @@
-"""The list of file formats. A new format is one file beside this one, and one line in `MODULES`."""
+"""The list of file formats. A new format is one file in this folder and one line in `MODULES`."""
 
 import json
 import shlex
@@ -29,7 +29,7 @@ _PICKLES = (".pt", ".pth")
 
 
 def readers() -> Iterator[Reader]:
-    """Yield the readers in order; the module of each is imported when it comes."""
+    """Yield the readers in order; each module is imported when needed."""
     for module in MODULES:
         reader: Reader = import_module(f"jointid.recording.readers.{module}").READER
         yield reader
@@ -63,7 +63,7 @@ def reader_of(path: Path) -> Reader:
                 return reader
     name = path.name.lower()
     for reader in readers():
-        if name.endswith(reader.endings):  # no name has the endings of two readers
+        if name.endswith(reader.endings):  # endings of two readers never overlap
             return reader
     if name.endswith(_PICKLES):
         raise InputError(
@@ -84,7 +84,7 @@ def _conversion(path: Path) -> str:
 
 
 def _is_whole(names: list[str], endings: tuple[str, ...]) -> bool:
-    """Whether a folder with these files is a recording: it says so, or there is nothing else in it."""
+    """Whether a folder with these files is one recording: it has the marker, or no other files."""
     if not any(name.endswith(endings) for name in names):
         return False
     return "metadata.yaml" in names or all(name.endswith(endings) for name in names)

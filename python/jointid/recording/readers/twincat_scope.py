@@ -1,4 +1,4 @@
-"""Text with a time column for each group of channels, as TwinCAT Scope exports it below a block of keys."""
+"""Text exports of TwinCAT Scope: a block of keys, then a time column for each group of channels."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -21,10 +21,10 @@ from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import Stamps, looks_exact, stamps_of
 from jointid.recording.units import UNITS
 
-_BLOCK = 80  # lines: no export has more above its rows
+_BLOCK = 80  # lines: exports have fewer lines above their rows
 _KEYS = ("Data-Type", "SampleTime[ms]", "SymbolName", "VariableSize", "Starttime of export")
-_TIME = r"Time(?: ?[\[(]ms[\])])?"  # newer versions name channels beside it, without keys
-# Where these are not sampled, the others are still a recording.
+_TIME = r"Time(?: ?[\[(]ms[\])])?"  # newer versions: channel names in this line, no keys
+# Signals that may be missing at the ends of a recording.
 _OPTIONAL = ("temperature", "reference")
 _COPY = r"(.*\S) \((\d+)\)"
 
@@ -54,10 +54,10 @@ def separator_of_scope(lines: Sequence[str]) -> str | None:
 class ScopeTable:
     """An export of TwinCAT Scope as a table with one time column.
 
-    Channels that were sampled with another period than the fastest of those read are interpolated
-    linearly at its samples, where all overlap; `notes` names them and the number of samples cut. A
-    temperature or a reference cuts none: it keeps its last value for one period, and one that is
-    missing for longer cannot be read.
+    The samples of the fastest channel are the common instants, within the interval that all channels
+    share. Channels with another period are interpolated linearly; `notes` names them and the number of
+    samples cut. A temperature or reference never cuts samples: it keeps its last value for one period.
+    If it is missing for longer, it cannot be read.
 
     Parameters
     ----------
@@ -65,14 +65,14 @@ class ScopeTable:
         The file.
     text : str
     separator : str
-        As `separator_of_scope` found it.
+        Result of `separator_of_scope`.
     time : str
         Header of the time, with its unit.
 
     Raises
     ------
     InputError
-        There are no rows, or cells are no numbers.
+        There are no rows, or cells are not numbers.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -157,7 +157,7 @@ class ScopeTable:
         return found
 
     def _common(self, every: Mapping[int, FloatArray]) -> FloatArray:
-        """Return the instants of the fastest channels at which all have samples."""
+        """Return the instants of the fastest channel within the interval that all channels share."""
         fastest = min(every.values(), key=lambda t: median(np.diff(t)) if len(t) > 1 else np.inf)
         base = fastest
         for time in every.values():
@@ -176,7 +176,7 @@ class ScopeTable:
         return meaning is not None and meaning.signal in _OPTIONAL
 
     def _refuse_part(self, column: int, base: FloatArray) -> None:
-        """Raise for a channel that ends more than one of its periods before the others, or begins after them."""
+        """Raise for a channel that ends more than one period before the others, or begins that late."""
         time, _ = self._samples(self._of[self._channels[column - 1]])
         if not len(time) or not len(base):
             return
@@ -193,18 +193,18 @@ class ScopeTable:
         return [repr(value) for value in self.numbers([column])[0].tolist()]
 
     def place(self, column: int, row: int) -> str:
-        """Return file, channel and number of a sample."""
+        """Return the place of a sample: file, channel and number."""
         return f"{self.source}, channel {self.headers[column]!r}, sample {row}"
 
     def _samples(self, group: _Group, column: int = 0) -> tuple[FloatArray, FloatArray]:
-        """Return the time [ms] of a group and one of its columns, each sample once."""
+        """Return a group's time [ms] and one of its columns, without repeated samples."""
         index = self._channels[column - 1] if column else group.time
         if self._table is not None:
             time, values = self._table[:, group.time], self._table[:, index]
         else:
             long = np.flatnonzero(
                 self._lengths > group.time
-            )  # of many groups, few rows may have all
+            )  # with many groups, few rows have cells of all of them
             cells = [row for row in map(self._all_cells.__getitem__, long) if row[group.time]]
             stamps = [row[group.time] for row in cells]
             values = self._column(cells, index)
@@ -236,7 +236,7 @@ class ScopeTable:
         return np.array(found, dtype=np.float64)
 
     def _plain(self) -> FloatArray | None:
-        """Return all rows, if they are whole and only numbers."""
+        """Return all rows if they are complete and hold only numbers; otherwise None."""
         if looks_exact(self._cells(self._rows[0])[0]):
             return None
         rows = self._rows
@@ -260,12 +260,12 @@ class ScopeTable:
 def _exact(stamps: Sequence[str]) -> Stamps | None:
     try:
         return stamps_of(stamps, None)
-    except InputError:  # of numbers that may be either, Scope's own unit
+    except InputError:  # ambiguous numbers are in Scope's unit
         return stamps_of(stamps, UNITS["ms"])
 
 
 def _groups(names: Sequence[str]) -> tuple[_Group, ...]:
-    """Return the groups: each begins where the row of names repeats its key."""
+    """Return the groups: each begins at a repetition of the key in the row of names."""
     starts = [k for k, cell in enumerate(names) if cell == "Name"]
     found = []
     for start, end in zip(starts, [*starts[1:], len(names)], strict=True):
@@ -276,14 +276,14 @@ def _groups(names: Sequence[str]) -> tuple[_Group, ...]:
 
 
 def _header(keys: Mapping[str, list[str]], channel: int) -> str:
-    """Return a channel's name, with its unit where the export states one for the values as they are."""
+    """Return a channel's name, with its unit if the export states one for unscaled values."""
 
     def entry(key: str) -> str:
         cells = keys.get(key, [])
         return cells[channel] if channel < len(cells) else ""
 
     name = entry("Name")
-    copied = re.fullmatch(_COPY, name)  # the second time a channel is drawn; not a unit
+    copied = re.fullmatch(_COPY, name)  # number of a channel that is drawn again; not a unit
     if copied:
         name = f"{copied[1]} copy {copied[2]}"
     unit = entry("Unit").strip("()[] ")

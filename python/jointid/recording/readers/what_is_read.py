@@ -1,4 +1,4 @@
-"""Which columns of a table a call of `load` reads."""
+"""The columns of a table that a call of `load` reads."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,15 +12,15 @@ from jointid.recording.wide.joint_table import JointTable
 
 
 def columns_read(table: Table, joint: str | None, reading: Mapping[str, Any]) -> set[int]:
-    """Return the 0-based numbers of the columns that are read as a signal.
+    """Return the 0-based numbers of the columns that are read as signals.
 
     Parameters
     ----------
     table : Table
     joint : str or None
-        As given to `load`.
+        Same as in `load`.
     reading : mapping
-        Further arguments of `load`, which has read the table with them.
+        Further arguments of the call of `load` that read the table.
     """
     extra = reading["extra"]
     timed, columns = as_stated(table, reading["sample_period"], reading["columns"])

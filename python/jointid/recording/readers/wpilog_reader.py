@@ -22,17 +22,17 @@ _NUMBERS = {
     "boolean": "getBoolean",
 }
 _SYSID = re.compile(r"(position|velocity|voltage|acceleration|current)-(.+)")
-_STATE = "sysid-test-state"  # begins the name of the entry that says which test runs
+_STATE = "sysid-test-state"  # prefix of the entry that names the running test
 _IDLE = "none"
 _SPELLED = {"volt": "V", "volts": "V", "ampere": "A", "amp": "A", "amps": "A"}
 _Samples = tuple[list[int], list[Any]]  # stamps [us] and values
 
 
 class WpilogTable:
-    """A .wpilog file as a table: its entries of numbers, at the instants of the position.
+    """A .wpilog file as a table: its numeric entries at the instants of the position.
 
-    Each entry has stamps of its own, of the same loop; they are interpolated linearly. Where SysId names its tests,
-    the rows between them are left out, and the column "run" names the test.
+    Each entry has its own stamps from the same loop; entries are interpolated linearly. If SysId names its tests,
+    rows between tests are left out, and the column "run" names the test.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class WpilogTable:
     Raises
     ------
     InputError
-        The file is no such log, is damaged, or has no numbers.
+        The file is not such a log, is damaged, or has no numbers.
     ModuleNotFoundError
         wpiutil is not installed.
     """
@@ -53,7 +53,7 @@ class WpilogTable:
         import wpiutil.log
 
         self.source = self.header_place = str(path)
-        path.open("rb").close()  # the reader does not say why it cannot open a file
+        path.open("rb").close()  # WPILib's reader does not report why it cannot open a file
         reader = wpiutil.log.DataLogReader(str(path))
         if not reader.isValid():
             raise InputError("the file is not a .wpilog file, or is truncated", place=self.source)
@@ -93,7 +93,7 @@ class WpilogTable:
         return list(map(repr, self._numbers(column).tolist()))
 
     def place(self, column: int, row: int) -> str:
-        """Return file, time of the row, and entry."""
+        """Return the place of a value: file, time of the row, and entry."""
         return f"{self.source}, at {self._stamps[row] / 1e6:.6f} s, entry {self.headers[column]!r}"
 
     def _numbers(self, column: int) -> FloatArray:
@@ -107,9 +107,9 @@ class WpilogTable:
 
 
 def _entries(reader: Any) -> dict[str, _Samples]:
-    """Return the entries of numbers and texts, by their headers."""
+    """Return header → entry of numbers or texts."""
     found: dict[str, _Samples] = {}
-    read: dict[int, tuple[str, str]] = {}  # entry → header, and the method that reads it
+    read: dict[int, tuple[str, str]] = {}  # entry → header and reading method
     for record in reader:
         if record.isStart():
             start = record.getStartData()
@@ -125,7 +125,7 @@ def _entries(reader: Any) -> dict[str, _Samples]:
 
 
 def _header(name: str, metadata: str) -> str:
-    """Return ``elbow.position [rev]`` for SysId's ``position-elbow`` whose metadata say rotations."""
+    """Return ``elbow.position [rev]`` for SysId's ``position-elbow`` with rotations in its metadata."""
     signal = _SYSID.fullmatch(name)
     shown = f"{signal[2]}.{signal[1]}" if signal else name
     word, _, per = metadata.strip('" ').lower().partition(" per ")
@@ -141,7 +141,7 @@ def _names_position(header: str) -> bool:
 
 
 def _held(samples: _Samples, stamps: Any) -> list[str]:
-    """Return the last text before each instant; none before the first."""
+    """Return the last text before each instant; empty before the first text."""
     times, texts = samples
     places = np.searchsorted(times, stamps, side="right") - 1
     return [str(texts[k]) if k >= 0 else _IDLE for k in places.tolist()]

@@ -1,1 +1,1 @@
-"""Several joints in one table: whose each column is, one joint of it, and all of them together."""
+"""Several joints in one table: the joint of each column, reading one joint, and reading all joints."""

@@ -19,7 +19,7 @@ from jointid.recording.wide.joint_table import (
 from jointid.recording.wide.one_joint import OneJoint
 from jointid.recording.wide.reading_back import saved_robot
 
-_TRIED = 2  # parts of a file that are opened to see whether they hold several joints
+_TRIED = 2  # parts of a file that are opened to look for several joints
 
 
 def chosen_joint(
@@ -28,22 +28,22 @@ def chosen_joint(
     columns: Mapping[str, str | int | None] | None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
 ) -> OneJoint:
-    """Return one joint of a table whose position is of a joint; the table itself if there is none.
+    """Return one joint of a table with joints in its headers; the table itself if it names none.
 
     Parameters
     ----------
     table : Table
     joint : str, int or None
-        None: the only one.
+        Name or number of the joint. None: the only joint.
     columns : mapping or None
-        As given to `load`.
+        Same as in `load`.
     extra : collection, mapping or None
-        As given to `load`; also columns of other joints.
+        Same as in `load`; may name columns of other joints.
 
     Raises
     ------
     InputError
-        There is no such joint, or several and none is named; two columns could be the same signal.
+        There is no such joint, the table has several joints and none is named, or two columns fit one signal.
     """
     if joint is None:
         several = several_joints(table, columns)
@@ -77,18 +77,18 @@ def also_joints(
     opened: Callable[..., Table],
     columns: Mapping[str, str | int | None] | None,
 ) -> InputError:
-    """Return an error that proposes a part of the file with a joint added where that part holds several.
+    """Add a joint to an error's proposed parts of a file, if that part holds several joints.
 
-    Otherwise the proposed call would be refused, too.
+    Otherwise the proposed call would also be refused.
 
     Parameters
     ----------
     error : InputError
-        That the file cannot be opened without a topic or a group.
+        The error that the file cannot be opened without a topic or a group.
     opened : callable
         Returns the table of a part, by its argument.
-    columns : mapping or None
-        As given to `load`.
+            columns : mapping or None
+                Same as in `load`.
     """
     remedies: list[str | Action] = list(error.remedy)
     for k, action in enumerate(remedies[:_TRIED]):

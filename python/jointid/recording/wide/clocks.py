@@ -1,4 +1,4 @@
-"""Which joints of a log are on one clock: two publishers on one topic have two."""
+"""Groups of joints with a common clock: two publishers on one topic have two clocks."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,7 +15,7 @@ _SHOWN = 3  # clocks that a message proposes
 def on_one_clock(
     names: Sequence[str], fields: Sequence[Mapping[str, Any]], place: str, *, named: bool
 ) -> tuple[list[int], dict[str, str]]:
-    """Return the joints on one clock, by their places, and why each other joint is left out.
+    """Return the indices of the joints on one clock, and the reason why each other joint is left out.
 
     Parameters
     ----------
@@ -25,12 +25,12 @@ def on_one_clock(
     place : str
         For messages.
     named : bool
-        Whether the user named the joints: then none is left out.
+        Whether the user named the joints; then none is left out.
 
     Raises
     ------
     InputError
-        The joints have several clocks, and they are named or no single clock has most of the torques.
+        The joints have several clocks, and either the user named them, or no clock has most of the torques.
     """
     clocks: list[list[int]] = []
     for joint, held in enumerate(fields):

@@ -22,7 +22,7 @@ from jointid.recording.wide.words import (
 
 _UNIT = r"\s*[\[(]\s*[^\[\](){}]*[^\[\](){}\d\s:,][^\[\](){}]*[\])]\s*$"
 _INDEX = r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)"
-_DASH = r"^\s*-\s*"  # as of a list's item, before the whole header
+_DASH = r"^\s*-\s*"  # dash of a list item before the whole header
 _SEPARATORS = r"[\s_.\-/]+"
 _CAMEL = r"(?<=[a-z])(?=[A-Z])"
 _LETTERS_DIGITS = r"([^\W\d]+)(\d+)"
@@ -37,13 +37,13 @@ class JointHeader:
     index : int
         0-based number of the column.
     joint : str
-        The joint's name, or its number as it is written.
+        The joint's name, or its number as written.
     header : str
-        Without the joint: ``motor_position_rad``.
+        Header without the joint: ``motor_position_rad``.
     pattern : str
-        With ``{joint}`` in the joint's place: ``motor_position_{joint}_rad``.
+        Header with ``{joint}`` at the joint's place: ``motor_position_{joint}_rad``.
     meaning : Meaning or None
-        None: no signal of a recording is recognised.
+        Meaning of the header. None: no signal is recognised.
     """
 
     index: int
@@ -56,11 +56,10 @@ class JointHeader:
 def joint_headers(headers: Sequence[str]) -> Mapping[str, Sequence[JointHeader]]:
     """Return the joints of a table, each with its columns, in the order in which they first appear.
 
-    A joint is what has a position, a link's position counts. The number of a joint is an index in brackets
-    (``q[2]``, ``position(:,2)``), a word of its own (``position.3``, ``actual_q_0``) or stands at the end of a
-    word that names a signal or says "joint" (``q3``, ``joint3_pos``). A name stands before a point, a slash or an
-    underscore and the signal (``elbow.position``, ``elbow_position``), or behind the signal and a point
-    (``position.elbow``).
+    A joint needs a position; a link's position counts. The number of a joint is an index in brackets (``q[2]``,
+    ``position(:,2)``), a separate word (``position.3``, ``actual_q_0``), or the end of a word that is a signal or
+    "joint" (``q3``, ``joint3_pos``). The name of a joint precedes a point, slash or underscore and the signal
+    (``elbow.position``, ``elbow_position``), or follows the signal and a point (``position.elbow``).
 
     Parameters
     ----------
@@ -71,11 +70,11 @@ def joint_headers(headers: Sequence[str]) -> Mapping[str, Sequence[JointHeader]]
 
 
 def columns_of(headers: Sequence[str], joint: str) -> Sequence[JointHeader]:
-    """Return the columns of one joint, also where no header names its position."""
+    """Return the columns of one joint, also if no header names its position."""
     return _joints(tuple(headers)).get(joint, ())
 
 
-@lru_cache(maxsize=4)  # each joint of a robot asks
+@lru_cache(maxsize=4)  # called for each joint of a robot
 def _joints(headers: tuple[str, ...]) -> Mapping[str, Sequence[JointHeader]]:
     found: dict[str, list[JointHeader]] = {}
     for index, whole in enumerate(headers):
@@ -96,9 +95,9 @@ def _joints(headers: tuple[str, ...]) -> Mapping[str, Sequence[JointHeader]]:
 def _with_numbers_named(
     found: dict[str, list[JointHeader]],
 ) -> Mapping[str, Sequence[JointHeader]]:
-    """Return the joints with those that are a number only, and have no position, as the named ones of that number.
+    """Merge joints that are only a number and have no position into the named joints of that number.
 
-    ``joint_1.position`` names joint_1, ``joint_1_effort`` joint 1.
+    ``joint_1.position`` names the joint "joint_1", ``joint_1_effort`` the joint "1".
     """
     whole = [joint for joint, columns in found.items() if _is_joint(columns)]
     for number in [joint for joint in found if joint.isdigit() and joint not in whole]:
@@ -117,20 +116,20 @@ def _is_joint(columns: Sequence[JointHeader]) -> bool:
 
 
 def _without_unit(header: str) -> tuple[str, str]:
-    """Return a header in two parts: all but a unit in brackets, and that."""
+    """Return a header in two parts: the header without a unit in brackets, and this unit."""
     bracketed = re.search(_UNIT, header)
     cut = bracketed.start() if bracketed else len(header)
     return header[:cut], header[cut:]
 
 
 def words_of(header: str) -> tuple[str, ...]:
-    """The words of a header without its unit."""
+    """Return the words of a header without its unit."""
     name, _, _ = parsed(re.sub(r"[^\W_]+", _single_words, header))
     return tuple(word for word in name.split("_") if word)
 
 
 def _single_words(word: re.Match[str]) -> str:
-    """A word in camel case as several; a unit (mNm, mA) is one word."""
+    """Split a word in camel case; a unit (mNm, mA) stays one word."""
     return word[0] if find_unit(word[0]) is not None else re.sub(_CAMEL, "_", word[0])
 
 
@@ -142,13 +141,13 @@ def _column(index: int, joint: str, shown: str, pattern: str) -> JointHeader:
 
 
 def _in_amperes(header: str) -> bool:
-    """Whether a header's unit is that of a current, whatever its words say."""
+    """Whether a header's unit is a unit of current, regardless of its words."""
     _, unit, _ = parsed(header)
     return unit is not None and unit.dimension == "current"
 
 
 def _indexed(index: int, header: str) -> JointHeader | None:
-    """``q[2]``, ``states.position[2] [rad]``, ``position(:,2)``."""
+    """Parse ``q[2]``, ``states.position[2] [rad]``, ``position(:,2)``."""
     stem, unit = _without_unit(header)
     found = list(re.finditer(_INDEX, stem))
     if len(found) != 1:
@@ -158,7 +157,7 @@ def _indexed(index: int, header: str) -> JointHeader | None:
     start = place.start(1) if place[1] else place.start(2)
     pattern = f"{stem[:start]}{MARK}{stem[start + len(number) :]}{unit}"
     shown = f"{stem[: place.start()]}{stem[place.end() :]}"
-    # What stands before the last point or slash is where the signal comes from; it may be a command, or no signal.
+    # The part before the last point or slash is the source of the signal; it may say "command", or no signal.
     *path, last = re.split(r"[./]", shown)
     source = {word.casefold() for part in path for word in _split(re.sub(_CAMEL, "_", part))}
     column = _column(index, number, "_".join([*sorted(source & COMMAND), f"{last}{unit}"]), pattern)
@@ -166,11 +165,11 @@ def _indexed(index: int, header: str) -> JointHeader | None:
 
 
 def _dotted(index: int, header: str) -> JointHeader | None:
-    """``elbow.position [rad]``, ``/arm/elbow/position``, ``position.elbow``."""
+    """Parse ``elbow.position [rad]``, ``/arm/elbow/position``, ``position.elbow``."""
     stem, unit = _without_unit(header)
     for separator in (".", "/"):
         before, found, behind = stem.rpartition(separator)
-        name = before.strip().rpartition("/")[2]  # of a path the last part
+        name = before.strip().rpartition("/")[2]  # last part of a path
         if not found or not name:
             continue
         pattern = f"{before[: len(before.rstrip()) - len(name)]}{MARK}{found}{behind}{unit}"
@@ -186,7 +185,7 @@ def _dotted(index: int, header: str) -> JointHeader | None:
 
 
 def _numbered(index: int, header: str) -> JointHeader | None:
-    """``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``actual_q_0``, ``A1_torque``."""
+    """Parse ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``actual_q_0``, ``A1_torque``."""
     stem, unit = _without_unit(header)
     places = [place for place in re.finditer(r"\d+", stem) if _is_number_word(stem, place)]
     if len(places) != 1:
@@ -208,7 +207,7 @@ def _split(text: str) -> list[str]:
 
 
 def _is_number_word(stem: str, place: re.Match[str]) -> bool:
-    """Whether digits are a word, or the end of one that a joint's number may follow."""
+    """Whether digits are a separate word, or follow a word that may precede a joint's number."""
     if place.end() < len(stem) and not re.match(_SEPARATORS, stem[place.end() :]):
         return False
     before = stem[: place.start()]
@@ -219,11 +218,11 @@ def _is_number_word(stem: str, place: re.Match[str]) -> bool:
 
 
 def _named(index: int, header: str) -> JointHeader | None:
-    """``shoulder_pan_position``, ``elbow_2_motor_torque_Nm``: the signal's words are the last ones."""
+    """Parse ``shoulder_pan_position``, ``elbow_2_motor_torque_Nm``: the signal's words come last."""
     stem, unit = _without_unit(header)
     words = _split(stem)
     behind = len(words)
-    # A unit among the last words is no word of the signal.
+    # A unit among the last words does not belong to the signal.
     for first in range(1, len(words)):
         suffix = "_".join(words[first:])
         if not unit and not suffix[0].isdigit() and find_unit(suffix):

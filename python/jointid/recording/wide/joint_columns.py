@@ -1,4 +1,4 @@
-"""Which of a joint's columns is which signal, and on which side of the gear each of them is."""
+"""The signals of a joint's columns, and the side of the gear of each."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field
@@ -25,13 +25,13 @@ class OwnColumns:
     Attributes
     ----------
     of : dict of str to int or None
-        Signal → column of the table; None: the user leaves it out, or nothing may be taken for it.
+        Signal → column of the table. None: the user leaves the signal out, or no column may be used.
     side : str
         Side of the gear of the position: "joint" or "motor".
     other_sides : dict of str to str
-        Signal → its side, where that is not `side`.
+        Signal → its side, if it differs from `side`.
     asked : tuple of JointHeader
-        Commanded and filtered torques, which are never taken by themselves.
+        Commanded and filtered torques, which are used only if the user names them.
     """
 
     of: dict[str, int | None]
@@ -48,9 +48,9 @@ def own_columns(
 ) -> OwnColumns:
     """Return the column of each signal of a joint.
 
-    What the joint's side has is taken before what the motor's has; a velocity or reference is one of the
-    position's side. A link's encoder is the position where there is no other. A torque whose side nobody says is
-    refused beside a motor's position; a commanded or filtered one is never taken by itself.
+    Joint-side columns come before motor-side columns. Velocity and reference are on the side of the position. A
+    link encoder is the position if there is no other. With a motor-side position, a torque without a stated side is
+    refused. A commanded or filtered torque is used only if the user names it.
 
     Parameters
     ----------
@@ -58,14 +58,14 @@ def own_columns(
     mine : sequence of JointHeader
         The joint's columns.
     shared : sequence of int
-        Columns that no joint owns.
+        Columns that belong to no joint.
     given : mapping of str to int or None
-        Signal → column, as the user says.
+        Signal → column from the user.
 
     Raises
     ------
     InputError
-        Two columns could be the same signal, a torque's side is not known, or the only torque is a commanded one.
+        Two columns fit one signal, a torque's side is not known, or the only torque is a commanded one.
     """
     used = set(given.values())
     meant: dict[str, list[JointHeader]] = {}
@@ -100,7 +100,7 @@ def own_columns(
 def _side(
     mine: Sequence[JointHeader], meant: dict[str, list[JointHeader]], position: int | None
 ) -> str:
-    """Return the side of the position; a link's encoder becomes the position where there is no other."""
+    """Return the side of the position; a link encoder becomes the position if there is no other."""
     if position is not None:
         column = _of_column(mine, position)
         return column.meaning.side if column and column.meaning else JOINT
@@ -114,7 +114,7 @@ def _side(
 def _given_sides(
     mine: Sequence[JointHeader], given: Mapping[str, int | None], side: str
 ) -> dict[str, str]:
-    """Return the other sides of what the user names: of motion by its header, of a torque by its signal."""
+    """Return the other sides of the user's columns: for motion from the header, for a torque from the signal."""
     sides = {}
     for signal in ("torque", *_MOVING):
         index = given.get(signal)
@@ -135,7 +135,7 @@ def _choose_torque(
     chosen: dict[str, int | None],
     other_sides: dict[str, str],
 ) -> None:
-    """Enter the torque beside a motor's position: the motor's, else one that is said to be the joint's."""
+    """Enter the torque for a motor-side position: the motor's torque, or one that is marked as joint side."""
     at_motor = [] if "motor_torque" in chosen else meant.get("motor_torque", [])
     others = meant.get("torque", [])
     if at_motor:
@@ -167,7 +167,7 @@ def _ask(
     given: Mapping[str, int | None],
     asked: Sequence[JointHeader],
 ) -> None:
-    """Refuse a joint whose only torque is no measurement; the user may name it, or leave it out."""
+    """Refuse a joint with only commanded or filtered torques; the user may name one, or leave it out."""
     if any(signal in given for signal in _TORQUES):
         return
     headers = [*(each.header for each in mine), *(table.headers[index] for index in shared)]
@@ -191,7 +191,7 @@ def _naming(signal: str, column: JointHeader, text: str = "") -> Action:
 
 
 def _readable(column: JointHeader) -> bool:
-    """Whether a column's unit is one of its signal; of what nobody needs another one blocks nothing."""
+    """Whether a column's unit fits its signal; a wrong unit of an optional signal raises no error."""
     if column.meaning is None or column.meaning.signal in _NEEDED:
         return True
     _, unit, unknown = parsed(column.header)

@@ -1,4 +1,4 @@
-"""The joint that `load` reads from any table; a table of one joint needs few other files of this folder."""
+"""The joint that `load` reads from any table; a table of one joint imports few other modules of this folder."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ def joint_of_table(
     columns: Mapping[str, str | int | None] | None,
     extra: Collection[str] | Mapping[str, str | int] | None = None,
 ) -> OneJoint:
-    """Return one joint of a table; the table itself if it is of one joint.
+    """Return one joint of a table; the table itself if it has only one joint.
 
     Parameters
     ----------
     table : Table
     joint : str, int or None
-        None: the only one.
+        Name or number of the joint. None: the only joint.
     columns : mapping or None
-        As given to `load`.
+        Same as in `load`.
     extra : collection, mapping or None
-        As given to `load`; also columns of other joints.
+        Same as in `load`; may name columns of other joints.
 
     Raises
     ------
     InputError
-        There is no such joint, or several and none is named; two columns could be the same signal.
+        There is no such joint, the table has several joints and none is named, or two columns fit one signal.
     """
     if joint is None and (not isinstance(columns or {}, Mapping) or is_one(table, columns)):
         return OneJoint(table=table, columns=columns, extra=extra)
-    # Most files hold one joint, and these are as many modules as all that read them.
+    # Import late: most files hold one joint, and these imports would double the number of modules.
     from jointid.recording.wide.choosing import chosen_joint
 
     return chosen_joint(table, joint, columns, extra)

@@ -1,4 +1,4 @@
-"""Which joint a name or a number names."""
+"""Lookup of a joint by name or number."""
 
 import re
 from collections.abc import Sequence
@@ -19,20 +19,20 @@ def joint_named(
     argument: str = "joint",
     function: str = "",
 ) -> str:
-    """Return the joint that a name or a number names.
+    """Return the name of the joint that a name or number refers to.
 
     Parameters
     ----------
     joint : str or int
-        A name, or a joint's number: 3 is "3" or "03". It is also "joint_3", but only where all names are numbered
-        alike: a robot's third joint need not be the one called "wrist_3_joint".
+        A name, or a joint's number: 3 is "3" or "03". It is also "joint_3" if all names have the same form with
+        different numbers. Otherwise a robot's third joint need not be "wrist_3_joint".
     joints : sequence of str
     place : str
         For messages.
     argument : str
-        What it was given for.
+        Name of the argument, for messages.
     function : str
-        The function that was called, for the call that a message proposes. Default: it proposes none.
+        The called function, for the call that a message proposes. Default: no proposal.
 
     Raises
     ------
@@ -71,14 +71,14 @@ def joint_named(
 
 
 def _numbered_alike(joints: Sequence[str]) -> dict[int, str]:
-    """Return the names by their number where the same text stands around it in all; empty otherwise."""
+    """Return number → name if the text around the number is the same in all names; otherwise empty."""
     parts = [re.split(_DIGITS, name) for name in joints]
     if len({len(each) for each in parts}) != 1:
         return {}
     if len(joints) > 1:
         places = range(len(parts[0]))
         differing = [place for place in places if len({each[place] for each in parts}) > 1]
-    else:  # its own number is the last one, if it is said to be a joint's
+    else:  # the joint's number is the last one, if the name says "joint"
         before = _words(parts[0][-3])[-1:] if len(parts[0]) > 1 else ["no number"]
         differing = [len(parts[0]) - 2] if set(before) <= CARRIERS else []
     if len(differing) != 1 or differing[0] % 2 == 0:
@@ -88,7 +88,7 @@ def _numbered_alike(joints: Sequence[str]) -> dict[int, str]:
 
 
 def _near(text: str, joints: Sequence[str]) -> str:
-    """Return the name meant by a misspelt one, or by a misspelt word of it; empty if it may be another."""
+    """Return the name closest to a misspelt name or word of a name; empty if it is ambiguous."""
     whole = closest(text, joints)
     if whole:
         return whole

@@ -1,4 +1,4 @@
-"""One joint of a table with several: its columns and the shared ones, as a table of a single joint."""
+"""One joint of a table with several joints, as a table with its columns and the shared ones."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -17,34 +17,34 @@ Columns = Mapping[str, str | int | None]
 
 
 class JointTable(RenamedTable):
-    """The columns of one joint, their headers without the joint, and those that no joint owns.
+    """The columns of one joint, with headers without the joint, and the columns of no joint.
 
     Parameters
     ----------
     table : Table
-        With several joints.
+        Table of several joints.
     joint : str
-        As `joints_of` names it.
+        Name of the joint from `joints_of`.
     columns : mapping of str to str, int or None
-        As given to `load`; ``{joint}`` in a header stands for the joint.
+        Same as in `load`; ``{joint}`` in a header stands for the joint.
     extra : mapping of str to str or int
-        Name → column of the whole table, also one of another joint. Default: none.
+        Name → column of the whole table; it may belong to another joint. Default: none.
 
     Attributes
     ----------
     columns : dict of str to int or None
-        Signal → column of this table; what the headers do not say otherwise.
+        Signal → column of this table, if the header without the joint does not already name this signal.
     side : str
-        Side of the gear: "motor" for a motor's position, otherwise "joint".
+        Side of the gear: "motor" for a motor-side position, otherwise "joint".
     other_sides : dict of str to str
-        Signal → its side, where that is not `side`.
+        Signal → its side, if it differs from `side`.
     extra : dict of str to int
         Name → column of this table.
 
     Raises
     ------
     InputError
-        Two columns could be the same signal, or a header in `columns` does not exist.
+        Two columns fit one signal, or a header in `columns` does not exist.
     """
 
     def __init__(
@@ -94,8 +94,8 @@ def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
     ----------
     table : Table
     columns : mapping, optional
-        As given to `load`. Where the headers name no joint that fits the position's ``{joint}``, the joints are
-        what stands in its place. Default: none.
+        Same as in `load`. If no joint from the headers fits the position's ``{joint}``, the joints are the texts at
+        this place. Default: none.
     """
     named = tuple(joint_headers(table.headers))
     pattern = columns.get("position") if isinstance(columns, Mapping) else None
@@ -109,7 +109,7 @@ def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
 
 
 def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
-    """Return the joints of a table that no call with these columns could mean as one; empty if it could."""
+    """Return the joints of a table if these columns cannot mean a single joint; otherwise empty."""
     given = columns or {}
     if is_one(table, given):
         return ()
@@ -117,13 +117,13 @@ def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
         return joints_of(table, given)
     joints = joint_headers(table.headers)
     matrix = all(len(each) == 1 for each in joints.values())
-    if matrix and len(joints) == len(table.headers):  # one of its columns is the time
+    if matrix and len(joints) == len(table.headers):  # one column of the matrix is the time
         return ()
     return tuple(joints)
 
 
 def which_joint(table: Table, joints: Sequence[str]) -> InputError:
-    """Return the error for a file with several joints of which none is named."""
+    """Return the error for a file with several joints if none is named."""
     shown = ", ".join(joints[:12]) + (", ..." if len(joints) > 12 else "")
     return InputError(
         f"the file holds {len(joints)} joints ({shown}), and a recording has one",
@@ -138,7 +138,7 @@ def which_joint(table: Table, joints: Sequence[str]) -> InputError:
 
 
 def as_given(joint: str) -> str | int:
-    """Return a joint's name as a call has it: a number as a number."""
+    """Return a joint's name for a call: numbers as int."""
     return int(joint) if joint.isdigit() and str(int(joint)) == joint else joint
 
 
@@ -157,7 +157,7 @@ def _extra_index(table: Table, column: str | int, joint: str, name: str) -> int:
 
 
 def nothing_named(table: Table, joint: object, argument: str = "joint") -> InputError:
-    """Return the error for a joint in a file whose headers name none."""
+    """Return the error for a named joint in a file without joints in its headers."""
     from jointid.recording.blocks import OF_BLOCKS
 
     return InputError(

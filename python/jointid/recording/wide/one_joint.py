@@ -12,7 +12,7 @@ from jointid.recording.sides import at_stated_sides
 from jointid.recording.table import Table
 
 MARK = "{joint}"
-"""What stands in a header of `columns` for the joint."""
+"""Placeholder for the joint in a header of `columns`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,17 +23,17 @@ class OneJoint:
     ----------
     table : Table
     columns : mapping of str to str, int or None, or None
-        As `read_contents` takes them.
+        Columns for `read_contents`.
     extra : collection, mapping or None
-        As `read_contents` takes it.
+        Extra signals for `read_contents`.
     side : str
         Side of the gear of the position: "joint" or "motor".
     other_sides : mapping of str to str
-        Signal → its side, where that is another one.
+        Signal → its side, if it differs from `side`.
     joint : str
-        Its name; empty for a table without names of joints.
+        Name of the joint; empty for a table without joint names.
     gear_ratio : float or None
-        As saved; None: not known.
+        Saved gear ratio. None: not known.
     """
 
     table: Table
@@ -46,13 +46,13 @@ class OneJoint:
 
 
 def is_one(table: Table, columns: Mapping[str, str | int | None] | None) -> bool:
-    """Whether a table has a position that is of no joint in particular, by its headers or by `columns`.
+    """Whether a table has a position without a joint's name, by its headers or by `columns`.
 
     Parameters
     ----------
     table : Table
     columns : mapping or None
-        As given to `load`.
+        Same as in `load`.
     """
     position = (columns or {}).get("position")
     if position is not None:
@@ -63,7 +63,7 @@ def is_one(table: Table, columns: Mapping[str, str | int | None] | None) -> bool
 def of_joint(
     fields: dict[str, Any], one: OneJoint, gear_ratio: float | None, side: Mapping[str, str] | None
 ) -> dict[str, Any]:
-    """Return the arguments of `Recording` at the joint: see `load` for `gear_ratio` and `side`."""
+    """Return the arguments of `Recording` on the joint side: see `load` for `gear_ratio` and `side`."""
     if not one.joint and gear_ratio is None and not side:
         return fields
     found = at_stated_sides(

@@ -1,4 +1,4 @@
-"""Reading back what `RobotRecording.save` wrote."""
+"""Reading files from `RobotRecording.save`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def saved_robot(table: Table) -> RobotRecording | None:
-    """Return the recording that a table was saved from; None of a table that is no such file.
+    """Return the recording that a table was saved from; None for other tables.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def saved_robot(table: Table) -> RobotRecording | None:
 
 
 def _arrays(table: Table, wanted: dict[str, list[str]]) -> dict[str, Any]:
-    """Columns by signal, side by side; NaN where a joint has none."""
+    """Return signal → array with one column per joint; NaN for a joint without the signal."""
     at = {header: index for index, header in enumerate(table.headers)}
     present = [header for headers in wanted.values() for header in headers if header in at]
     columns = dict(zip(present, table.numbers([at[header] for header in present]), strict=True))

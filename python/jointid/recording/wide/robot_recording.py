@@ -132,7 +132,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
             name=name,
             metadata=json_mapping("metadata", metadata or {}),
         )
-        for joint in self.names:  # what no recording can hold is refused here
+        for joint in self.names:  # refuse here what a recording cannot hold
             self.joint(joint)
 
     @functools.cached_property
@@ -140,12 +140,12 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return {}
 
     def joint(self, joint: str | int) -> Recording:
-        """Return one joint's recording, at the joint if the gear ratio is known.
+        """Return one joint's recording, on the joint side if the gear ratio is known.
 
         Parameters
         ----------
         joint : str or int
-            Name or number: 3 is "3", or "joint_3" where all names are numbered alike.
+            Name or number: 3 is "3", or "joint_3" if all names have the same form with different numbers.
 
         Returns
         -------
@@ -227,11 +227,11 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return type(self)(**fields)
 
     def with_gear_ratio(self, gear_ratio: Sequence[float] | FloatArray | float) -> Self:
-        """Return the recording with other gear ratios, one a joint."""
+        """Return the recording with other gear ratios, one per joint."""
         return type(self)(**{**self.fields(), "gear_ratio": gear_ratio})
 
     def with_torque_constants(self, torque_constants: Sequence[float] | FloatArray) -> Self:
-        """Return the recording with torques from its currents, on the side that `side` says.
+        """Return the recording with torques from its currents, on the side that `side` names.
 
         Parameters
         ----------
@@ -243,7 +243,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         Raises
         ------
         InputError
-            There is no current, or another number of constants.
+            There is no current, or the number of constants is wrong.
         """
         if self.current is None:
             raise InputError("the recording has no current", argument="torque_constants")
@@ -255,14 +255,14 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return type(self)(**{**self.fields(), "torque": torque, "metadata": metadata})
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the recording to a file (.npz, .csv, .csv.gz), whole or not at all.
+        """Write the recording to a file (.npz, .csv, .csv.gz), completely or not at all.
 
         ``load(path, joints="all")`` returns an equal recording, bit for bit; ``load(path, joint=...)`` one joint.
 
         Raises
         ------
         InputError
-            Another ending, or the folder does not exist.
+            The name has another ending, or the folder does not exist.
         OSError
             The file cannot be written; an existing one is untouched.
         """
@@ -300,12 +300,12 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # By the constructor: unpickled arrays are writable again.
+        # Use the constructor, because unpickled arrays are writable again.
         return functools.partial(type(self), **self.fields()), ()
 
 
 def _plain(fields: dict[str, Any]) -> dict[str, Any]:
-    """Arrays as their bytes: -0.0 is not 0.0 here, and NaN is itself."""
+    """Replace arrays by their bytes, so that -0.0 differs from 0.0 and NaN equals NaN."""
     flat = {**fields, **{f"extra {key}": value for key, value in fields["extra"].items()}}
     del flat["extra"]
     return {

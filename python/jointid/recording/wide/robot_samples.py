@@ -1,4 +1,4 @@
-"""The samples of several joints on one clock: what a robot's recording holds."""
+"""The samples of several joints on one clock."""
 
 from collections.abc import Mapping
 from typing import Any, NoReturn
@@ -8,7 +8,7 @@ from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
 
 
 class RobotSamples:
-    """What a robot's recording holds; its attributes are set by its constructor alone."""
+    """Content of a robot's recording; only the constructor sets the attributes."""
 
     time: FloatArray
     position: FloatArray

@@ -1,4 +1,4 @@
-"""The arrays of a robot's recording, checked: one row a sample, one column a joint."""
+"""Checks of the arrays of a robot's recording: one row per sample, one column per joint."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -16,8 +16,8 @@ ROBOT_SIGNALS = (
     *("position", "velocity", "torque", "motor_torque", "current"),
     *("sensor", "reference", "link_position", "temperature"),
 )
-LISTED = "joints_listed"  # in a recording's metadata: the user named the joints, one by one
-_MOST = 10_000  # joints: more are samples and joints exchanged
+LISTED = "joints_listed"  # metadata key: the user named the joints one by one
+_MOST = 10_000  # joints: more mean that samples and joints are swapped
 _IN_HEADERS = r"[^,;\"'\[\](){}\t\r\n]+"
 
 
@@ -29,7 +29,7 @@ def joint_arrays(
     Raises
     ------
     InputError
-        The position is missing, or a signal has another shape or values that are no numbers.
+        The position is missing, or a signal has another shape or values that are not numbers.
     """
     if given["position"] is None:
         raise InputError("a recording needs time and position", argument="position", value=None)
@@ -70,13 +70,13 @@ def _matrix(name: str, values: npt.ArrayLike) -> FloatArray:
 
 
 def _frozen(array: FloatArray) -> bool:
-    """Whether nobody can change an array any more: it needs no copy."""
+    """Whether an array can no longer change, so that it needs no copy."""
     flags = array.flags
     return flags.owndata and flags.f_contiguous and not flags.writeable
 
 
 def _check_absent(name: str, array: FloatArray) -> None:
-    """Refuse a column that is NaN in part; one that is NaN throughout is no signal."""
+    """Refuse a column that is partly NaN; a column of only NaN is an absent signal."""
     missing = np.isnan(array)
     partly = np.flatnonzero(missing.any(axis=0) & (~missing.all(axis=0) | (name == "position")))
     if len(partly):
@@ -134,7 +134,7 @@ def checked_names(names: Sequence[str] | None, joints: int) -> tuple[str, ...]:
 def checked_ratios(
     gear_ratio: Sequence[float] | FloatArray | float | None, joints: int
 ) -> tuple[float, ...] | None:
-    """Return one gear ratio a joint."""
+    """Return one gear ratio per joint."""
     if gear_ratio is None:
         return None
     found = value_of_each("gear_ratio", gear_ratio, joints, "load")
@@ -142,22 +142,22 @@ def checked_ratios(
 
 
 def value_of_each(argument: str, values: object, joints: int, function: str) -> tuple[float, ...]:
-    """Return one value a joint, none of them 0; a single one for several joints is refused with the list of it.
+    """Return one value per joint, none of them 0. A single value for several joints is refused with a proposed list.
 
     Parameters
     ----------
     argument : str
         "gear_ratio", "gear_ratios" or "torque_constants".
     values : object
-        A number, or one a joint.
+        A number, or one number per joint.
     joints : int
     function : str
-        Which takes the argument, for the call that a message proposes.
+        Function with this argument, for the call that a message proposes.
 
     Raises
     ------
     InputError
-        Another number of values, a single one for several joints, or a value that no joint has.
+        The number of values is wrong, a single value is given for several joints, or a value is impossible.
     """
     what = argument.removesuffix("s").replace("_", " ")
     try:

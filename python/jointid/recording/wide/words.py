@@ -1,4 +1,4 @@
-"""The words of a header in a log of several joints: what they say of a column."""
+"""Meaning of the words in a header of a log of several joints."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ from jointid.base.values import dataclass
 from jointid.recording.header_words import QUANTITIES
 from jointid.recording.sides import JOINT, MOTOR
 
-# Beside a joint's number or name a shorter word is clear.
+# Next to a joint's number or name, these shorter words are clear.
 _NOUNS: dict[str, str] = QUANTITIES | {
     word: signal
     for signal, words in {
@@ -38,32 +38,32 @@ _NEUTRAL = frozenset(
 )
 KNOWN = frozenset(_NOUNS) | _MOTOR | _LINK | _LINK_SIDE | COMMAND | _NEUTRAL
 NUMBERED = frozenset(_NOUNS) | _MOTOR | _LINK | COMMAND | _NEUTRAL | {"j", "a"}
-"""Words that a joint's number may follow without anything between: q3, joint3, A1."""
+"""Words that a joint's number may follow directly: q3, joint3, A1."""
 CARRIERS = frozenset(("joint", "axis", "achse", "dof", "j", "a"))
-"""Words that say no more than that a joint's number follows."""
+"""Words that only announce a joint's number."""
 _FILTERED = frozenset(("filtered", "filt", "smoothed"))
 _AT_OUTPUT = _LINK_SIDE | {"output"}
 _SAYS_JOINT = _AT_OUTPUT | {"joint", "joints"}
 COMPUTED = frozenset(("error", "errors", "err", "output", "limit", "limits", "min", "max"))
-"""Words that name the part of a message that is not measured: a controller's error and output."""
+"""Words for parts of a message that are not measured: a controller's error and output."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Meaning:
-    """What a column of a joint is.
+    """The meaning of a joint's column.
 
     Attributes
     ----------
     signal : str
-        One of a recording's.
+        Signal of a recording.
     side : str
         Side of the gear: "joint" or "motor".
     rank : int
         Among several columns of one signal and side, the lowest rank is chosen.
     side_said : bool
-        Whether a word says the side; else it is assumed.
+        Whether a word states the side; otherwise it is assumed.
     asked : bool
-        Whether it is no measurement, such as a commanded torque: taken only if the user names it.
+        Whether the column is not a measurement, such as a commanded torque; used only if the user names it.
     """
 
     signal: str
@@ -74,15 +74,15 @@ class Meaning:
 
 
 def meaning_of(words: tuple[str, ...]) -> Meaning | None:
-    """Return what a column is, by the words of its header without unit and joint; None if a word is unknown.
+    """Return the meaning of a column from its header's words without unit and joint; None if a word is unknown.
 
-    A column is taken only if every word is known, so that what a model computed (``model_gravity_torque``), a
-    tool's pose and the like are left alone.
+    A column is used only if every word is known. Computed torques (``model_gravity_torque``), tool poses and the like
+    are therefore ignored.
 
     Parameters
     ----------
     words : tuple of str
-        In lower case.
+        Words in lower case.
 
     Examples
     --------
@@ -91,11 +91,11 @@ def meaning_of(words: tuple[str, ...]) -> Meaning | None:
     """
     said = set(words)
     if said & _FILTERED and said <= KNOWN | _FILTERED:
-        # A filter delays: of a torque that is asked about, everything else is left alone.
+        # A filter delays: only a filtered torque is offered to the user, other filtered signals are ignored.
         found = meaning_of(tuple(said - _FILTERED))
         torque = found is not None and found.signal in ("torque", "motor_torque")
         return replace(found, asked=True) if found and torque else None
-    if "qfrc" in said:  # MuJoCo's torques at the joints; what is not the actuators' is computed
+    if "qfrc" in said:  # MuJoCo's joint torques; those not from actuators are computed
         said -= {"actuator"}
     if not said or not said <= KNOWN:
         return None
@@ -105,10 +105,10 @@ def meaning_of(words: tuple[str, ...]) -> Meaning | None:
     commanded = bool(said & COMMAND)
     if commanded:
         signals -= {"reference"}
-        if signals <= {"position"}:  # a reference without another word is a position's
+        if signals <= {"position"}:  # a reference without another word is a position
             side = MOTOR if said & _MOTOR else JOINT
             return Meaning(signal="reference", side=side)
-        # What was commanded is never taken for what was measured; commands of others are no signals.
+        # A commanded value is never taken for a measured one; commands of other quantities are no signals.
         found = _torque(said) if signals == {"torque"} else None
         return replace(found, asked=True) if found else None
     if len(signals) != 1:
@@ -131,5 +131,5 @@ def _torque(said: set[str]) -> Meaning | None:
     if said & _MOTOR and not said & _AT_OUTPUT:
         return Meaning(signal="motor_torque", side=MOTOR, side_said=True)
     if said & _BEHIND and not said & _AT_OUTPUT:
-        return None  # what acts on the link is not the drive's torque
+        return None  # a torque that acts on the link is not the drive's torque
     return Meaning(signal="torque", side=JOINT, side_said=bool(said & _SAYS_JOINT))
