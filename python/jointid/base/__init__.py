@@ -1,1 +1,1 @@
-"""What every other folder uses: errors, files, checks of arguments."""
+"""Shared basis of all other folders: errors, files, checks of arguments."""

@@ -1,4 +1,4 @@
-"""What to do about a finding or an error, as data that each face words and a program can obey."""
+"""Remedies for a finding or an error, as data: each interface words them, and a program can apply them."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ Kind = Literal["call", "record", "inspect"]
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """One thing to do.
+    """One remedy.
 
     Parameters
     ----------
     kind : {"call", "record", "inspect"}
-        "call": call again with other arguments, which a program can do. "record": record other motion; one with
-        a function is designed by it.
-        "inspect": look at the hardware, the logger or the file.
+        "call": call again with other arguments; a program can do this. "record": record another motion; if `function`
+        is set, it designs the motion.
+        "inspect": check the hardware, the logger or the file.
     arguments : mapping of str to object
         Arguments to change in a call, by name, e.g. ``{"model": "stribeck"}``,
         ``{"columns": {"velocity": None}}``, ``{"parameters": {"viscous": 12.0}}``. Default: none.
-        `parameters` is merged over that of the call, field by field of each parameter (None takes a field
-        away), and `columns`, `units` and `scale` of a load signal by signal; every other argument replaces
-        that of the call.
+        `parameters` is merged into the call's argument, field by field of each parameter (None removes a field).
+        `columns`, `units` and `scale` of a load are merged signal by signal. Any other argument replaces the
+        call's argument.
     text : str
-        What to record or inspect, in a phrase that fits a function call and a command line; for a call its purpose,
-        if it needs one. Default: empty.
+        What to record or inspect, as a phrase for a function call and a command line. For a call: its purpose, if
+        needed. Default: empty.
     function : str
         Function to call: "identify" (default), "load", "compare_models", "sweep", "simulate",
         "design_excitation" or "Joint" (arguments are then fields of the joint). For
@@ -61,11 +61,11 @@ class Action:
 
     @property
     def designs(self) -> bool:
-        """Whether a motion is to be recorded that the estimate can design."""
+        """Whether the action records a motion that the estimate can design."""
         return self.kind == "record" and self.function == "next_motion"
 
     def __str__(self) -> str:
-        """The action as a person at a Python prompt would write it."""
+        """Return the action as text for a Python prompt."""
         shown = ", ".join(f"{name}={_written(value)}" for name, value in self.arguments.items())
         if self.kind != "call":
             stated = f"estimate, {shown}" if shown else "estimate"
@@ -93,7 +93,7 @@ _VERB = {
 
 
 def _written(value: object) -> str:
-    """A value as Python writes it; an ellipsis stands for what only the user knows."""
+    """Return a value as Python text; an ellipsis stands for a value that only the user knows."""
     if value is ...:
         return "..."
     if isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""Checks that an argument is of the expected kind."""
+"""Checks of the type of an argument."""
 
 import math
 import numbers
@@ -16,7 +16,7 @@ def require_path(argument: str, value: object) -> Path:
     Raises
     ------
     InputError
-        It is neither text nor a path.
+        The value is neither text nor a path.
     """
     if not isinstance(value, str | os.PathLike) or not isinstance(os.fspath(value), str):
         raise InputError("the name of a file is expected", argument=argument, value=value)
@@ -24,12 +24,12 @@ def require_path(argument: str, value: object) -> Path:
 
 
 def require_mapping(argument: str, value: object, example: str) -> Mapping[Any, Any]:
-    """Return a value that is a mapping; `example` shows a correct one in the message.
+    """Return the value if it is a mapping; the error message shows `example`.
 
     Raises
     ------
     InputError
-        It is not a mapping.
+        The value is not a mapping.
     """
     if not isinstance(value, Mapping):
         raise InputError(f"a mapping is expected, e.g. {example}", argument=argument, value=value)
@@ -42,7 +42,7 @@ def require_kind(argument: str, value: object, *kinds: type) -> None:
     Raises
     ------
     InputError
-        It is of none of them.
+        The value has none of these types.
     """
     if not isinstance(value, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)
@@ -50,12 +50,12 @@ def require_kind(argument: str, value: object, *kinds: type) -> None:
 
 
 def whole_number(name: str, value: object, lowest: int, highest: int) -> int:
-    """A whole number within limits.
+    """Return a whole number within limits.
 
     Raises
     ------
     InputError
-        Not a whole number, or outside.
+        The value is not a whole number, or is outside the limits.
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise InputError("a whole number is expected", argument=name, value=value)
@@ -66,7 +66,7 @@ def whole_number(name: str, value: object, lowest: int, highest: int) -> int:
 
 
 def is_finite(value: object) -> bool:
-    """Whether it is a finite number: no integer beyond all floats, which `math` and NumPy refuse in other ways."""
+    """Whether the value is a finite number; an integer too large for a float is not (`math`, NumPy raise for it)."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         return False
     try:
@@ -80,12 +80,12 @@ def _article(noun: str) -> str:
 
 
 def number_in(text: str) -> int | float | None:
-    """Return the number that a text states, or None; an integer beyond all floats is infinite."""
+    """Return the number in a text, or None; an integer too large for a float is infinite."""
     for kind in (int, float):
         try:
             number = kind(text)
             float(number)
-        # Not a number; an integer beyond all floats; an integer of more digits than Python reads.
+        # Not a number, an integer too large for a float, or one with more digits than Python reads.
         except (OverflowError, ValueError):
             continue
         return number

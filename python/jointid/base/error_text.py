@@ -1,9 +1,9 @@
-"""Parts of messages: another library's reason in brief, names as alternatives, text for a terminal."""
+"""Parts of messages: a short reason from another library's error, alternatives, text for a terminal."""
 
 import re
 from collections.abc import Sequence
 
-# Control characters, ends of lines and paragraphs, what turns the direction of text, halves of characters.
+# Control characters, line and paragraph ends, marks of text direction, surrogates.
 _UNFIT = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
@@ -26,12 +26,12 @@ def alternatives(names: Sequence[str]) -> str:
 
 
 def printable(text: str) -> str:
-    """Return text without control characters, which a file's labels could send to a terminal."""
+    """Return text without control characters, because a file's labels could send them to a terminal."""
     return "".join(c if c == "\n" or c.isprintable() else "\ufffd" for c in text)
 
 
 def on_one_line(text: str) -> str:
-    r"""Return text whose control characters and line ends, which a file's names may hold, are escaped.
+    r"""Return text with escaped control characters and line ends, which names in a file may contain.
 
     Examples
     --------
@@ -42,5 +42,5 @@ def on_one_line(text: str) -> str:
 
 
 def joint_phrase(name: str) -> str:
-    """Return what a sentence calls a joint: "joint 3", but "joint_3" where the name says so."""
+    """Return the phrase for a joint: "joint 3", or only the name if it contains "joint"."""
     return name if "joint" in name.lower() else f"joint {name}"

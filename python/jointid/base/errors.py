@@ -1,4 +1,4 @@
-"""The one exception for bad input: a value, which each face words."""
+"""The only exception for bad input, as data that each interface words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid.base.error_text import on_one_line
 
 
 class _NotGiven:
-    """No value was given: None may be one."""
+    """Marker for "no value", because None may be a value."""
 
     def __repr__(self) -> str:
         return "NOT_GIVEN"
@@ -27,25 +27,25 @@ NOT_GIVEN: Any = _NotGiven()
 
 
 class InputError(ValueError):
-    """Input that cannot be used: what is wrong, where, and what would be right.
+    """Input that cannot be used: the reason, the place and a remedy.
 
     Parameters
     ----------
     reason : str
-        Why it cannot be used, or what is expected; a phrase that fits a function call and a command line.
+        Why the input cannot be used, or what is expected; a phrase for a function call and a command line.
     argument : str
         Name of the argument, field, key or column. Default: no name.
     value : object
         The value that cannot be used. Default: not shown.
     place : str
-        File, row or table of the value. Default: in the call.
+        File, row or table of the value. Default: the call.
     remedy : str, Action or tuple of these
-        What to do, if the reason does not say it. Default: none.
+        What to do, if the reason does not state it. Default: none.
 
     Attributes
     ----------
     reason, argument, value, place, remedy
-        As given; `remedy` is a tuple.
+        Same as the parameters; `remedy` is always a tuple.
 
     Examples
     --------
@@ -70,7 +70,7 @@ class InputError(ValueError):
         self.remedy = remedy if isinstance(remedy, tuple) else (remedy,)
 
     def at(self, place: str) -> InputError:
-        """Return the same error with its place in front of the one it has.
+        """Return the same error with a place before its present place.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class InputError(ValueError):
         )
 
     def __str__(self) -> str:
-        """The sentence that Python shows."""
+        """Return the sentence that Python shows."""
         place = f"{self.place}: " if self.place else ""
         subject = self.argument
         if self.value is not NOT_GIVEN:
@@ -97,7 +97,7 @@ class InputError(ValueError):
         return on_one_line(f"{place}{sentence}" + (f"; {remedies}" if remedies else ""))
 
     def __repr__(self) -> str:
-        """The fields that are not their defaults."""
+        """Return the fields that differ from their defaults."""
         fields = {"argument": self.argument, "place": self.place, "remedy": self.remedy}
         texts = [repr(self.reason), *(f"{name}={each!r}" for name, each in fields.items() if each)]
         if self.value is not NOT_GIVEN:
@@ -105,23 +105,23 @@ class InputError(ValueError):
         return f"{type(self).__name__}({', '.join(texts)})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """What is pickled: a value that cannot be is replaced by its text."""
+        """Return the state for pickle; a value that cannot be pickled is replaced by its text."""
         state = dict(self.__dict__)
         try:
             pickle.dumps(self.value)
-        except Exception:  # whatever the value's own methods raise
+        except Exception:  # the value's own methods may raise anything
             state["value"] = shown(self.value)
         return type(self), (self.reason,), state
 
 
 def shown(value: object) -> str:
-    """Return a value for a message: a short plain one as Python writes it, a path whole, of others their type."""
+    """Return a value for a message: short plain values as in Python, paths in full, other values by their type."""
     if isinstance(value, PurePath):
         return repr(str(value))
     if value is None or isinstance(value, str | bool | int | float | list | tuple | dict):
         try:
             text = repr(value)
-        except (RecursionError, ValueError):  # nested too deeply; an integer of too many digits
+        except (RecursionError, ValueError):  # too deep, or too many digits
             text = ""
         if text and len(text) <= 60:
             return text

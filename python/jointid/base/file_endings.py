@@ -1,4 +1,4 @@
-"""The endings of file names: which of several a name has."""
+"""Endings of file names."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,13 +8,13 @@ from jointid.base.errors import InputError
 
 
 def ending_of(path: Path, endings: Sequence[str]) -> str:
-    """Return which of some endings a file name has, in upper or lower case.
+    """Return the ending of a file name among these endings; upper or lower case.
 
     Parameters
     ----------
     path : Path
     endings : sequence of str
-        In lower case, with the dot. Of several that fit, the longest is returned.
+        Endings in lower case, with the dot. If several fit, the longest is returned.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def ending_of(path: Path, endings: Sequence[str]) -> str:
 
 
 def no_ending(path: Path, endings: Sequence[str]) -> InputError:
-    """Return the error of a file name that has none of some endings."""
+    """Return the error for a file name with none of these endings."""
     expected = f"a file name that ends in {alternatives(endings)} is expected"
     if path.is_dir():
         inside = path / f"*{endings[0]}"

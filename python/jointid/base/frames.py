@@ -1,4 +1,4 @@
-"""Tables as data frames; pandas is imported only here, when one is asked for."""
+"""Tables as data frames; pandas is imported only here, and only when needed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def data_frame(
     table: Mapping[str, Any] | Sequence[Mapping[str, Any]], *, index: str | list[str] | None = None
 ) -> pd.DataFrame:
-    """Return a data frame of columns or records, with columns as its index if these are named.
+    """Return a data frame of columns or records; the named columns become the index.
 
     Raises
     ------

@@ -1,7 +1,6 @@
 """HTML built from elements, so that no text can reach a page unescaped.
 
-There is no way to make an `Html` from a string of markup: `element` and `page` are the only makers, and
-both escape every text they are given.
+An `Html` cannot be made from a string of markup. Only `element` and `page` make it, and both escape every text.
 """
 
 from __future__ import annotations
@@ -40,18 +39,18 @@ _ATTRIBUTES = frozenset(
         *("d", "role", "viewBox", "x", "y", "scope", "tabindex", "aria-label", "data-label"),
     )
 )
-# A page of ours needs no other file: pictures are inside, links stay on the page.
+# A page needs no other file: pictures are embedded, links stay on the page.
 _SAFE = {
     "src": re.compile(r"data:image/png;base64,[A-Za-z0-9+/=]*"),
     "href": re.compile(r"#[\w-]*"),
     "d": re.compile(r"[MlHhVvz0-9 -]*"),
 }
-# No document may hold these: control characters, halves of a pair, what is no character.
+# Not allowed in a document: control characters, surrogates, noncharacters.
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Html:
-    """A fragment of a page; made by `element` and `page` alone."""
+    """A fragment of a page; only `element` and `page` make it."""
 
     __slots__ = ("_markup",)
 
@@ -71,12 +70,12 @@ def element(tag: str, *children: Html | str, **attributes: str) -> Html:
     Parameters
     ----------
     tag : str
-        Name of the element; one of those that a report needs.
+        Name of the element; only elements of reports are allowed.
     *children : Html or str
-        What stands inside; texts are escaped.
+        Content of the element; texts are escaped.
     **attributes : str
-        Values are escaped; an underscore at the end of a name is dropped (`class_`), another one is a hyphen. `src`
-        takes a picture as data, `href` a place on the same page.
+        Attributes with escaped values. A trailing underscore of a name is dropped (`class_`); any other underscore is a
+        hyphen. `src` takes a picture as data, `href` a place on the same page.
 
     Returns
     -------
@@ -103,7 +102,7 @@ def element(tag: str, *children: Html | str, **attributes: str) -> Html:
 def table(
     rows: list[list[Html | str]], *, head: list[str] | None = None, class_: str = "jointid"
 ) -> Html:
-    """Return a table: rows of cells (an Html that is a cell stays, a text becomes one), and a head."""
+    """Return a table with a head and rows of cells; a text becomes a cell."""
     lines = [element("tr", *map(_cell, row)) for row in rows]
     parts = [element("tbody", *lines)]
     if head is not None:
@@ -137,7 +136,7 @@ def _cell(child: Html | str) -> Html:
 
 
 def _inside(child: Html | str) -> str:
-    # Anything else, even a number, is a text: nothing is trusted for what it claims to be.
+    # Any other value, even a number, is escaped as text.
     return child._markup if type(child) is Html else _escaped(str(child))
 
 
@@ -146,9 +145,9 @@ def _escaped(text: str) -> str:
 
 
 def escape(text: str) -> str:
-    """Return a text whose characters are no markup.
+    """Return a text with markup characters escaped.
 
-    It is `html.escape`, whose module also brings the names of 2,000 characters, and takes a millisecond for that.
+    It replaces `html.escape`, because the import of that module takes a millisecond.
     """
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return text.replace('"', "&quot;").replace("'", "&#x27;")

@@ -1,6 +1,6 @@
-"""Functions of upper rooms for lower ones, which may not import them: the package's face joins them.
+"""Access to functions of upper folders for lower folders, which may not import them.
 
-The face says how to load them, and a lower room loads them when it needs them.
+The package's top module registers how to load each function; a lower folder loads it when needed.
 """
 
 from collections.abc import Callable
@@ -9,10 +9,10 @@ _LOADERS: dict[str, Callable[[], Callable[..., object]]] = {}
 
 
 def join(**loaders: Callable[[], Callable[..., object]]) -> None:
-    """Say how functions of upper rooms are loaded, by the name that the rooms below know."""
+    """Register loaders of functions in upper folders, by the name that lower folders use."""
     _LOADERS.update(loaders)
 
 
 def joined(name: str) -> Callable[..., object]:
-    """Return the function of an upper room that was joined under this name."""
+    """Return the function of an upper folder that was registered under this name."""
     return _LOADERS[name]()

@@ -1,4 +1,4 @@
-"""JSON as text that people can read and that is written quickly: a line for each entry, a list of numbers on one."""
+"""Readable JSON text that is written quickly: one line per entry, a list of numbers on one line."""
 
 import math
 from collections.abc import Mapping
@@ -11,8 +11,8 @@ _plain = JSONEncoder(ensure_ascii=False, allow_nan=False).encode
 
 
 def json_types(value: Any) -> Any:
-    """Return a value in JSON's types: a tuple is a list, a number that is not finite a text such as "inf"."""
-    if hasattr(value, "tolist"):  # of NumPy
+    """Return a value in JSON's types: tuples become lists, numbers that are not finite become text such as "inf"."""
+    if hasattr(value, "tolist"):  # a NumPy value
         value = value.tolist()
     if isinstance(value, Mapping):
         return {str(name): json_types(each) for name, each in value.items()}
@@ -29,9 +29,9 @@ def json_text(value: Any, indent: str = "") -> str:
     Parameters
     ----------
     value : object
-        A value of JSON types.
+        Value of JSON's types.
     indent : str
-        Indentation of its first line. Default: none.
+        Indentation of the first line. Default: none.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""What functions take by keyword, declared once: default, check, help, and the name on the command line.
+"""Keyword options of functions, declared once: default, check, help, and the name on the command line.
 
 A `TypedDict` lists the options, each as ``Annotated[TYPE, Option(...)]``. A function takes them as
-``**options: Unpack[THAT]``, which type checkers expand; `takes` shows them where the program runs.
+``**options: Unpack[THAT]``, which type checkers expand; `takes` adds them to the signature at run time.
 """
 
 import functools
@@ -11,32 +11,32 @@ from typing import Any, TypeVar
 
 from jointid.base.values import dataclass
 
-_WIDTH = 100  # of lines in docstrings
+_WIDTH = 100  # width of docstring lines
 
 Taker = TypeVar("Taker", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Option:
-    """One keyword of a function, with all that is said of it anywhere.
+    """One keyword of a function, with all its descriptions.
 
     Attributes
     ----------
     kind : str
-        Its type, as the reference words it.
+        Type as worded in the reference.
     help : str
-        What it means, for the reference.
+        Meaning, for the reference.
     default : object
     checked : callable
-        Takes name and value; returns the value as it is used, or raises an `InputError`. Default: any value as it is.
+        Takes name and value; returns the checked value or raises an `InputError`. Default: no check.
     flag : str
-        Its name on the command line; empty: it has none.
+        Name on the command line; empty: not on the command line.
     phrase : str
-        What the command line says of it.
+        Help text on the command line.
     form : str
-        How it is typed there: "text", "number", "windows", "numbers by name" or "texts by name".
+        Form of the value on the command line: "text", "number", "windows", "numbers by name" or "texts by name".
     metavar : str, optional
-        What stands for its value there. Default: its name.
+        Placeholder of the value on the command line. Default: the name.
     """
 
     kind: str
@@ -50,17 +50,17 @@ class Option:
 
 
 def options_of(options: type) -> dict[str, Option]:
-    """The options that a `TypedDict` lists, by name."""
+    """Return the options of a `TypedDict`, by name."""
     return {name: hint.__metadata__[0] for name, hint in options.__annotations__.items()}
 
 
 def checked(options: type, stated: Mapping[str, Any]) -> dict[str, Any]:
-    """All options of a `TypedDict`, each stated or by default, as they are used.
+    """Return all options of a `TypedDict` as checked values, stated or by default.
 
     Raises
     ------
     InputError
-        A value that cannot be used.
+        A value cannot be used.
     """
     return {
         name: option.checked(name, stated.get(name, option.default))
@@ -69,7 +69,7 @@ def checked(options: type, stated: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def takes(options: type) -> Callable[[Taker], Taker]:
-    """Decorate what takes ``**options``: signature and docstring list them, and the call gets each, or its default."""
+    """Decorate a function with ``**options``: signature and docstring list them, and calls get values or defaults."""
     entries = options_of(options)
     defaults = {name: option.default for name, option in entries.items()}
 
@@ -111,7 +111,7 @@ def takes(options: type) -> Callable[[Taker], Taker]:
 def documented(
     text: str | None, entries: Mapping[str, Option], line: str = "**options", lead: str = ""
 ) -> str | None:
-    """A docstring with the options in the place of its line ``**options``; `lead` begins what is said of each."""
+    """Return a docstring with the options instead of its line ``**options``; `lead` begins each description."""
     before, mark, behind = (text or "").partition(f"{line}\n")
     if not mark:
         return text
@@ -123,7 +123,7 @@ def documented(
 
 
 def _wrapped(text: str, indent: str) -> list[str]:
-    """A paragraph as lines; `textwrap` is slow to import."""
+    """Return a paragraph as lines; `textwrap` is slow to import."""
     lines = [""]
     for word in text.split():
         if lines[-1] and len(indent) + len(lines[-1]) + len(word) >= _WIDTH:

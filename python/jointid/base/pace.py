@@ -1,4 +1,4 @@
-"""The pace of work that takes long: how much time has passed, and how much is left."""
+"""Elapsed and remaining time of long work."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import time
 
 
 class Pace:
-    """The time since work began, from which the rest is estimated.
+    """A clock that estimates the remaining time from the elapsed time.
 
     Examples
     --------
@@ -26,14 +26,14 @@ class Pace:
         return time.monotonic() - self._began
 
     def left(self, share: float, resumed: float = 0.0) -> float | None:
-        """Return how long the rest takes at the pace so far [s]; None before any of it is done.
+        """Return the remaining time at the present pace [s]; None before any work is done.
 
         Parameters
         ----------
         share : float
-            What is done of the whole, from 0 to 1.
+            Share of the work that is done, 0 to 1.
         resumed : float
-            The share that was done before the work began. Default 0.
+            Share that was done before this clock started. Default 0.
         """
         if share <= resumed:
             return None

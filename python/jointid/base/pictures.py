@@ -10,20 +10,20 @@ from jointid.base.files import write_whole
 
 
 def write_picture(figure: Any, path: Path, **options: Any) -> None:
-    """Write a figure of matplotlib to a file, which keeps what it was when that fails.
+    """Write a matplotlib figure to a file; on failure an existing file is unchanged.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
     path : Path
-        Its ending chooses the format.
+        File name; its ending chooses the format.
     **options
         Options of `Figure.savefig`.
 
     Raises
     ------
     InputError, OSError
-        As of `write_whole`.
+        Same errors as `write_whole`.
     """
     content = io.BytesIO()
     figure.savefig(content, format=path.suffix[1:].lower(), **options)

@@ -1,4 +1,4 @@
-"""What every result has in common: a face, whatever was identified, compared, designed or simulated."""
+"""Common interface of all results: identified, compared, designed or simulated."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quantity:
-    """One value of a result, for a table that does not know what was identified.
+    """One value of any result, for a table.
 
     Attributes
     ----------
     name, unit, meaning : str
     value : float or None
-        None where there is none, e.g. beyond a bound.
+        None if there is no value, e.g. beyond a bound.
     error : float or None
-        Standard error; None where there is none.
+        Standard error; None if there is none.
     systematic : str
         Error that more data does not reduce, with its main source, e.g. "1.3 (given)". Default: none.
     remark : str
-        What a reader must know of this value, e.g. "given". Default: nothing.
+        Note on this value, e.g. "given". Default: none.
     """
 
     name: str
@@ -49,27 +49,27 @@ class Overview:
     Attributes
     ----------
     title : str
-        Subject and what was done with it, e.g. "KR300 joint 1: friction".
+        Subject and task, e.g. "KR300 joint 1: friction".
     footer : str
-        What made it: version, seed, recordings. Default: nothing.
+        Origin of the result: version, seed, recordings. Default: empty.
     verdict : Verdict or None
-        Whether the values may be used, and for what; None where nothing is judged.
+        Whether the values may be used, and for which purpose; None without a judgement.
     answer : tuple of str
-        The answer in sentences, where there is no verdict; what follows a verdict, where there is one.
+        The answer in sentences, if there is no verdict; otherwise sentences that follow the verdict.
     level : str
         Level of the verdict: "usable", "usable with care", "not usable", or "" without a verdict.
     parameters : tuple of Quantity
-        Rows of the main table: values and what follows from them; of a comparison its models, of a rollout its runs,
-        of a study its cells.
+        Rows of the main table: values and derived quantities; models of a comparison; runs of a rollout; cells of
+        a study.
     fit : tuple of (str, str)
-        How well the result explains the data: label and text.
+        Quality of the fit: label and text.
     facts : tuple of (str, str)
-        What it was made from: label and text.
+        Facts about the data: label and text.
     findings : tuple of Finding
     settings : tuple of (str, str)
-        With which it can be repeated: label and text.
+        Settings that repeat the result: label and text.
     inner : mapping of str to Result
-        Results that it consists of, by name.
+        Results that are parts of this one, by name.
     """
 
     title: str
@@ -115,7 +115,7 @@ class Result:
 
     @classmethod
     def from_json(cls, text: str) -> Result:
-        """Return the result that a JSON text holds; `Result.from_json` reads any kind, a kind reads its own.
+        """Return the result in a JSON text. `Result.from_json` reads any kind; a subclass reads only its own kind.
 
         Parameters
         ----------
@@ -125,23 +125,24 @@ class Result:
         Raises
         ------
         InputError
-            Not JSON, no result or another kind, a newer schema, or a value that cannot be used; names its place.
+            The text is not JSON, is not a result of this kind, has a newer schema, or has an invalid value; the error
+            names the place.
         """
         return cls._class_of(require_text(text)).from_json(text)
 
     @classmethod
     def load(cls, path: str | Path) -> Result:
-        """Return the result that a file holds; `Result.load` reads any kind, a kind reads its own.
+        """Return the result in a file. `Result.load` reads any kind; a subclass reads only its own kind.
 
         Parameters
         ----------
         path : path-like
-            As `save` wrote it: .json, a design's .toml, the file of a sweep.
+            File from `save`: .json, a design's .toml, or a sweep's file.
 
         Raises
         ------
         InputError
-            No such file, or as `from_json`; names the file and the place in it.
+            The file does not exist, or the errors of `from_json`; the error names the file and the place in it.
 
         Examples
         --------
@@ -154,14 +155,14 @@ class Result:
 
     @classmethod
     def _class_of(cls, source: Path | str) -> type[KeptResult]:
-        """The kind of result that a file or a JSON text holds."""
+        """Return the class of the result in a file or a JSON text."""
         if cls is not Result:
             raise InputError(f"a result of the kind '{cls._KIND}' is not read from a file")
         return cast("type[KeptResult]", joined("class_of_kind")(source))
 
 
 class KeptResult(Result):
-    """A result that is kept: as a file, as JSON, as a table."""
+    """A result that can be saved as a file or JSON, or shown as a table."""
 
     __slots__ = ()
 
@@ -171,7 +172,7 @@ class KeptResult(Result):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the result that a JSON text holds.
+        """Return the result in a JSON text.
 
         Parameters
         ----------
@@ -181,22 +182,23 @@ class KeptResult(Result):
         Raises
         ------
         InputError
-            Not JSON, another kind of result, a newer schema, or a value that cannot be used; names its place.
+            The text is not JSON, is another kind of result, has a newer schema, or has an invalid value; the error
+            names the place.
         """
         raise NotImplementedError
 
     def save(self, path: str | Path) -> Path:
-        """Write the result to a file, whole or not at all, and return its path.
+        """Write the result to a file, completely or not at all, and return its path.
 
         Parameters
         ----------
         path : path-like
-            The ending chooses the format: .json holds everything.
+            File name; the ending chooses the format. A .json file holds everything.
 
         Raises
         ------
         InputError
-            Another ending, or a folder that does not exist.
+            The name has another ending, or the folder does not exist.
         OSError
             The file cannot be written; an existing one is untouched.
         """
@@ -210,7 +212,7 @@ class KeptResult(Result):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Return the result that a .json file holds.
+        """Return the result in a .json file.
 
         Parameters
         ----------
@@ -219,7 +221,7 @@ class KeptResult(Result):
         Raises
         ------
         InputError
-            No such file, or as `from_json`; names the file and the place in it.
+            The file does not exist, or the errors of `from_json`; the error names the file and the place in it.
         """
         from jointid.base.schema import read_text
 
@@ -230,7 +232,7 @@ class KeptResult(Result):
             raise error.at(str(file)) from error
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the result as a data frame, one row each.
+        """Return the result as a data frame, one row per value.
 
         Raises
         ------
@@ -241,19 +243,19 @@ class KeptResult(Result):
 
 
 def require_text(text: object) -> str:
-    """Return a text that `from_json` reads.
+    """Return the argument of `from_json` if it is a text.
 
     Raises
     ------
     InputError
-        It is none.
+        The argument is not a text.
     """
     require_kind("text", text, str)
     return cast("str", text)
 
 
 def kind_of(result: Result) -> str:
-    """Return the name of a result's kind, e.g. "estimate"; empty for what is no result."""
+    """Return the name of a result's kind, e.g. "estimate"; empty if it is not a result."""
     return getattr(result, "_KIND", "")
 
 
@@ -274,4 +276,4 @@ KINDS = (
     "commissioning",
     "online",
 )
-"""The kinds of result; the sections of a page and the files that are read back are named by them."""
+"""Kinds of result; they name sections of report pages and saved files."""

@@ -1,4 +1,4 @@
-"""What a file of ours may hold: declared once as a schema, checked as it is read.
+"""Schemas of jointid's own files: declared once, checked during reading.
 
 A schema is built from the kinds below. Each has one method, `read(value, place)`, which returns the
 checked value or raises an InputError whose place is the JSON path, e.g. "parameters.coulomb.value".
@@ -16,8 +16,8 @@ from typing import Any, NoReturn, Protocol
 from jointid.base.errors import NOT_GIVEN, InputError
 from jointid.base.values import dataclass
 
-LARGEST = 500_000_000  # bytes of a file, characters of a text; an estimate of an hour's recording has 20 million
-DEEPEST = 32  # lists and tables inside each other; an estimate has 5
+LARGEST = 500_000_000  # bytes or characters; an estimate from one hour has 20 million
+DEEPEST = 32  # levels of nested lists and tables; an estimate has 5
 _CHUNK = 1 << 16  # bytes; most files have fewer
 _NOT_FINITE = ("inf", "-inf", "nan")
 
@@ -26,16 +26,16 @@ class Kind(Protocol):
     """A kind of value."""
 
     def read(self, value: Any, place: str) -> Any:
-        """Return the value, checked; raise an InputError at the place otherwise."""
+        """Return the checked value, or raise an InputError with the place."""
 
 
 def read_text(path: Path) -> str:
-    """Return the text of a file of ours.
+    """Return the text of a jointid file.
 
     Raises
     ------
     InputError
-        It cannot be read, is too large, or is not UTF-8; names the file.
+        The file cannot be read, is too large, or is not UTF-8; the error names the file.
     """
     place = str(path)
     try:
@@ -49,14 +49,14 @@ def read_text(path: Path) -> str:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return the bytes of a file of ours.
+    """Return the bytes of a jointid file.
 
     Raises
     ------
     InputError
-        It is too large; names the file.
-    OSError
-        It cannot be read.
+        The file is too large; the error names the file.
+            OSError
+                The file cannot be read.
     """
     data = bytearray()
     with path.open("rb") as file:  # a device or a pipe does not state its size
@@ -68,7 +68,7 @@ def read_bytes(path: Path) -> bytes:
 
 
 def read_json(text: str) -> Any:
-    """Return the value that a JSON text holds, not deeper and not larger than any file of ours.
+    """Return the value of a JSON text, within the limits of size and depth of jointid files.
 
     Parameters
     ----------
@@ -77,12 +77,12 @@ def read_json(text: str) -> Any:
     Returns
     -------
     object
-        A value of JSON types; numbers may be infinite or NaN, which `Number` and `Plain` refuse.
+        Value of JSON's types; numbers may be infinite or NaN, which `Number` and `Plain` refuse.
 
     Raises
     ------
     InputError
-        Not JSON, nested too deeply, or too large.
+        The text is not JSON, is nested too deeply, or is too large.
     """
     if len(text) > LARGEST:
         raise InputError(f"too large: {len(text)} characters, {LARGEST} are allowed")
@@ -92,29 +92,29 @@ def read_json(text: str) -> Any:
         raise InputError("not JSON of jointid: nested too deeply") from None
     except json.JSONDecodeError as error:
         raise InputError(f"not JSON: line {error.lineno}, column {error.colno}") from None
-    except ValueError:  # an integer of 5000 digits
+    except ValueError:  # an integer with 5000 digits
         raise InputError("not JSON of jointid: a number has too many digits") from None
     check_depth(value, "not JSON of jointid")
     return value
 
 
 def read_document(text: str, kind: str, schema: int, what: str) -> dict[str, Any]:
-    """Return the document that a JSON text holds, of a kind of file and of a schema up to the present one.
+    """Return the document in a JSON text, of this kind and of a schema up to the present one.
 
     Parameters
     ----------
     text : str
     kind : str
-        The document's field of that name.
+        Expected value of the document's field "kind".
     schema : int
-        The newest one that is known.
+        The newest known schema.
     what : str
-        What is expected, for a message, e.g. "a comparison of models".
+        Description of the document for a message, e.g. "a comparison of models".
 
     Raises
     ------
     InputError
-        Not JSON, another kind, or a newer schema.
+        The text is not JSON, is another kind, or has a newer schema.
     """
     document = read_json(text)
     if not isinstance(document, dict) or document.get("kind") != kind:
@@ -127,12 +127,12 @@ def read_document(text: str, kind: str, schema: int, what: str) -> dict[str, Any
 
 
 def check_depth(value: Any, what: str) -> None:
-    """Check that lists and tables are not deeper inside each other than in any file of ours.
+    """Check that lists and tables are not nested deeper than in any jointid file.
 
     Raises
     ------
     InputError
-        Deeper; begins with `what`.
+        They are nested deeper; the message begins with `what`.
     """
     level: list[Any] = [value]
     for _ in range(DEEPEST + 1):
@@ -151,8 +151,8 @@ def _items(value: list[Any] | dict[str, Any]) -> Iterable[Any]:
 class Number:
     """A number between `low` and `high`, both included; an integer when `whole`.
 
-    With `infinite`, the texts "inf" and "-inf" stand for infinite numbers (JSON has none); with
-    `undefined`, "nan" stands for an undefined one.
+    With `infinite`, the texts "inf" and "-inf" mean infinite numbers, which JSON lacks. With `undefined`,
+    "nan" means an undefined number.
     """
 
     low: float = -math.inf
@@ -162,7 +162,7 @@ class Number:
     undefined: bool = False
 
     def holds(self, values: list[Any]) -> bool:
-        """Whether a list is of ordinary numbers that `read` returns as they are: quick for thousands."""
+        """Whether a list holds only numbers that `read` returns unchanged: a fast check for thousands."""
         if set(map(type, values)) != {int if self.whole else float}:
             return False
         if not (self.whole or all(map(math.isfinite, values))):
@@ -170,7 +170,7 @@ class Number:
         return bool(self.low <= min(values) and max(values) <= self.high)
 
     def read(self, value: Any, place: str) -> float | int:
-        """Return a float, or an int when whole."""
+        """Return a float, or an int if `whole`."""
         number = value
         if isinstance(value, str) and value in _NOT_FINITE:
             number = float(value)
@@ -194,7 +194,7 @@ class Number:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Text:
-    """A text of at most `longest` characters; one of `known` when that is not empty."""
+    """A text of at most `longest` characters; one of `known` if that is not empty."""
 
     longest: int = 10_000
     known: tuple[str, ...] = ()
@@ -226,7 +226,7 @@ class Flag:
 
 @dataclass(frozen=True, slots=True)
 class OrNull:
-    """What `kind` allows, or null."""
+    """A value of `kind`, or null."""
 
     kind: Kind
 
@@ -257,7 +257,7 @@ class ListOf:
 
 @dataclass(frozen=True, slots=True)
 class TableOf:
-    """A table with any names, at most `longest` of `longest_name` characters, and entries of one kind."""
+    """A table of at most `longest` entries of one kind, with any names of at most `longest_name` characters."""
 
     entry: Kind
     longest: int = 10_000
@@ -278,14 +278,14 @@ class TableOf:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A table with known keys: `fields` must be there, `optional` may be; others are `other`, or refused."""
+    """A table with known keys: `fields` are required, `optional` are not; others are of kind `other` or refused."""
 
     fields: Mapping[str, Kind]
     optional: Mapping[str, Kind] = field(default_factory=dict)
     other: Kind | None = None
 
     def read(self, value: Any, place: str) -> dict[str, Any]:
-        """Return a dict of what is there."""
+        """Return a dict of the present keys."""
         table = _table(value, place)
         for key in self.fields:
             if key not in table:
@@ -303,7 +303,7 @@ class Record:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unchecked:
-    """Any value: another reader checks it."""
+    """Any value; another reader checks it."""
 
     def read(self, value: Any, place: str) -> Any:
         """Return the value."""
@@ -313,7 +313,7 @@ class Unchecked:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plain:
-    """Any value of JSON's types with finite numbers: what another reader checks, or what is only shown."""
+    """Any value of JSON's types with finite numbers: another reader checks it, or it is only shown."""
 
     def read(self, value: Any, place: str) -> Any:
         """Return the value."""

@@ -1,4 +1,4 @@
-"""Tables as text: columns of equal width, with a line below the head."""
+"""Tables as text: aligned columns, with a line below the head."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def aligned(table: Sequence[Sequence[str]]) -> list[str]:
     Parameters
     ----------
     table : sequence of sequence of str
-        Rows of as many cells, the head first.
+        Rows with equal numbers of cells, the head first.
 
     Examples
     --------

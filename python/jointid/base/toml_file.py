@@ -1,4 +1,4 @@
-"""Reading a TOML file of ours."""
+"""Reading a TOML file of jointid."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 from jointid.base.errors import InputError
 from jointid.base.schema import check_depth, read_text
 
-_LONGEST = 300_000  # characters: long keys take a time that grows with their square
+_LONGEST = 300_000  # characters: the time for long keys grows with the square of their length
 
 
 def check_length(text: str, path: Path) -> None:
-    """Raise `InputError` for a text that is longer than any TOML file of ours."""
+    """Raise `InputError` for a text longer than any TOML file of jointid."""
     if len(text) > _LONGEST:
         raise InputError(
             f"too long for a TOML file of jointid: {len(text)} characters, at most {_LONGEST}",
@@ -27,12 +27,12 @@ def read_toml(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        It cannot be read, or is not TOML; names the file, and the line where it is known.
+        The file cannot be read, or is not TOML; the error names the file, and the line if known.
     """
     text = read_text(path)
     check_length(text, path)
     try:
-        tables = tomllib.loads(text.removeprefix("\ufeff"))  # some editors on Windows write it
+        tables = tomllib.loads(text.removeprefix("\ufeff"))  # byte order mark of Windows editors
         check_depth(tables, "not TOML of jointid")
     except RecursionError:
         raise InputError("not TOML: it is nested too deeply", place=str(path)) from None

@@ -1,4 +1,4 @@
-"""Tables as TOML text, for files of ours that are written whole."""
+"""Tables as TOML text, for jointid files that are written completely."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ def toml_of(tables: Mapping[str, Any], comments: Mapping[str, str] | None = None
     Parameters
     ----------
     tables : mapping
-        Values are numbers, texts, flags, lists of these, and mappings of these; None is left out, and a
-        number that is not finite becomes a text: "inf", as `schema.Number` reads it.
+        Numbers, texts, flags, lists of these, and mappings of these. None is left out. A number that is not
+        finite becomes a text such as "inf", which `schema.Number` reads.
     comments : mapping of str to str, optional
-        By the name of a table or a key, such as "limits" or "limits.velocity". Default: none.
+        Comments by the name of a table or key, such as "limits" or "limits.velocity". Default: none.
 
     Returns
     -------
     str
-        Ends with a line feed; `tomllib` reads the same values.
+        TOML text with a final line feed; `tomllib` reads the same values.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def _lines(table: Mapping[str, Any], path: str, comments: Mapping[str, str]) -> 
         whole = f"{path}.{_key(key)}" if path else _key(key)
         said = comments.get(whole, "")
         plain = any(not isinstance(each, Mapping) for each in value.values())
-        if plain or not value:  # a table of tables alone needs no head of its own
+        if plain or not value:  # a table that holds only tables needs no head
             yield ""
             yield f"[{whole}]" + (f"  # {said}" if said else "")
         yield from _lines(value, whole, comments)
@@ -61,7 +61,7 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
-        # A number of numpy's is one, too, and writes itself otherwise.
+        # A NumPy number has another repr.
         return repr(float(value)) if math.isfinite(value) else f'"{float(value)}"'
     if isinstance(value, int):
         return str(value)
@@ -71,5 +71,5 @@ def _value(value: Any) -> str:
 
 
 def _text(value: str) -> str:
-    # JSON's quotes are TOML's, but for one character that TOML does not allow as it is.
+    # A JSON string is a TOML string, except for one character that TOML must escape.
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,4 +1,4 @@
-"""How much a compressed file may hold: a limit for each file, so that a small one cannot fill the memory."""
+"""Size limit of each compressed file's content, so that a small file cannot fill the memory."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pathlib import Path
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 
-LEAST = 64_000_000  # bytes that any file may hold
-TIMES = 50  # its size: recorded numbers are packed 2 to 20 times, and repeated ones 1000 times
+LEAST = 64_000_000  # bytes: limit for any small file
+TIMES = 50  # times the file's size: recorded numbers compress 2 to 20 times
 _FIRST, _CHUNK = 256, 1 << 20  # bytes
-_PADDED = re.compile(rb"\0*")  # a file may be
+_PADDED = re.compile(rb"\0*")  # padding after a gzip member
 
 
 class TooLargeError(InputError):
-    """A file holds more than it may: nobody reads it a second time."""
+    """A file exceeds its size limit; it is not read in another form."""
 
 
 _raised: ContextVar[int] = ContextVar("unpacked", default=0)
@@ -27,17 +27,17 @@ _raised: ContextVar[int] = ContextVar("unpacked", default=0)
 
 @contextmanager
 def allowing(unpacked: int | None) -> Iterator[None]:
-    """Raise the limit of the files that are opened inside.
+    """Raise the limit for files that are opened in the block.
 
     Parameters
     ----------
     unpacked : int or None
-        Bytes. None: the limit stays.
+        Limit in bytes. None: the default limit.
 
     Raises
     ------
     InputError
-        It is no whole number above 0.
+        The limit is not a whole number above 0.
     """
     if unpacked is None:
         yield
@@ -52,20 +52,20 @@ def allowing(unpacked: int | None) -> Iterator[None]:
 
 
 class Room:
-    """What a file may still hold when it is unpacked.
+    """Remaining size limit of a file's unpacked content.
 
     Parameters
     ----------
     path : Path
     size : int, optional
-        Bytes of the file. Default: as it is on the disk.
+        Size of the file in bytes. Default: size on disk.
     least : int, optional
-        Bytes that it may hold, whatever its size. Default: 64 MB.
+        Limit in bytes for small files. Default: 64 MB.
 
     Attributes
     ----------
     left : int
-        Bytes.
+        Remaining bytes.
     """
 
     def __init__(self, path: Path, size: int | None = None, least: int | None = None) -> None:
@@ -78,16 +78,16 @@ class Room:
         self.left = self._allowed
 
     def again(self) -> None:
-        """Begin anew: the file is read once more."""
+        """Start again, because the file is read once more."""
         self.left = self._allowed
 
     def take(self, size: int) -> None:
-        """Count bytes that are unpacked, before they are.
+        """Count bytes before they are unpacked.
 
         Raises
         ------
         InputError
-            The file holds more than it may.
+            The file exceeds its limit.
         """
         self.left -= size
         if self.left < 0:
@@ -103,24 +103,22 @@ class Room:
             )
 
     def gunzip(self, content: bytes) -> bytes:
-        """Return what gzip has packed, also in several members.
+        """Return the content of gzip data, also with several members.
 
         Raises
         ------
         InputError
-            The file holds more than it may.
+            The file exceeds its limit.
         EOFError
-            It is cut off.
+            The data are truncated.
         zlib.error
-            It is damaged.
+            The data are damaged.
         """
         parts = []
         place = 0
         while place < len(content):
             member = zlib.decompressobj(16 + zlib.MAX_WBITS)
-            length = (
-                _FIRST  # zlib copies what is behind a member: of a million members, all each time
-            )
+            length = _FIRST  # zlib copies all bytes behind each member: slow for a million
             while not member.eof:
                 piece = content[place : place + length]
                 if not piece:
@@ -134,14 +132,14 @@ class Room:
         return b"".join(parts)
 
     def bz2(self, content: bytes) -> bytes:
-        """Return what bzip2 has packed.
+        """Return the content of bzip2 data.
 
         Raises
         ------
         InputError
-            The file holds more than it may.
+            The file exceeds its limit.
         OSError, EOFError
-            It is damaged, or cut off.
+            The data are damaged or truncated.
         """
         import bz2
 

@@ -1,9 +1,9 @@
 """Frozen dataclasses that cost little until they are used.
 
-`dataclasses.dataclass` compiles up to seven functions for each class when its module is imported: .3 ms a class, a
-seventh of what `jointid identify` took. Here the methods are closures over the names of the fields, and `__init__`,
-which has to be quick where it is called often, and to show its arguments, is compiled then. All else is the same:
-`dataclasses.fields`, `replace` and `asdict`, comparison, hash, text and pickles.
+`dataclasses.dataclass` compiles up to seven functions for each class at import: 0.3 ms per class, a seventh of the
+time of `jointid identify`. Here the methods are closures over the field names. Only `__init__` is compiled, and only
+when it is called often or its signature is needed. All other behavior is the same: `dataclasses.fields`, `replace`
+and `asdict`, comparison, hash, text and pickles.
 """
 
 import dataclasses
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 else:
 
     def dataclass(cls: type | None = None, /, **options: bool) -> Any:
-        """Make a class a dataclass, as `dataclasses.dataclass` does with the same options.
+        """Make a class a dataclass, like `dataclasses.dataclass` with the same options.
 
         Parameters
         ----------
@@ -29,7 +29,7 @@ else:
         """
 
         def decorate(cls: type) -> type:
-            # What inherits fields, or can change, is too rare to deserve more code.
+            # Classes that inherit fields or are mutable are rare: use the standard decorator.
             plain = not options.get("frozen") or any(map(dataclasses.is_dataclass, cls.__bases__))
             return (dataclasses.dataclass if plain else _frozen)(cls, **options)
 
@@ -39,7 +39,7 @@ else:
 def _frozen(cls: type[Any], **options: bool) -> type[Any]:
     compares, shows = options.get("eq", True), options.get("repr", True)
     options |= {"init": False, "eq": False, "repr": False, "frozen": False}
-    cls.__doc__ = cls.__doc__ or cls.__name__  # or it is made from the signature, which takes long
+    cls.__doc__ = cls.__doc__ or cls.__name__  # else made from the signature: slow
     cls = dataclasses.dataclass(**options)(cls)
     said = cls.__dataclass_params__
     said.init, said.eq, said.repr, said.frozen = True, compares, shows, True
@@ -53,7 +53,7 @@ def _frozen(cls: type[Any], **options: bool) -> type[Any]:
     if options.get("slots"):
         methods |= _pickling(names)
     for name, method in methods.items():
-        # Python itself puts None as the hash of a class that says how it compares.
+        # Python sets the hash of a class with its own comparison to None.
         if vars(cls).get(name) is None:
             method.__name__, method.__qualname__ = name, f"{cls.__qualname__}.{name}"
             setattr(cls, name, method)
@@ -65,9 +65,9 @@ _OFTEN = 50
 
 
 class _Initialiser:
-    """A class's `__init__` until it is called often, or somebody asks what it takes.
+    """A class's `__init__` until it is called often, or its signature is needed.
 
-    To compile one takes as long as a hundred of these calls, and most classes have a few values in a process.
+    Compilation takes as long as a hundred of these calls, and most classes have few instances in a process.
     """
 
     def __init__(self, owner: type[Any]) -> None:
@@ -77,7 +77,7 @@ class _Initialiser:
 
     def __get__(self, value: object, cls: type[Any]) -> Any:
         self._calls += 1
-        # `inspect.signature` of Python 3.13 asks as if the class were one of its values.
+        # `inspect.signature` of Python 3.13 accesses this through the class instead of an instance.
         if value is None or isinstance(value, type) or self._calls > _OFTEN:
             return self._compiled().__get__(value, cls)
         return partial(self._initialise, value)
@@ -92,7 +92,7 @@ class _Initialiser:
             self._arguments = _Arguments(dataclasses.fields(self._owner))
         values = self._arguments.values(unnamed, named)
         if values is None:
-            self._compiled()(value, *unnamed, **named)  # says what is wrong
+            self._compiled()(value, *unnamed, **named)  # raises the usual error
             return
         for name, found in values:
             object.__setattr__(value, name, found)
@@ -101,7 +101,7 @@ class _Initialiser:
 
 
 class _Arguments:
-    """What an `__init__` takes."""
+    """Arguments of an `__init__`."""
 
     def __init__(self, fields: Sequence[dataclasses.Field[Any]]) -> None:
         self._fields = [(field.name, field.default, field.default_factory) for field in fields]
@@ -111,7 +111,7 @@ class _Arguments:
     def values(
         self, unnamed: Sequence[object], named: Mapping[str, object]
     ) -> Iterable[tuple[str, object]] | None:
-        """Each field's value; None if an argument is missing, or one too many."""
+        """Return each field's value; None if an argument is missing, or there are too many."""
         if not unnamed and named.keys() == self._names:
             return named.items()
         given = dict(zip(self._unnamed, unnamed, strict=False))
@@ -132,7 +132,7 @@ class _Arguments:
 
 
 class _Absent:
-    """An argument that is not there, where the field has a default of its own for each value."""
+    """Marker for a missing argument of a field with a default factory."""
 
     def __repr__(self) -> str:
         return "<factory>"
@@ -142,7 +142,7 @@ _ABSENT = _Absent()
 
 
 def _compiled(cls: type[Any]) -> Callable[..., None]:
-    """The `__init__` of a class, as `dataclasses` writes it."""
+    """Return the `__init__` of a class, same as from `dataclasses`."""
     known: dict[str, Any] = {"_set": object.__setattr__, "_absent": _ABSENT}
     before: list[str] = []
     behind: list[str] = []
@@ -180,7 +180,7 @@ def _compiled(cls: type[Any]) -> Callable[..., None]:
 
 
 def _guards(cls: type[Any], names: frozenset[str]) -> dict[str, Any]:
-    """What refuses to change a value."""
+    """Return the methods that refuse to change an instance."""
 
     def change(self: object, name: str, value: object) -> None:
         if type(self) is cls or name in names:
@@ -205,7 +205,7 @@ def _representation(names: Sequence[str]) -> Callable[[object], str]:
 
 
 def _comparison(fields: Sequence[dataclasses.Field[Any]]) -> dict[str, Any]:
-    """Equal where the fields are that are compared, and hashed by those that are hashed."""
+    """Return the methods for equality and hash, by the fields that take part."""
     compared = _all_of([field.name for field in fields if field.compare])
     hashed = _all_of(
         [field.name for field in fields if (field.compare if field.hash is None else field.hash)]
@@ -223,14 +223,14 @@ def _comparison(fields: Sequence[dataclasses.Field[Any]]) -> dict[str, Any]:
 
 
 def _all_of(names: Sequence[str]) -> Callable[[object], tuple[object, ...]]:
-    """A function that returns the attributes of these names as a tuple."""
+    """Return a function that returns the attributes of these names as a tuple."""
     if len(names) > 1:
         return operator.attrgetter(*names)
     return lambda value: tuple([getattr(value, name) for name in names])
 
 
 def _pickling(names: Sequence[str]) -> dict[str, Any]:
-    """The state of a class with slots: the values of its fields in order."""
+    """Return the pickle methods of a class with slots: the state is the field values in order."""
 
     def state(self: object) -> list[object]:
         return [getattr(self, name) for name in names]
