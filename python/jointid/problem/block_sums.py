@@ -1,4 +1,4 @@
-"""Least squares on all blocks of windows but one, for many shapes at a time, from sums of products."""
+"""Least squares without one block of windows in turn, for many shapes at a time, from sums of products."""
 
 from __future__ import annotations
 
@@ -12,23 +12,24 @@ from jointid.base.values import dataclass
 
 Array = NDArray[np.float64]
 
-# As a share of a column's square: a coefficient that the training blocks do not show stays near 0.
+# Share of a column's square: a coefficient that the training blocks do not determine stays near 0.
 _RIDGE = 1e-13
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fitted:
-    """Fits of one model at several shapes, without each block in turn.
+    """Fits of one model at several shapes, with each block left out in turn.
 
     Attributes
     ----------
     training, missed : ndarray, shape (shapes, blocks)
-        Sums of squared residuals of the blocks that were fitted, and of the held-out one.
+        Sums of squared residuals of the fitted blocks, and of the held-out block.
     coefficients : ndarray, shape (shapes, blocks, p)
+        Coefficients without each block.
     whole : ndarray, shape (shapes, p)
         Coefficients fitted to all blocks.
     penalty : ndarray, shape (shapes,)
-        Sum of squared residuals of that fit.
+        Sum of squared residuals of the fit to all blocks.
     """
 
     training: Array
@@ -54,18 +55,18 @@ class BlockSums:
         """Return the sums of products of a matrix's columns, shape (windows, columns), over blocks of its rows."""
         products = []
         for rows in blocks:
-            # Not matrix.T @ matrix: BLAS changes the last bits with its number of threads.
+            # Not matrix.T @ matrix: the last bits from BLAS depend on its number of threads.
             triangle = _core.triangle(np.asfortranarray(matrix[rows]), threads=threads)
             products.append(np.einsum("ki,kj->ij", triangle, triangle))
         return cls(products=np.array(products))
 
     def fitted(self, combined: Array) -> Fitted:
-        """Fit a target by regressors without each block, and predict that block.
+        """Fit a target by regressors without each block, and predict the left-out block.
 
         Parameters
         ----------
         combined : ndarray, shape (shapes, columns, p + 1)
-            How the p regressors and, last, the target are made of the columns.
+            Linear combinations of the columns that give the p regressors and, last, the target.
         """
         turned = np.swapaxes(combined, 1, 2)[:, None]
         sums = turned @ self.products @ combined[:, None]
@@ -82,7 +83,7 @@ class BlockSums:
 
 
 def _solved(sums: Array) -> tuple[Array, Array]:
-    """Return coefficients and misfit of the last column by the others, for a stack of sums of products."""
+    """Return coefficients and squared residual of the last column by the others, for a stack of sums of products."""
     count = sums.shape[-1] - 1
     square = sums[..., :count, :count]
     sizes = np.sqrt(np.maximum(np.einsum("...ii->...i", square), 0.0))
@@ -94,7 +95,7 @@ def _solved(sums: Array) -> tuple[Array, Array]:
 
 
 def _misfit(sums: Array, coefficients: Array) -> Array:
-    """Return the sum of squared residuals at given coefficients; rounding does not take it below 0."""
+    """Return the sum of squared residuals at these coefficients; at least 0 despite rounding."""
     ones = np.ones((*coefficients.shape[:-1], 1))
     weights = np.concatenate([-coefficients, ones], axis=-1)
     return np.asarray(np.maximum(np.einsum("...i,...ij,...j->...", weights, sums, weights), 0.0))

@@ -1,8 +1,8 @@
-"""A constant torque, which no motion tells from the difference between two directions' Coulomb frictions.
+"""A constant torque, which no motion can separate from different Coulomb frictions in the two directions.
 
-While the joint moves, an offset is what Coulomb friction adds in one direction and takes in the other:
-``coulomb_positive + offset`` and ``coulomb_negative - offset`` are all that a recording shows. Along that
-direction of the parameters nothing is determined, whatever few samples at rest seem to say.
+While the joint moves, an offset has the same effect as more Coulomb friction in one direction and less in the other.
+A recording determines only ``coulomb_positive + offset`` and ``coulomb_negative - offset``. The third direction of
+these parameters is undetermined, even if a few samples at rest seem to determine it.
 """
 
 from __future__ import annotations
@@ -23,29 +23,29 @@ _ROLES = _SIGNS | _OFFSETS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Undivided:
-    """Parameters that change together without any effect.
+    """Parameters that can change together without any effect.
 
     Attributes
     ----------
     change : mapping of str to float
-        The direction: 1 or -1 by parameter, an offset first.
+        Direction of the change: parameter → 1 or -1, an offset first.
     """
 
     change: Mapping[str, float]
 
     @property
     def offset(self) -> str:
-        """The first offset: with it fixed, the others are determined."""
+        """First offset; if it is fixed, the others are determined."""
         return next(iter(self.change))
 
 
 def undivided(names: Collection[str]) -> tuple[Undivided, ...]:
-    """Return the directions along which free parameters of these names are not determined.
+    """Return the undetermined directions of free parameters with these names.
 
     Parameters
     ----------
     names : collection of str
-        The free parameters; "torque_offset[1]" is one recording's own.
+        The free parameters; "torque_offset[1]" belongs to one recording.
     """
     runs = sorted({name.partition("[")[2] for name in names if name.partition("[")[0] in _ROLES})
     groups: list[dict[str, float]] = []
@@ -56,10 +56,10 @@ def undivided(names: Collection[str]) -> tuple[Undivided, ...]:
             if name in names:
                 group[name] = sign
         if len(group) < len(_SIGNS) + 1:
-            return ()  # one of them is known in one recording, and with it the rest
+            return ()  # one is known in one recording, which determines the others
         groups.append(group)
     joined: list[dict[str, float]] = []
-    for group in groups:  # recordings that share a parameter change together
+    for group in groups:  # recordings with a shared parameter change together
         apart = []
         for other in joined:
             if group.keys() & other.keys():
@@ -79,7 +79,7 @@ def undivided(names: Collection[str]) -> tuple[Undivided, ...]:
 
 
 def balanced(names: Sequence[str], lower: Array, upper: Array, values: Array) -> Array:
-    """Return equivalent values with equal Coulomb frictions, as far as the bounds allow.
+    """Return equivalent values with equal Coulomb frictions, or as equal as the bounds allow.
 
     All such values fit equally well; this choice is a convention.
     """
@@ -105,7 +105,7 @@ def balanced(names: Sequence[str], lower: Array, upper: Array, values: Array) ->
 def with_fixed_offset(
     names: Sequence[str], lower: Array, upper: Array, values: Array
 ) -> tuple[Array, Array]:
-    """Return bounds that hold an offset of each undivided group, so that a refit cannot wander."""
+    """Return bounds that fix one offset of each undetermined group, so that a refit cannot drift."""
     low, high = lower.copy(), upper.copy()
     free = [name for name, a, b in zip(names, lower, upper, strict=True) if a < b]
     for each in undivided(free):

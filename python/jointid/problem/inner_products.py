@@ -1,7 +1,7 @@
 """Inner products of window series without BLAS.
 
-BLAS runs long vectors on threads of its own. They keep spinning for tens of milliseconds and slow down the core's
-threads, and their number changes the last bits of a result.
+BLAS uses its own threads for long vectors. They spin for tens of milliseconds and slow down the core's threads.
+Their number also changes the last bits of a result.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""A low-pass filter that delays nothing: a moving average, three times."""
+"""A low-pass filter without delay: three moving averages."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ PASSES = 3
 
 
 def low_passed(values: Array, width: int) -> Array:
-    """Return values averaged over so many samples, three times; the ends hold on beyond themselves.
+    """Return values after three moving averages; the end values continue beyond the ends.
 
     Parameters
     ----------
     values : ndarray, shape (..., samples)
     width : int
-        Made odd, so that nothing is late. The filter reaches `reach(width)` samples to each side.
+        Samples per average; made odd, so that there is no delay. The filter uses `reach(width)` samples per side.
     """
     half = max(0, int(width) // 2)
     if not half:
         return values
     for _ in range(PASSES):
         ends = [np.repeat(values[..., [place]], half, axis=-1) for place in (0, -1)]
-        middle = values.mean(axis=-1, keepdims=True)  # sums of what is left lose no digits
+        middle = values.mean(axis=-1, keepdims=True)  # without the mean, sums lose no digits
         padded = np.concatenate([ends[0], values, ends[1]], axis=-1) - middle
         total = np.cumsum(padded, axis=-1)
         total = np.concatenate([np.zeros_like(total[..., :1]), total], axis=-1)
@@ -34,5 +34,5 @@ def low_passed(values: Array, width: int) -> Array:
 
 
 def reach(width: int) -> int:
-    """How many samples the filter looks to each side."""
+    """Return the number of samples that the filter uses on each side."""
     return PASSES * max(0, int(width) // 2)

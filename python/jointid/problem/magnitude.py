@@ -1,4 +1,4 @@
-"""Whether a torque is recorded without its sign: the magnitude of what a model's columns make, and not its value."""
+"""Detection of a torque that is recorded without its sign: it fits the magnitude of a model's torque, not its value."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-CLEAR = 0.3  # of the torque: what may be left
-BETTER = 0.25  # of a squared residual: what another reading of the signals has to leave
-_NEGATIVE = 0.02  # of the largest torque: noise about 0
-_TURNS = 10  # of signs and values
+CLEAR = 0.3  # largest residual over the torque
+BETTER = 0.25  # largest squared residual of another interpretation, over that of the present one
+_NEGATIVE = 0.02  # over the largest torque: noise around 0
+_TURNS = 10  # alternations between signs and values
 
 
 def is_one_sided(lowest: float, highest: float) -> bool:
-    """Whether a torque between two values is never negative, noise apart."""
+    """Whether a torque in this range is never negative, except for noise."""
     return max(-lowest, 0.0) < _NEGATIVE * highest
 
 
 def without(columns: Array, values: Array) -> Array:
-    """Return values less what columns explain."""
+    """Return values minus the part that the columns explain."""
     lengths = np.linalg.norm(columns, axis=0)
     basis, sizes, _ = np.linalg.svd(
         columns / np.where(lengths > 0.0, lengths, 1.0), full_matrices=False
@@ -31,14 +31,14 @@ def without(columns: Array, values: Array) -> Array:
 
 
 def is_magnitude(columns: Array, target: Array, starts: Iterable[Array]) -> bool:
-    """Whether the rows are the magnitude of what columns make.
+    """Whether the target is the magnitude of a linear combination of the columns.
 
     Parameters
     ----------
     columns : ndarray, shape (n, p)
     target : ndarray, shape (n,)
     starts : iterable of ndarray, each of shape (n,)
-        Signs of the torque to begin with, as a motion has them.
+        Initial signs of the torque, e.g. of the motion.
     """
     plain = np.sum(without(columns, target) ** 2)
     best = np.inf

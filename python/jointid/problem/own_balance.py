@@ -1,4 +1,4 @@
-"""What own terms add to the balances that delays are estimated from."""
+"""Own terms in the balances for the estimation of delays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_CONSTANT = 1e-6  # of its size: an inertia that varies by less is the joint's own
+_CONSTANT = 1e-6  # relative variation: an inertia that varies less is part of the joint's inertia
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,11 +22,11 @@ class OwnSignal:
     Attributes
     ----------
     series : ndarray
-        Values of an inertia without their mean, which belongs to the joint's inertia.
+        Integral of the term. For an inertia without its mean, which belongs to the joint's inertia.
     friction : bool
         Whether the term is friction, of another joint or of this one.
     taken : bool
-        Whether it is a known torque, which has been taken away from the drive's.
+        Whether the term is a known torque, which is already subtracted from the drive's torque.
     """
 
     series: Array
@@ -35,7 +35,7 @@ class OwnSignal:
 
 
 def own_signals(own: OwnTerms, recording: Recording) -> tuple[OwnSignal, ...]:
-    """Return the own terms' signals of a recording; none without own terms."""
+    """Return the signals of a recording's own terms; empty without own terms."""
     signals = []
     for each in own.each:
         run = recording

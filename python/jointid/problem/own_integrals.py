@@ -1,7 +1,7 @@
-"""Series of own terms: what a term of a named signal integrates to, from the first sample to each.
+"""Series of own terms: the integral of each term from the first sample to every sample.
 
-A window's integral is then a difference of two samples of the series, however many samples lie between. Signals are
-linear between samples, as a measured torque is; the velocity is, too.
+A window's integral is then the difference of two samples of the series. Signals are linear between samples, like a
+measured torque and the velocity.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def own_series(own: OwnTerms, recording: Recording) -> list[tuple[str, Array]]:
     Parameters
     ----------
     own : OwnTerms
-        With centres, as `centred` gives them.
+        Own terms with centres, from `centred`.
     recording : Recording
 
     Returns
@@ -59,7 +59,7 @@ def signal_of(own: OwnTerm, recording: Recording) -> Array:
     Raises
     ------
     InputError
-        The recording does not have it.
+        The recording does not have the signal.
     """
     if own.signal == POSITION:
         return recording.position
@@ -75,7 +75,7 @@ def signal_of(own: OwnTerm, recording: Recording) -> Array:
 
 
 def known_torque(own: OwnTerms, recording: Recording) -> Array | None:
-    """Return the sum of the signals that are known torques; None without one."""
+    """Return the sum of the known torques; None without one."""
     known = [
         signal_of(each, recording) for each in own.each if each.kind == "known" and not each.rate
     ]
@@ -83,20 +83,20 @@ def known_torque(own: OwnTerms, recording: Recording) -> Array | None:
 
 
 def rate_of(recording: Recording, values: Array) -> Array:
-    """Return the rate of change of a signal, as a derived velocity is that of the position."""
+    """Return the rate of change of a signal, computed like a derived velocity."""
     if float(np.ptp(values)) <= _ROUNDING * float(np.abs(values).max()):
-        return np.zeros(len(values))  # of a constant, only rounding would be left
+        return np.zeros(len(values))  # a constant would leave only rounding errors
     period = recording.sample_period
     return np.asarray(derived_velocity(recording.time, values, recording.gaps, period).velocity)
 
 
 def centred(own: OwnTerms, recordings: Sequence[Recording]) -> OwnTerms:
-    """Return own terms whose functions of an angle have a centre: the middle of the range, to six digits.
+    """Return own terms with a centre for each function of an angle: the middle of the range, to six digits.
 
     Raises
     ------
     InputError
-        A recording lacks a signal, or the joint slides.
+        A recording lacks a signal, or the joint is prismatic.
     """
     if not own.each:
         return own
@@ -119,7 +119,7 @@ def centred(own: OwnTerms, recordings: Sequence[Recording]) -> OwnTerms:
 
 
 def unit_of(key: str, own: OwnTerms, recording: Recording) -> str | None:
-    """Return the unit of an own term's parameter where its signal's is known; None: as the core has it."""
+    """Return the unit of an own term's parameter if the signal's unit is known; None: the core's unit."""
     each = next((each for each in own.each if key in each.keys), None)
     if each is None:
         return None
@@ -142,7 +142,7 @@ def _per_second(unit: str) -> str:
 
 
 def _ratio(above: str, unit: str) -> str:
-    """The quotient of two units: N·m by rad/s is N·m·s/rad."""
+    """Return the quotient of two units: N·m over rad/s is N·m·s/rad."""
     top, _, below = unit.partition("/")
     if below == "s" and above.endswith("·s"):
         return f"{above}²/{top}"
@@ -176,14 +176,14 @@ def _middle(signal: Array) -> Array:
 
 
 def _mean_sign(signal: Array) -> Array:
-    """Mean sign over each interval of a signal that is linear between samples."""
+    """Return the mean sign over each interval of a signal that is linear between samples."""
     sign = np.sign(signal)
     size = np.abs(signal)
     total = size[:-1] + size[1:]
     crossing = sign[:-1] * sign[1:] < 0.0
     with np.errstate(invalid="ignore", divide="ignore"):
         part = sign[:-1] * (size[:-1] - size[1:]) / total
-    # A signal that is exactly 0 at one end of an interval has the other end's sign in all of it.
+    # If a signal is exactly 0 at one end of an interval, the whole interval has the sign of the other end.
     return np.asarray(np.where(crossing, part, np.sign(sign[:-1] + sign[1:])))
 
 
@@ -192,7 +192,7 @@ def _integral(mean: Array, recording: Recording) -> Array:
 
 
 def _momentum(inertia: Array, recording: Recording, share: float) -> Array:
-    """Integral of J a + share * (dJ/dt) v, without the acceleration."""
+    """Return the integral of J a + share * (dJ/dt) v, computed without the acceleration."""
     v = recording.velocity
     return _summed(_middle(inertia) * np.diff(v) + share * np.diff(inertia) * _middle(v))
 

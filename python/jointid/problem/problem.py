@@ -39,9 +39,9 @@ class Problem:
     joint : Joint or None
     choice : TermChoice
     settings : Settings
-        Settings of the call, completed by the automatic choices.
+        Settings of the call, with the automatic choices filled in.
     threads : int
-        0 (default): all.
+        Number of threads. 0 (default): all.
     """
 
     recordings: tuple[Recording, ...]
@@ -56,16 +56,16 @@ class Problem:
 
     @property
     def shift(self) -> Mapping[str, float]:
-        """Delays that were taken away from the signals [s]."""
+        """Delays that were removed from the signals [s]."""
         return self.settings.shift or {}
 
     @property
     def min_speed(self) -> float:
-        """What is slower is left out [rad/s or m/s]."""
+        """Speed below which motion is left out [rad/s or m/s]."""
         return self.settings.min_speed or 0.0
 
     def penalty(self, windows: Windows) -> _core.Penalty:
-        """Return the penalty over these windows: an int is their number, a float their duration [s].
+        """Return the penalty over these windows; an int is their number, a float their duration [s].
 
         Raises
         ------
@@ -75,13 +75,13 @@ class Problem:
         return self._cut(_core.Penalty, windows)
 
     def parts(self, windows: Windows, residual: str | None = None) -> _core.PenaltyParts:
-        """Return the same penalty, summed part by part: for a caller that evaluates it once or twice.
+        """Return the same penalty, summed part by part, for a caller that evaluates it only once or twice.
 
         Parameters
         ----------
         windows : int, float, str, WindowOptions or None
         residual : str, optional
-            Default: that of the problem.
+            Residual to use. Default: that of the problem.
 
         Raises
         ------
@@ -91,15 +91,15 @@ class Problem:
         return self._cut(_core.PenaltyParts, windows, residual)
 
     def ripple(self, theta: Array, halves: int, period: float) -> tuple[int, float, Array]:
-        """Hold the torque's residual against multiples of half the motor's angle, over windows of a period.
+        """Compare the torque's residual with multiples of half the motor's angle, over windows of one period.
 
         Parameters
         ----------
         theta : ndarray, shape (p,)
         halves : int
-            How many multiples.
+            Number of multiples.
         period : float
-            [s]
+            Duration of the windows [s].
 
         Returns
         -------
@@ -107,14 +107,14 @@ class Problem:
         power : float
             Sum of squared mean residuals.
         sums : ndarray, shape (halves,)
-            Magnitude of the residuals' sum over each multiple.
+            Magnitude of the residuals' sum for each multiple.
 
         Raises
         ------
         InputError
             Windows that cannot be cut.
         """
-        # Without a first stage instruments are the torque's residual: what they need is not summed.
+        # Without a first stage, "instruments" equals the torque's residual and needs no further sums.
         own = self.choice.residual
         made = functools.partial(_core.ripple, theta=theta, halves=halves)
         return self._cut(made, period, "torque" if own == "instruments" else own)
@@ -123,7 +123,7 @@ class Problem:
         self, made: Callable[..., Made], windows: Windows, residual: str | None = None
     ) -> Made:
         options = self.window_options(windows)
-        arguments = self.in_arguments  # its errors are values already
+        arguments = self.in_arguments  # its errors are already raised here
         try:
             return made(
                 windows=options,
@@ -142,12 +142,12 @@ class Problem:
         )
 
     def window_options(self, windows: Windows) -> _core.WindowOptions:
-        """Return the argument `windows` of a call as options for these recordings.
+        """Convert the argument `windows` of a call to options for these recordings.
 
         Raises
         ------
         InputError
-            Neither a positive number nor "cumulative".
+            The argument is neither a positive number nor "cumulative".
         """
         return window_options(windows, self.recordings)
 
@@ -157,7 +157,7 @@ class Problem:
         theta: Array,
         known: tuple[Array, Array] | None = None,
     ) -> WindowTable:
-        """Return the penalty's windows at a parameter vector; separate windows even if the penalty accumulates.
+        """Return the penalty's windows at a parameter vector; they are separate even if the penalty accumulates.
 
         Parameters
         ----------
@@ -174,7 +174,7 @@ class Problem:
         residual, columns = known
         names = penalty.names[: penalty.coefficients]
         bounds = penalty.windows
-        run = np.array(penalty.recording_of)  # its own: a view would keep what it was made in
+        run = np.array(penalty.recording_of)  # a copy, to free the penalty
         start = np.empty(len(run))
         stop = np.empty(len(run))
         travel = np.empty(len(run))
@@ -189,7 +189,7 @@ class Problem:
             torque_residual = residual * theta[names.index("sensor_gain")]
         elif (
             self.choice.residual == "instruments"
-        ):  # the gain is known: in terms of the reading, too
+        ):  # the gain is known: the torque is also known in terms of the reading
             measured = columns[:, names.index("sensor_gain")].copy()
             fitted = measured + residual / theta[names.index("sensor_gain")]
             torque_residual = residual
@@ -199,9 +199,9 @@ class Problem:
             torque_residual = residual
         friction = torque_residual.copy()
         for index, term in enumerate(penalty.terms):
-            if term.friction and not term.needs_load:  # the friction map is drawn without load
+            if term.friction and not term.needs_load:  # the map is without load
                 friction += theta[index] * columns[:, index]
-        duration = penalty.usable_duration.copy()  # a view would keep the penalty in memory
+        duration = penalty.usable_duration.copy()  # a copy: a view would keep the penalty in memory
         return WindowTable(
             recording=run,
             start=start,
@@ -215,12 +215,12 @@ class Problem:
 
     @functools.cached_property
     def in_core(self) -> list[_core.Recording]:
-        """The recordings for the core; they share the arrays, and each computes its mask once."""
+        """Return the recordings for the core; they share the arrays, and each computes its mask once."""
         return [self._in_core(number) for number in range(len(self.recordings))]
 
     @property
     def in_arguments(self) -> dict[str, Any]:
-        """The problem as arguments of functions of the core."""
+        """Return the problem as arguments of the core's functions."""
         return {
             "recordings": self.in_core,
             "terms": list(self.choice.terms),
@@ -232,16 +232,16 @@ class Problem:
 
     @property
     def masked(self) -> tuple[list[_core.Recording], bool]:
-        """The recordings for the core, and whether it leaves out where they stand still."""
+        """Return the recordings for the core, and whether standstill is left out."""
         return self.in_core, self.settings.mask_standstill
 
     def usable(self, number: int) -> NDArray[np.uint8]:
-        """Whether each interval between samples of a recording is used."""
+        """Return for each interval between samples of a recording whether it is used."""
         recordings, standstill = self.masked
         return np.asarray(_core.usable_intervals(recordings[number], standstill))
 
     def hold(self, number: int) -> str:
-        """How the torque of a recording varies between samples: "zoh" or "linear"."""
+        """Return the interpolation of a recording's torque between samples: "zoh" or "linear"."""
         hold: str | None = self.settings.torque_hold
         if hold is None:
             hold = self.recordings[number].torque_hold
@@ -251,22 +251,22 @@ class Problem:
 
     @property
     def states_hold(self) -> bool:
-        """Whether anybody says how the torque varies between samples."""
+        """Return whether the call, a recording or the joint states the torque's interpolation."""
         of_joint = self.joint is not None and self.joint.torque_hold is not None
         of_runs = any(run.torque_hold is not None for run in self.recordings)
         return self.settings.torque_hold is not None or of_joint or of_runs
 
     def output_torque(self, number: int) -> Array:
-        """The drive's torque of a recording at the output [N·m or N]."""
+        """Return the drive's torque of a recording at the output [N·m or N]."""
         return output_torque(self.recordings[number], self.joint)
 
     def unexplained_torque(self, number: int) -> Array:
-        """The output torque less the known torques of own terms: what the joint by itself needs [N·m or N]."""
+        """Return the output torque minus the known torques of own terms [N·m or N]."""
         torque = self.output_torque(number)
         known = known_torque(self.choice.model.resolved.terms, self.recordings[number])
         if known is None:
             return torque
-        if self.hold(number) == "zoh":  # the command is held; what is known changes until the next
+        if self.hold(number) == "zoh":  # known torques change while the command is held
             known = np.append(0.5 * (known[1:] + known[:-1]), known[-1:])
         return np.asarray(torque - known)
 

@@ -16,34 +16,34 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-# Largest share of the intervals that may be gaps: above it the median interval is not the sample period.
+# Largest share of gaps among the intervals: above it, the median interval is not the sample period.
 _MOST_GAPS = 0.1
-# Of so many gaps, the largest share of the time that may be in them.
+# Largest share of the time within gaps, if there are this number of gaps.
 _SOME_GAPS, _MOST_MISSING = 0.02, 0.5
 
-# Sample period [s] of stamps that count something shorter than seconds; nothing is identified from such samples.
+# Sample period [s] above which stamps probably count a shorter unit than seconds; such samples are refused.
 _SLOWEST = 50.0
 
-# Largest magnitudes of signals: their squares, and sums of these, are floats.
+# Largest magnitudes of signals: squares, and sums of squares, do not overflow.
 _SMALLEST, _LARGEST = 1e-100, 1e100
 
-_FEW = 0.01  # share of samples that are single faults, not a wrong scale
+_FEW = 0.01  # share of samples: fewer are single faults, more are a wrong scale
 
 _RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
 
 
 def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
-    """Return one recording or several as a checked tuple.
+    """Return one or several recordings as a checked tuple.
 
     Raises
     ------
     InputError
-        No recording, something else, one of them twice, too many gaps, a signal whose square no float can hold, or
-        revolute and prismatic recordings mixed.
+        There is no recording, an argument is not a recording, a recording is given twice, there are too many gaps,
+        the square of a signal overflows, or revolute and prismatic recordings are mixed.
     """
     if isinstance(recordings, Recording):
         recordings = (recordings,)
-    if isinstance(recordings, Mapping):  # of several joints
+    if isinstance(recordings, Mapping):  # a recording of several joints
         raise InputError(
             "a Recording of one joint is expected, or several of the same joint",
             argument="recordings",
@@ -62,7 +62,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
     runs = tuple(recordings)
     if not runs:
         raise InputError("at least one recording is expected", argument="recordings", value=[])
-    known: dict[object, list[int]] = {}  # recordings by the ranges of their signals
+    known: dict[object, list[int]] = {}  # ranges of the signals → recordings
     for number, run in enumerate(runs):
         place = f"recording {number}"
         if not isinstance(run, Recording):
@@ -117,7 +117,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
 
 
 def _comes_in_bursts(run: Recording) -> bool:
-    """Whether so many intervals are gaps, or so many seconds are in them, that the others are no sample period."""
+    """Whether gaps are so frequent or so long that the other intervals are not the sample period."""
     count = len(run.gaps)
     if count <= _SOME_GAPS * len(run):
         return False
@@ -126,7 +126,7 @@ def _comes_in_bursts(run: Recording) -> bool:
 
 
 def recording_names(recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """Return a name for each recording that no other one has: its own, else its number."""
+    """Return a unique name for each recording: its own name, or its number."""
     counted = Counter(each.name for each in recordings)
     return tuple(
         each.name if each.name and counted[each.name] == 1 else f"recording {number}"
@@ -135,7 +135,7 @@ def recording_names(recordings: Sequence[Recording]) -> tuple[str, ...]:
 
 
 def _same(one: Recording, other: Recording) -> bool:
-    """Whether two recordings of the same signals have the same values, whatever they are called."""
+    """Whether two recordings of the same signals have the same values; names are ignored."""
     if one is other:
         return True
     if one.extra.keys() != other.extra.keys() or one.torque_hold != other.torque_hold:
@@ -173,7 +173,7 @@ def _check_magnitudes(run: Recording, place: str) -> None:
 
 
 def _conversions(recording: Recording, signal: str) -> tuple[Action, ...]:
-    """Return the calls that give the torque at the output without a joint."""
+    """Return the calls that load the torque at the output without a joint."""
     if signal == "motor_torque":
         text = "motor angle per joint angle"
         return (Action("call", {"gear_ratio": ...}, text, "load"),)
@@ -184,7 +184,7 @@ def _conversions(recording: Recording, signal: str) -> tuple[Action, ...]:
 
 
 def raise_if_slowly_sampled(recordings: Sequence[Recording]) -> None:
-    """Raise `InputError` for stamps that hardly are seconds: what else is wrong with them follows from it."""
+    """Raise `InputError` for stamps that are probably not seconds, because other errors would follow from this."""
     for number, run in enumerate(recordings):
         if slow_stamps(run.sample_period) is not None:
             raise _of_stamps(run, number)

@@ -1,7 +1,7 @@
-"""The settings of a problem, declared once: what `identify` takes besides recordings, joint and search.
+"""The settings of a problem, declared once: the options of `identify` except recordings, joint and search.
 
-A new option is an entry of a `TypedDict` below, of the narrowest that all its functions take, and a field of
-`Settings`. Signatures, reference, command line and app follow.
+A new option is an entry of a `TypedDict` below and a field of `Settings`. Choose the narrowest `TypedDict` that all
+functions with this option take. Signatures, reference, command line and app follow from it.
 """
 
 from collections.abc import Callable, Collection, Mapping
@@ -27,7 +27,7 @@ _FASTEST = 1e6  # [rad/s or m/s]
 
 
 def _or_none(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
-    """The check of an option that may be left out."""
+    """Return the check of an option that may be None."""
     return lambda name, value: None if value is None else check(name, value)
 
 
@@ -59,13 +59,13 @@ def _speed(name: str, value: Any) -> float:
 
 
 class MaskOptions(TypedDict, total=False):
-    """What joints and robots share."""
+    """Options of joints and robots."""
 
     mask_standstill: Annotated[
         bool,
         Option(
             kind="bool",
-            help="Whether to leave out the parts in which the joint sticks or stands still, where friction is "
+            help="Whether to leave out the parts in which the joint sticks or stands still: there, friction is "
             "set-valued and the model does not apply. Default True.",
             default=True,
             checked=_flag,
@@ -74,14 +74,14 @@ class MaskOptions(TypedDict, total=False):
 
 
 class SignalOptions(TypedDict, total=False):
-    """What is known of the parameters, and how the signals are read."""
+    """Prior knowledge of the parameters, and interpretation of the signals."""
 
     parameters: Annotated[
         Parameters | None,
         Option(
             kind="mapping, optional",
-            help='Changes by name: a number fixes the parameter; {"value", "min", "max", "vary"} or a `Parameter` '
-            "changes those fields. Values in SI units.",
+            help='Changes by parameter name: a number fixes the parameter; {"value", "min", "max", "vary"} or a '
+            "`Parameter` changes these fields. Values are in SI units.",
             checked=_or_none(_mapping),
             flag="--set",
             phrase="fix a parameter (SI)",
@@ -93,11 +93,11 @@ class SignalOptions(TypedDict, total=False):
         Residual | None,
         Option(
             kind="str, optional",
-            help='"instruments" (default with a sensor): the gain from the part of the reading that gravity and '
-            "inertia of a rigid link explain, which neither the reading's noise nor friction that the model lacks "
-            'biases. "sensor" (the thesis) compares the reading with what the torque leaves for it, "torque" (default '
-            'without a sensor) the torque with the reading. Where instruments are weak the default is "sensor", and '
-            '`settings` says why. On line instruments are refused, and the default is "sensor".',
+            help='"instruments" (default with a sensor): the gain follows from the part of the reading that gravity '
+            "and inertia of a rigid link explain; noise of the reading and friction outside the model do not bias it. "
+            '"sensor" (the thesis) compares the reading with the remaining torque; "torque" (default without a sensor) '
+            'compares the torque with the reading. If instruments are weak, the default is "sensor", and `settings` '
+            'states the reason. Online, instruments are refused, and the default is "sensor".',
             checked=_one_of(RESIDUALS),
             flag="--residual",
             phrase="residual to minimise: instruments, sensor or torque",
@@ -107,8 +107,8 @@ class SignalOptions(TypedDict, total=False):
         TorqueHold | None,
         Option(
             kind="str, optional",
-            help='"zoh" for a torque command held between samples, "linear" for a measured torque. Default: the '
-            "recording's, else the joint's, else \"linear\".",
+            help='"zoh" for a torque command held between samples, "linear" for a measured torque. Default: from the '
+            'recording, then from the joint, then "linear".',
             checked=_one_of(get_args(TorqueHold)),
             flag="--torque-hold",
             phrase="torque between samples: zoh (held command) or linear (measured)",
@@ -117,19 +117,19 @@ class SignalOptions(TypedDict, total=False):
 
 
 class BalanceOptions(SignalOptions, MaskOptions, total=False):
-    """What poses the balance of a joint, on line, too."""
+    """Options of a joint's balance, also online."""
 
 
 class FitOptions(BalanceOptions, total=False):
-    """What all fits of a comparison share."""
+    """Options that all fits of a comparison share."""
 
     windows: Annotated[
         Windows,
         Option(
             kind='int, float, "cumulative" or WindowOptions, optional',
-            help="An int is the approximate number of windows (gaps and several recordings change it), a float their "
-            'duration [s]; "cumulative" compares the running integral at each sample, as the thesis\'s MATLAB program '
-            "does. Default: the shortest windows that the noise of the velocity allows.",
+            help="An int is the approximate number of windows (gaps and several recordings change it); a float is "
+            'their duration [s]; "cumulative" compares the running integral at each sample, like the thesis\'s '
+            "MATLAB program. Default: the shortest windows that the noise of the velocity allows.",
             checked=lambda _, value: checked_windows(value),
             flag="--windows",
             phrase="number of windows, duration (0.05s) or cumulative; default: as short as the noise allows",
@@ -140,10 +140,10 @@ class FitOptions(BalanceOptions, total=False):
         Mapping[str, float] | None,
         Option(
             kind="mapping of str to float, optional",
-            help='Delays of "torque", "sensor" and "velocity" against the position [s], to be taken away; positive: '
-            "the signal is late. An empty mapping shifts nothing. Default: the delays that are certain, but for a "
-            "torque that is early by more than a sample, as it seems beside a late or coarse position; the "
-            "estimate's `delays` and its report tell them.",
+            help='Delays of "torque", "sensor" and "velocity" against the position [s], to be removed; positive: '
+            "the signal is late. An empty mapping removes none. Default: all certain delays, except for a torque "
+            "that is early by more than a sample, because a late or coarse position may cause this. The estimate's "
+            "`delays` and its report list them.",
             checked=_or_none(lambda _, value: checked_shift(value)),
             flag="--shift",
             phrase="delay of torque, sensor or velocity to remove, positive: late; torque=0 removes none (default: "
@@ -155,16 +155,16 @@ class FitOptions(BalanceOptions, total=False):
 
 
 class ModelOptions(TypedDict, total=False):
-    """Which model is identified."""
+    """Options of the model."""
 
     model: Annotated[
         Model | ModelName | Mapping[str, Any] | None,
         Option(
             kind="Model, str or mapping, optional",
-            help='Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; each stated field overrides that of the '
-            "joint's model. Default: the joint's. Where neither names one, or the name is \"auto\", the model is "
-            'chosen by held-out prediction: "coulomb_viscous" or "stribeck", with gravity free or none where that is '
-            "neither stated nor known; `Estimate.selection` has the scores. A sweep chooses none: it takes "
+            help='Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; each stated field overrides the field of '
+            "the joint's model. Default: the joint's model. If neither has a name, or the name is \"auto\", held-out "
+            'prediction chooses the model: "coulomb_viscous" or "stribeck", and gravity free or none if it is neither '
+            "stated nor known; `Estimate.selection` has the scores. A sweep makes no choice: it uses "
             '"coulomb_viscous".',
             checked=lambda _, value: Model.of(value),
         ),
@@ -173,8 +173,8 @@ class ModelOptions(TypedDict, total=False):
         Mapping[str, str] | None,
         Option(
             kind="mapping of str to str, optional",
-            help="Own terms: extra signals of the recordings and how they enter, e.g. "
-            '``{"q6_rate": "viscous+coulomb", "tau_model": "known"}``; the same as the field `terms` of the model. '
+            help="Own terms: extra signals of the recordings and their kind of term, e.g. "
+            '``{"q6_rate": "viscous+coulomb", "tau_model": "known"}``; same as the field `terms` of the model. '
             "Default: the model's.",
             flag="--term",
             phrase="own term: a column (or --extra) and its kind: viscous, coulomb, known, scaled, inertia, ...; "
@@ -186,15 +186,15 @@ class ModelOptions(TypedDict, total=False):
 
 
 class SpeedOptions(TypedDict, total=False):
-    """From which part of the motion."""
+    """Options of the part of the motion that is used."""
 
     min_speed: Annotated[
         float | None,
         Option(
             kind="float, optional",
-            help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless "
-            "slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose friction "
-            'depends on slow motion, such as "stribeck". The estimate\'s `slow_motion` tells it.',
+            help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: automatic: "
+            "0, except if slow motion contradicts the friction at faster motion (creep); always 0 for models with "
+            'friction that depends on slow motion, such as "stribeck". See the estimate\'s `slow_motion`.',
             checked=_or_none(_speed),
             flag="--min-speed",
             phrase="leave out motion slower than this, rad/s or m/s; 0: leave out nothing (default: chosen from the "
@@ -205,16 +205,16 @@ class SpeedOptions(TypedDict, total=False):
 
 
 class ProblemOptions(ModelOptions, FitOptions, SpeedOptions, total=False):
-    """All options that pose a problem."""
+    """All options of a problem."""
 
 
 def stated_model(options: Mapping[str, Any] | ProblemOptions) -> Model:
-    """The model of a call's options, with its own terms.
+    """Return the model of a call's options, with its own terms.
 
     Raises
     ------
     InputError
-        A model or terms that cannot be used.
+        The model or the terms cannot be used.
     """
     model, terms = Model.of(options.get("model")), options.get("terms")
     return model if terms is None else model.replace(terms=terms)
@@ -222,7 +222,7 @@ def stated_model(options: Mapping[str, Any] | ProblemOptions) -> Model:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
-    """The options of a call, complete and checked; None: chosen from the recordings, or as the joint has it."""
+    """The options of a call, complete and checked; None: chosen from the recordings, or taken from the joint."""
 
     model: Model  # with the own terms
     parameters: Parameters | None
@@ -235,12 +235,12 @@ class Settings:
 
     @classmethod
     def of(cls, options: Mapping[str, Any] | ProblemOptions) -> Self:
-        """The settings of a call's options; others are left out.
+        """Return the settings from a call's options; other options are ignored.
 
         Raises
         ------
         InputError
-            A value that cannot be used with any recording.
+            A value cannot be used with any recording.
         """
         found = checked(ProblemOptions, options)
         del found["terms"]
@@ -248,10 +248,10 @@ class Settings:
 
     @property
     def kept(self) -> dict[str, Any]:
-        """What an estimate keeps of them as it is: of the others it says what was chosen."""
+        """Return the settings that an estimate keeps unchanged; for the others it keeps the choices."""
         others = {"model", "terms", "parameters", "residual", "windows"}
         return {n: getattr(self, n) for n in options_of(ProblemOptions) if n not in others}
 
 
 USUAL = Settings.of({})
-"""All options by default."""
+"""Default settings."""

@@ -18,24 +18,24 @@ _GRAVITY = ("gravity_cos", "gravity_sin")
 _LOADS = {"link": "load_friction_link"}
 _SENSOR = ("sensor_gain", "sensor_offset")
 
-# What the residual compares: the torque with the part of the reading that the motion explains, the reading
-# with what the torque leaves for it (the thesis), the torque with the reading.
+# Residuals: the torque against the part of the reading that the motion explains, the reading against the
+# remaining torque (the thesis), and the torque against the reading.
 Residual = Literal["instruments", "sensor", "torque"]
 RESIDUALS: tuple[str, ...] = get_args(Residual)
 
 
 WEAK_READING = "the motion explains too little of the reading"
-"""Why the reading of a sensor is not projected on the motion."""
+"""Reason why the reading of a sensor is not projected on the motion."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """The terms and the residual that a call asks for.
+    """The terms and the residual that a call requests.
 
     Attributes
     ----------
     model : Model
-        Its fields override those of the joint's model.
+        Model of the call; its fields override those of the joint's model.
     residual : str or None
         "instruments", "sensor" or "torque"; None: instruments if there is a sensor, else the torque.
     """
@@ -46,23 +46,23 @@ class Request:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TermChoice:
-    """The terms of one identification, in the core's order, and the signal that the residual compares.
+    """The terms of one identification, in the core's order, and its residual.
 
     Attributes
     ----------
     terms : tuple of str
         Keys of the core's terms.
     model : Model
-        The call's fields, then the joint's; its name is never None.
+        The call's fields, completed by the joint's; the name is never None.
     residual : str
         "instruments", "sensor" or "torque".
     sensor : bool
         Whether the terms contain the sensor's gain and offset.
     gear_ratio : float
     dropped : str
-        A term that another one makes redundant, and why; empty if none.
+        A term that is redundant with another one, and the reason; empty if none.
     residual_reason : str
-        Why the residual is not the default; empty if it is, or if the call states it.
+        Reason why the residual is not the default; empty if it is, or if the call states it.
     """
 
     terms: tuple[str, ...]
@@ -75,7 +75,7 @@ class TermChoice:
 
     @property
     def per_recording(self) -> tuple[str, ...]:
-        """Coefficients with a separate value for each recording."""
+        """Coefficients with a separate value per recording."""
         return self.model.resolved.per_recording
 
 
@@ -87,15 +87,15 @@ def choose_terms(
     Raises
     ------
     InputError
-        A sensor residual without a sensor; indistinguishable terms; a coefficient of the call's
-        `per_recording` that is not among the terms. Those of the joint's are left out.
+        The residual needs a sensor and there is none, terms are indistinguishable, or a coefficient of the
+        call's `per_recording` is not among the terms. Such coefficients of the joint's model are ignored.
     """
     base = joint if joint is not None else Joint()
     stated = request.model.over(base.model)
     model = stated.resolved
     _check_kind(recordings, joint)
     sensor = _has_sensor(recordings, joint)
-    # The instruments project the reading, which load friction needs apart for each direction of motion.
+    # Instruments project the reading, but load friction needs the reading itself for each direction of motion.
     usual = "instruments" if sensor and not model.load_friction else "torque"
     residual = request.residual or usual
     if residual != "torque" and not sensor:
@@ -139,7 +139,7 @@ def choose_terms(
     apart = stated.per_recording
     if request.model.per_recording is not None:
         _check_per_recording(request.model.per_recording, terms)
-    elif apart is not None:  # the joint's, which other recordings and other terms may use
+    elif apart is not None:  # from the joint: other recordings or terms may use it
         known = _coefficients(terms)
         apart = tuple(name for name in apart if name in known)
     chosen = stated.replace(name=model.name, per_recording=apart if len(recordings) > 1 else None)
@@ -154,7 +154,7 @@ def choose_terms(
 
 
 def loads(model: Model, recordings: Sequence[Recording], joint: Joint | None) -> tuple[Load, ...]:
-    """Return what friction may depend on in these recordings: the torque behind the gear must be known somehow."""
+    """Return the loads that friction may depend on in these recordings; the torque behind the gear must be known."""
     sensor = _has_sensor(recordings, joint)
     return ("drive", "link") if sensor or model.resolved.gravity != "none" else ("drive",)
 
@@ -195,7 +195,7 @@ def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:
 
 
 def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str]:
-    """Return whether the torque has a separate offset, and the message if another term replaces it."""
+    """Return whether the torque has an offset of its own, and the message if another term replaces it."""
     if sensor:
         if joint.torque_offset:
             raise InputError(
@@ -206,7 +206,7 @@ def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str
             )
         return False, ""
     if joint.torque_offset is None and model.asymmetric and model.gravity != "none":
-        # No motion tells a constant from a difference of Coulomb frictions; gravity it does tell.
+        # No motion can separate a constant from a difference of Coulomb frictions; it can separate gravity.
         return False, "torque_offset: all torque that does not reverse counts as gravity"
     return joint.torque_offset is not False, ""
 
@@ -214,7 +214,7 @@ def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str
 def _ordered(
     wanted: set[str], ripple: tuple[float, ...], harmonics: tuple[float, ...]
 ) -> tuple[str, ...]:
-    """Return keys in the core's order; the orders of a family replace the family's row."""
+    """Return keys in the core's order; keys with orders replace the row of their family."""
     orders = {"ripple": ripple, "position": harmonics}
     keys: list[str] = []
     rows = _rows()
@@ -230,18 +230,18 @@ def _ordered(
 
 @functools.cache
 def _models() -> Mapping[str, Sequence[str]]:
-    """Keys of each model's friction terms."""
+    """Return the keys of each model's friction terms."""
     return {entry.name: tuple(entry.terms) for entry in _core.models()}
 
 
 @functools.cache
 def _rows() -> dict[str, bool]:
-    """Keys of the core's rows but those of own terms, and whether each stands for a term an order."""
+    """Return the keys of the core's rows, without own terms, and whether each stands for one term per order."""
     return {term.key: term.family for term in _core.terms() if not term.own}
 
 
 def _coefficients(terms: tuple[str, ...]) -> dict[str, str]:
-    """Return the names of the terms' coefficients, by name and by the term's key."""
+    """Return name → name and key → name of the terms' coefficients."""
     names = {key: _core.term(key).name for key in terms}
     return names | {name: name for name in names.values()}
 

@@ -13,23 +13,23 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class WindowTable:
-    """One row per window: integrals of the compared signal, and means for pictures.
+    """Table with one row per window: integrals of the compared signal, and means for pictures.
 
     Attributes
     ----------
     recording : ndarray of int
         Index of the recording.
     start, stop : ndarray
-        [s], on the recording's clock.
+        Start and end on the recording's clock [s].
     duration : ndarray
-        Integrated time [s]; less than stop - start where samples were left out.
+        Integrated time [s]; less than stop - start if samples were left out.
     measured, fitted : ndarray
         Integrals of the sensor reading, or of the torque [N·m·s].
     velocity : ndarray
         Mean velocity [rad/s or m/s].
     friction : ndarray
-        Mean friction that the recording shows, without load: torque less all other fitted terms and
-        load friction [N·m or N].
+        Mean friction without load in the recording: torque minus all other fitted terms and load
+        friction [N·m or N].
     """
 
     recording: NDArray[np.int64]
@@ -52,7 +52,7 @@ class WindowTable:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Prediction:
-    """An estimate's prediction of a recording, which need not be one that it was fitted to.
+    """An estimate's prediction of a recording, which may be a new one.
 
     Attributes
     ----------
@@ -72,9 +72,9 @@ class Prediction:
 
 
 def r_squared(table: WindowTable) -> float:
-    """Return the share of the variance of the measured window means that the model explains, weighted by duration.
+    """Return R²: the explained share of the variance of the measured window means, weighted by duration.
 
-    Means are compared, because integrals of a constant signal vary with the windows' unequal durations.
+    It compares means, because integrals of a constant signal vary with the duration of the windows.
     """
     time = float(table.duration.sum())
     level = float(table.measured.sum()) / time
@@ -86,6 +86,6 @@ def r_squared(table: WindowTable) -> float:
 
 
 def relative_residual(table: WindowTable) -> float:
-    """Return the norm of the residuals over that of the measured integrals; infinite if those are zero."""
+    """Return the norm of the residuals over the norm of the measured integrals; infinite if these are zero."""
     measured = size(table.measured)
     return size(table.residual) / measured if measured > 0.0 else float("inf")

@@ -1,4 +1,4 @@
-"""The windows of integration that a call asks for, as options of the core."""
+"""The windows of integration that a call requests, as options of the core."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LARGEST = 1e15  # number or duration of windows that the core can represent
 
 
 def checked_windows(windows: Windows) -> Windows:
-    """Return the argument `windows` of a call, or refuse what cannot be windows of any recording."""
+    """Return the argument `windows` of a call; refuse values that are invalid for every recording."""
     if windows is None or isinstance(windows, _core.WindowOptions) or windows == "cumulative":
         return windows
     if isinstance(windows, bool) or not isinstance(windows, numbers.Real):
@@ -33,7 +33,7 @@ def checked_windows(windows: Windows) -> Windows:
 
 
 def window_options(windows: Windows, recordings: Sequence[Recording]) -> _core.WindowOptions:
-    """Return windows as `checked_windows` passes them as options of the core.
+    """Convert windows from `checked_windows` to options of the core.
 
     Parameters
     ----------
