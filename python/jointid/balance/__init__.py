@@ -1,1 +1,1 @@
-"""What the balances of a joint, a robot and a servo share: least squares, windows, resampling, held-out parts."""
+"""Common parts of the balances of a joint, a robot and a servo: least squares, windows, resampling, held-out data."""

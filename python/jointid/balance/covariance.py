@@ -22,20 +22,20 @@ class Covariance:
     matrix : ndarray, shape (p, p)
         Covariance of the parameters, in the product of their units.
     information : ndarray, shape (p, p)
-        Its inverse; where the data do not determine a direction, the information is zero along it.
+        Inverse of the covariance; zero along a direction that the data do not determine.
     stderr : ndarray, shape (p,)
         Standard errors.
     freedom : ndarray, shape (p,)
         Degrees of freedom of Student's t, for the intervals.
     white : bool
-        Whether nothing in the residuals contradicts their independence.
+        Whether the residuals pass all tests of independence.
     correlation : ndarray, shape (p, p)
-        Correlations after centring: the offset is referred to the mean of the signal that the gain
-        multiplies, because the raw correlation depends on the sensor's arbitrary zero.
+        Correlations after centring: the offset refers to the mean of the signal that the gain multiplies,
+        because the raw correlation depends on the sensor's arbitrary zero.
     condition : float
         Condition number of the centred Jacobian with columns of unit norm.
     weakest : ndarray, shape (p,)
-        Unit vector, in those scaled columns, of the least determined direction.
+        Unit vector of the least determined direction, in these scaled columns.
     """
 
     matrix: Array
@@ -48,7 +48,7 @@ class Covariance:
     weakest: Array
 
     def without_last(self) -> "Covariance":
-        """Return that of all parameters but the last, which stays unknown."""
+        """Return the covariance of all parameters except the last one, which stays unknown."""
         inner, across = self.information[:-1, :-1], self.information[:-1, -1]
         own = float(self.information[-1, -1])
         return replace(
@@ -63,20 +63,20 @@ class Covariance:
 
 
 class Triangle:
-    """R of the QR decomposition of a tall matrix, computed in one pass: all that least squares needs.
+    """R of the QR decomposition of a tall matrix, computed in one pass; sufficient for least squares.
 
     Parameters
     ----------
     matrix : ndarray, shape (rows, columns)
     threads : int
-        0: all.
+        Number of threads. 0: all.
     """
 
     def __init__(self, matrix: Array, threads: int = 0) -> None:
         self.matrix: Array = _core.triangle(matrix, threads=threads)
 
     def solve(self, columns: list[int], target: int, rcond: float) -> tuple[Array, float]:
-        """Return the least-squares coefficients of some columns for another one, and the norm of the residual."""
+        """Return the least-squares coefficients of columns for the target column, and the residual's norm."""
         return solve(self.matrix, columns, target, rcond)
 
 
@@ -88,7 +88,7 @@ def parameter_covariance(
     threads: int = 0,
     segments: Segments | None = None,
 ) -> Covariance:
-    """Return the covariance of a least-squares estimate, by motion segments where residuals hang together.
+    """Return the covariance of a least-squares estimate, clustered by motion segments for correlated residuals.
 
     Parameters
     ----------
@@ -97,26 +97,26 @@ def parameter_covariance(
     residual : ndarray, shape (windows,)
         Residuals at the minimum.
     centre : (gain, offset, mean) or None
-        Columns of a gain and of its offset, and the mean of the signal that the gain multiplies.
+        Columns of a gain and its offset, and the mean of the signal that the gain multiplies.
     triangle : ndarray, shape (rows, p), optional
         Triangle of the Jacobian. Default: computed here.
 
     segments : Segments, optional
-        Segments of motion. Default: sixteen of equal numbers of windows.
+        Segments of motion. Default: sixteen segments with equal numbers of windows.
 
     Notes
     -----
-    The residuals of an imperfect model drift slowly, and the classical variance is too small then. Where no test
-    contradicts white residuals, the variance of each parameter is the larger of the classical one and that of clusters
-    of one window (White's, which allows for noise that depends on the motion); else it is the mean of two clusterings
-    over motion segments, each segment's scores corrected for the freedom that the fit took from them (CR2: Bell and
-    McCaffrey 2002; Pustejovsky and Tipton 2018). The quantile is that of Student's t with as many degrees of freedom as
-    the segments give a parameter (Satterthwaite), which is few where few segments determine it.
-    Directions that the data do not determine get an infinite variance. tests/identification/test_covariance.py tests
+    The residuals of an imperfect model drift slowly, so that the classical variance is too small. If no test rejects
+    white residuals, the variance of each parameter is the larger of the classical variance and White's variance
+    (clusters of one window), which allows for noise that depends on the motion. Otherwise it is the mean of two
+    clusterings over motion segments. Each segment's scores are corrected for the degrees of freedom that the fit used
+    (CR2: Bell and McCaffrey 2002; Pustejovsky and Tipton 2018). The quantile is Student's t with the degrees of freedom
+    of each parameter (Satterthwaite). These are few if few segments determine the parameter.
+    Directions that the data do not determine have an infinite variance. tests/identification/test_covariance.py tests
     the coverage.
     """
     rows, count = jacobian.shape
-    if count == 0:  # every parameter is fixed or ended on a bound
+    if count == 0:  # all parameters are fixed or ended on a bound
         nothing = np.zeros((0, 0))
         return Covariance(
             matrix=nothing,

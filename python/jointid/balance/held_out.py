@@ -1,4 +1,4 @@
-"""Held-out parts: what is left out in turn, and which candidate the prediction of these parts prefers."""
+"""Held-out data: the parts that are left out in turn, and the choice of a candidate by their prediction."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from jointid.base.errors import InputError
 
 Array = NDArray[np.float64]
 
-_FEWEST = 4  # windows of each joint that a block needs
-_ONE_ERROR = 0.841345  # probability below one standard error of a normal distribution
+_FEWEST = 4  # windows per joint that a block needs
+_ONE_ERROR = 0.841345  # probability of a normal variable below one standard error
 
 
 def block_starts(start: Array, count: int, joints: int = 1) -> Array:
-    """Return where all blocks but the first begin [s]: contiguous ones, of equally many windows.
+    """Return the start times of all blocks except the first [s]; blocks are contiguous and have equally many windows.
 
     Parameters
     ----------
@@ -26,12 +26,12 @@ def block_starts(start: Array, count: int, joints: int = 1) -> Array:
     count : int
         Number of blocks.
     joints : int
-        Default 1.
+        Number of joints. Default 1.
 
     Raises
     ------
     InputError
-        Too few windows for so many blocks.
+        There are too few windows for this number of blocks.
     """
     if start.size < count * _FEWEST * joints:
         joint, of_each = (f" of {joints} joints", " of each") if joints > 1 else ("", "")
@@ -45,16 +45,16 @@ def block_starts(start: Array, count: int, joints: int = 1) -> Array:
 
 
 def groups_of(recordings: int, count: int) -> list[NDArray[np.intp]]:
-    """Return the recordings that are held out together: each alone, or in `count` groups if there are more."""
+    """Return the groups of recordings that are held out together: each alone, or `count` groups if there are more."""
     return np.array_split(np.arange(recordings), min(count, recordings))
 
 
 def preferred(
     scores: Sequence[float], parameters: Sequence[int], worse: Callable[[int, int], bool]
 ) -> tuple[int, int]:
-    """Return the candidate with the smallest score, and the one with the fewest parameters that is not worse.
+    """Return the candidate with the smallest score, and the simplest candidate that is not clearly worse.
 
-    `worse` tells whether a candidate, the first, predicts clearly worse than the best one.
+    `worse(candidate, best)` returns whether a candidate predicts clearly worse than the best one.
     """
     every = range(len(scores))
     best = min(every, key=lambda each: scores[each])
@@ -63,12 +63,12 @@ def preferred(
 
 
 def one_error(parts: int) -> float:
-    """Return how many standard errors over so many parts are one of a normal distribution: few know theirs badly."""
+    """Return the multiple of a standard error from this number of parts that matches one normal standard error."""
     return _core.student_quantile(_ONE_ERROR, max(1, parts - 1))
 
 
 def in_errors(differences: Array) -> float:
-    """Return the mean of differences over the parts in terms of its standard error."""
+    """Return the mean of differences over the parts, in units of its standard error."""
     mean, count = float(differences.mean()), differences.size
     error = float(differences.std(ddof=1)) / np.sqrt(count) if count > 1 else np.inf
     if error == 0.0:

@@ -1,4 +1,4 @@
-"""Linear least squares: on columns of a triangle, inside bounds, and of many problems at once."""
+"""Linear least squares: on columns of a triangle, within bounds, and for many problems at once."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,16 +11,16 @@ Array = NDArray[np.float64]
 def solve(
     triangle: Array, columns: list[int], target: int, rcond: float = 1e-10
 ) -> tuple[Array, float]:
-    """Return the least-squares coefficients of some columns for another one, and the norm of what they leave.
+    """Return the least-squares coefficients of these columns for the target column, and the norm of the residual.
 
     Parameters
     ----------
     triangle : ndarray, shape (rows, columns)
-        Triangle of the core, column by column in memory.
+        Triangle from the core, in column-major order.
     columns : list of int
     target : int
     rcond : float
-        Smallest relative singular value of the columns at unit norm; columns below it are dependent. Default 1e-10.
+        Smallest relative singular value of columns at unit norm; below it, columns are dependent. Default 1e-10.
     """
     solved = _core.solve_independent(triangle, columns, target)
     if solved is not None:
@@ -33,20 +33,20 @@ def solve(
 
 
 def bounded_minima(square: Array, gradient: Array, lower: ArrayLike, upper: ArrayLike) -> Array:
-    """Return the minima of quadratic functions inside a box, all at once.
+    """Return the minima of several quadratic functions within bounds.
 
     Parameters
     ----------
     square : ndarray, shape (n, p, p)
     gradient : ndarray, shape (n, p)
-        At zero.
+        Gradient at zero.
     lower, upper : array_like, shape (p,) or a number
-        Bounds; infinite where there are none.
+        Bounds; infinite for none.
 
     Returns
     -------
     ndarray, shape (n, p)
-        A parameter at a bound is exactly that bound. Of a direction that a problem lacks, the shortest solution.
+        Minima. A parameter at a bound equals the bound exactly. Undetermined directions have the shortest solution.
     """
     count = gradient.shape[1]
     low, high = (np.broadcast_to(np.asarray(each, float), count) for each in (lower, upper))

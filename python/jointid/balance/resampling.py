@@ -1,10 +1,9 @@
-"""Resampling: stretches or runs of the motion are drawn anew.
+"""Resampling: stretches of the motion are drawn with replacement (block bootstrap).
 
-The block bootstrap: stretches of the motion are drawn anew, and the parameters refitted to each draw.
-
-A block is a run of neighbouring windows as long as a segment of motion (`segments`: the rule is fixed in advance);
-it may begin at any quarter of one (moving blocks: Künsch 1989). The refit is the minimum of the penalty linearised at
-the estimate, inside the bounds of the search: exact for all coefficients, to first order for shapes.
+The parameters are refitted to each draw. A block is a run of neighbouring windows with the length of a segment of
+motion (see `segments`). It may begin at any quarter of a segment (moving blocks: Künsch 1989). The refit minimizes
+the penalty, linearised at the estimate, within the search bounds. It is exact for all coefficients, and first order
+for shapes.
 """
 
 from __future__ import annotations
@@ -21,25 +20,25 @@ from jointid.recording.order_statistics import distinct
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-CELLS = 4  # of a block, which begins at any of them
+CELLS = 4  # cells per block; a block may begin at any cell
 _DRAWS_AT_ONCE = 100
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cells:
-    """The motion in quarters of blocks, and the penalty's sums over each.
+    """The motion in quarters of blocks (cells), and the sums of the penalty over each.
 
     Attributes
     ----------
     square : ndarray, shape (cells, p, p)
         Products of the Jacobian's columns.
     gradient : ndarray, shape (cells, p)
-        Their products with the residual.
+        Products of the Jacobian's columns with the residual.
     starts : ndarray of int
         Cells at which a block may begin.
     sure_square, sure_gradient : ndarray, shape (p, p) and (p,), optional
-        The same sums of what is in every draw: known beforehand, and no motion. Default: nothing.
+        The same sums of prior knowledge, which is in every draw. Default: none.
     """
 
     square: Array
@@ -50,7 +49,7 @@ class Cells:
 
     @property
     def blocks(self) -> int:
-        """Blocks in a draw: as many as the motion holds."""
+        """Number of blocks per draw: the number that the motion holds."""
         return max(1, round(len(self.gradient) / CELLS))
 
 
@@ -84,7 +83,7 @@ def cells_of(
         ends = begin[first] + span * np.arange(1, count) / count
         inner = np.searchsorted(begin[first:last], ends)
         cuts = distinct([0, *(i for i in inner if i < last - first), last - first]) + first
-        # A recording shorter than a block is one with what follows.
+        # A recording shorter than a block is joined with the next one.
         starts += range(len(limits), len(limits) + max(1, len(cuts) - CELLS))
         limits += [(int(a), int(b)) for a, b in itertools.pairwise(cuts)]
     count = len(limits)
@@ -99,13 +98,13 @@ def cells_of(
 
 
 def draws(cells: Cells, lower: Array, upper: Array, count: int, seed: int) -> Array:
-    """Return the refitted changes of the parameters of each draw.
+    """Return the changes of the parameters, refitted to each draw.
 
     Parameters
     ----------
     cells : Cells
     lower, upper : ndarray, shape (p,)
-        How far each parameter may move: below 0 and above.
+        Bounds of each parameter's change: lower is below 0, upper above.
     count : int
     seed : int
         The same seed gives the same bits.
@@ -115,7 +114,7 @@ def draws(cells: Cells, lower: Array, upper: Array, count: int, seed: int) -> Ar
     ndarray, shape (count, p)
     """
     result = np.empty((count, len(lower)))
-    for first in range(0, count, _DRAWS_AT_ONCE):  # Ctrl-C comes between
+    for first in range(0, count, _DRAWS_AT_ONCE):  # allows Ctrl-C between batches
         last = min(count, first + _DRAWS_AT_ONCE)
         weight = _weights(cells, first, last, seed)
         square = np.einsum("nc,cij->nij", weight, cells.square)
@@ -129,7 +128,7 @@ def draws(cells: Cells, lower: Array, upper: Array, count: int, seed: int) -> Ar
 
 
 def _weights(cells: Cells, first: int, last: int, seed: int) -> Array:
-    """How often each cell is in each draw."""
+    """Return how often each cell is in each draw."""
     places = np.arange(first, last, dtype=np.uint64)[:, None] << np.uint64(32)
     counter = places + np.arange(cells.blocks, dtype=np.uint64)[None, :] + np.uint64(1)
     start = _mixed(np.array(seed, dtype=np.uint64) + _STEP)
@@ -145,7 +144,7 @@ def _weights(cells: Cells, first: int, last: int, seed: int) -> Array:
 
 
 def _mixed(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """SplitMix64's finaliser, as in the core."""
+    """Return SplitMix64's finaliser, same as in the core."""
     with np.errstate(over="ignore"):
         z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
         z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
@@ -153,6 +152,6 @@ def _mixed(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
 
 
 def drawn_units(units: int, draws: int, seed: int) -> Array:
-    """Return how often each unit is in each set of as many that are drawn with replacement, shape (draws, units)."""
+    """Return how often each unit is in each draw of `units` units with replacement, shape (draws, units)."""
     generator = np.random.default_rng(seed)
     return generator.multinomial(units, np.full(units, 1.0 / units), size=draws).astype(float)

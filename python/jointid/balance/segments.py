@@ -1,8 +1,8 @@
-"""Segments of motion: what the errors take as independent of each other.
+"""Segments of motion that the standard errors treat as independent.
 
-The residual of an imperfect model hangs together as long as the joint moves the same way: it has the sign of the
-motion, and follows position and speed. Neighbouring windows are then not independent, but what happens between two
-reversals is nearly so. The rule is fixed in advance, and knows nothing of the residual.
+The residual of an imperfect model is correlated while the joint moves in one direction: it has the sign of the motion,
+and depends on position and speed. Neighbouring windows are then not independent, but motions between two reversals
+nearly are. The rule is fixed in advance, and does not use the residual.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ from jointid.recording.order_statistics import distinct
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# A segment is an eighth of the motion, so that there are enough of them, but not shorter than what an imperfect
-# model's residual needs to change, and not longer than a usual motion between reversals.
+# A segment is an eighth of the motion, so that there are enough segments. It is not shorter than the time in which an
+# imperfect model's residual changes, and not longer than a usual motion between reversals.
 _PARTS = 8
 _SHORTEST, _LONGEST = 0.25, 1.0  # [s]
-_MOST = 600  # on a recording of hours they are longer
+_MOST = 600  # largest number; in a recording of hours, segments are longer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Segments:
-    """The windows cut into segments of motion, in two ways.
+    """Two divisions of the windows into segments of motion.
 
     Attributes
     ----------
     length : float
-        What a segment should last [s]; they last between half and one and a half of it.
+        Target duration of a segment [s]; actual durations are 0.5 to 1.5 times this.
     cuts : tuple of ndarray of int
-        First windows of the segments, and at the end the number of windows: cut by the rule, and cut in the
-        middle of these segments.
+        First windows of the segments, then the number of windows: divided by the rule, and in the middle of
+        these segments.
     """
 
     length: float
@@ -41,16 +41,16 @@ class Segments:
 
 
 def even_segments(rows: int) -> Segments:
-    """Return segments of equal numbers of windows, where nothing is known of the motion."""
+    """Return segments with equal numbers of windows, if the motion is unknown."""
     count = min(rows, 2 * _PARTS)
     cuts = distinct(np.linspace(0, rows, count + 1).round().astype(np.int64))
     return Segments(length=np.nan, cuts=(cuts, between(cuts)))
 
 
 def time_segments(start: Array, stop: Array, piece: Whole) -> Segments:
-    """Return segments of equal duration over rows in the order of time: all joints of a stretch are one.
+    """Return segments of equal duration over rows in the order of time, with all joints of a stretch together.
 
-    What one joint's model misses acts on its neighbours in the same stretch.
+    The residual of one joint's model also acts on its neighbours in the same stretch.
     """
     first, spans = _spans(start, stop, piece)
     length = usual_length(sum(spans))
@@ -65,17 +65,17 @@ def time_segments(start: Array, stop: Array, piece: Whole) -> Segments:
 
 
 def segment_length(start: Array, stop: Array, piece: Whole) -> float:
-    """Return what a segment of rows in the order of time should last [s]."""
+    """Return the target duration of a segment of rows in the order of time [s]."""
     return usual_length(sum(_spans(start, stop, piece)[1]))
 
 
 def usual_length(motion: float) -> float:
-    """Return what a segment should last [s], of so much motion [s]."""
+    """Return the target duration of a segment [s] for a duration of motion [s]."""
     return min(max(motion / _PARTS, _SHORTEST), max(_LONGEST, motion / _MOST))
 
 
 def between(cuts: Whole) -> Whole:
-    """Return cuts in the middle of segments; the halves at the ends go with their neighbours."""
+    """Return cuts in the middle of segments; half segments at the ends join their neighbours."""
     if len(cuts) <= 4:
         return cuts
     middle = (cuts[1:] + cuts[:-1]) // 2
@@ -83,7 +83,7 @@ def between(cuts: Whole) -> Whole:
 
 
 def _spans(start: Array, stop: Array, piece: Whole) -> tuple[Whole, list[float]]:
-    """First row of each piece, and how long each lasts [s]."""
+    """Return the first row of each piece, and its duration [s]."""
     first = np.flatnonzero(np.diff(piece, prepend=-1))
     spans = [
         float(stop[low:high].max() - start[low])

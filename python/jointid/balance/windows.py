@@ -1,6 +1,6 @@
 """Windows of a recording, and integrals of sampled signals over intervals and windows.
 
-Joints have theirs in the core; `_core.window_integrals` is its rule for signals that are straight between samples.
+The core has windows for joints; `_core.window_integrals` is the same rule for signals that are linear between samples.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Windows:
-    """Equal windows over the stretches of a recording without a gap."""
+    """Equal windows over the gap-free stretches of a recording."""
 
-    # (windows + 1,), first interval of each; windows with a gap are as others, with nothing usable there
+    # (windows + 1,), first interval of each window; a window's gap has no usable intervals
     edges: NDArray[np.int64]
     duration: float  # usual length [s]
 
     @classmethod
     def of(cls, time: Array, duration: float) -> Windows:
-        """Return windows of about this duration [s]."""
+        """Return windows of approximately this duration [s]."""
         count = max(1, round(float(time[-1] - time[0]) / duration))
         instants = np.linspace(time[0], time[-1], count + 1)
         edges = np.unique(np.searchsorted(time, instants[:-1], side="left"))
@@ -36,14 +36,14 @@ class Windows:
 
 
 def torque_integrals(torque: Array, step: Array, held: bool) -> Array:
-    """Integrals over the intervals of a torque that is held from its sample on, or straight between samples."""
+    """Return integrals over the intervals of a torque that is held from its sample on, or linear between samples."""
     if held:
         return np.asarray(step * torque[..., :-1])
     return np.asarray(0.5 * step * (torque[..., 1:] + torque[..., :-1]))
 
 
 def direction_integrals(velocity: Array, step: Array) -> Array:
-    """Integrals of the velocity's sign over the intervals; within a reversal at the instant that the speeds show."""
+    """Return integrals of the velocity's sign over the intervals; reversals are at the velocity's interpolated zero."""
     before, after = velocity[..., :-1], velocity[..., 1:]
     speed = np.abs(before) + np.abs(after)
     share = (before + after) / np.where(speed > 0.0, speed, 1.0)
@@ -51,7 +51,7 @@ def direction_integrals(velocity: Array, step: Array) -> Array:
 
 
 def interval_means(signal: Array, velocity: Array) -> Array:
-    """Means over the intervals; within a reversal by the share of time on each side, as `direction_integrals`."""
+    """Return means over the intervals; in a reversal weighted by the time on each side, as in `direction_integrals`."""
     speed = np.abs(velocity)
     before, after = signal[:-1], signal[1:]
     total = speed[:-1] + speed[1:]
