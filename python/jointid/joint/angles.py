@@ -8,7 +8,7 @@ _UNIT = "deg"
 
 
 def in_radians(value: Any) -> Any:
-    """Return a file's value with texts such as "60deg" as numbers; any other value as it is.
+    """Return a file's value with texts such as "60deg" as numbers; any other value unchanged.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ def in_radians(value: Any) -> Any:
     Returns
     -------
     object
-        Angles in [rad]; a text that is no angle stays a text.
+        Angles [rad]; a text that is not an angle stays a text.
 
     Examples
     --------
@@ -36,6 +36,6 @@ def in_radians(value: Any) -> Any:
 
 
 def text_in(value: Any) -> str | None:
-    """Return the text that a value is, or the first one in a list; None if there is none."""
+    """Return the value if it is a text, or the first text in a list; None if there is none."""
     entries = value if isinstance(value, list) else [value]
     return next((entry for entry in entries if isinstance(entry, str)), None)

@@ -1,4 +1,4 @@
-"""Checks of single fields, the same for values, files and calls."""
+"""Checks of single fields, shared by values, files and calls."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.recording.signals import closest
 
-_FEW = 5  # known names that fit into a sentence
+_FEW = 5  # number of known names that fit into a sentence
 _LISTED = 10  # names in a message
-_MISSPELT, _SIMILAR = 0.75, 0.6  # likeness of two texts, as difflib counts it
+_MISSPELT, _SIMILAR = 0.75, 0.6  # similarity of two texts, from difflib
 
 
 def check_parameter_name(name: object) -> None:
-    """Refuse a name that no parameter has, with a suggestion."""
+    """Refuse an unknown parameter name, with a suggestion."""
     if not isinstance(name, str) or not _core.is_parameter(name):
         raise InputError(
             f"there is no such parameter; {suggestion(name, _core.parameter_names())}",
@@ -31,7 +31,7 @@ def check_parameter_name(name: object) -> None:
 def suggestion(name: object, known: Collection[str]) -> str:
     """Return a phrase with the known name nearest to an unknown one, or with the first known names.
 
-    A short list is shorter than a wrong guess: only a misspelling is then answered with one name.
+    If the list is short, only a clear misspelling is answered with a single name.
     """
     close = closest(name, known, _MISSPELT if len(known) <= _FEW else _SIMILAR)
     if close:
@@ -43,7 +43,7 @@ def suggestion(name: object, known: Collection[str]) -> str:
 
 def is_number(value: object) -> bool:
     """Return whether this is a real number; True and False are not."""
-    if type(value) is float:  # an abstract base class takes longer to ask
+    if type(value) is float:  # faster than a check with an abstract base class
         return True
     return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
@@ -59,7 +59,7 @@ def finite_number(owner: str, field: str, value: Any) -> float:
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        # The float, since an integer too large for one is too long to show.
+        # Show the float, because an integer too large for a float is too long to show.
         raise InputError("a finite number is expected", argument=field, value=number, place=owner)
     return number
 
@@ -110,7 +110,7 @@ def not_negative(owner: str, field: str, value: object) -> float:
 def set_numbers(
     instance: Any, owner: str, names: Collection[str], convert: Callable[[str, str, object], float]
 ) -> None:
-    """Convert fields of a frozen instance to checked floats; None stays where it is the default."""
+    """Convert fields of a frozen instance to checked floats; None stays if it is the default."""
     kind: type = type(instance)
     optional = _optional(kind)
     for name in names:
@@ -121,5 +121,5 @@ def set_numbers(
 
 @functools.cache
 def _optional(kind: type) -> dict[str, bool]:
-    """Whether each field of a dataclass is None by default."""
+    """Return field → whether it is None by default."""
     return {field.name: field.default is None for field in fields(kind)}

@@ -1,4 +1,4 @@
-"""Facts of a joint that must fit to each other."""
+"""Consistency checks between the facts of a joint."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from jointid.base.errors import InputError
 from jointid.joint.joint_fields import JointFields
 
-# Two values of the same inertia may differ by this share: printed values are rounded.
+# Largest relative difference of two values of one inertia, because printed values are rounded.
 _INERTIA_TOLERANCE = 1e-3
 
 

@@ -1,4 +1,4 @@
-"""Which values of a joint file are angles: read as rad or "60deg", and kept as they were written."""
+"""Angles in a joint file: read as rad or "60deg", and kept in their written form."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -23,7 +23,7 @@ def with_angles(
 
 
 def keep_angles(before: Mapping[str, Any], wanted: dict[str, Any]) -> None:
-    """Keep the texts of a file's angles that do not change."""
+    """Keep the text of each angle in the file that does not change."""
     for table in _ANGLES:
         for key in _angle_keys(wanted, table):
             text = before.get(table, {}).get(key)
@@ -32,6 +32,6 @@ def keep_angles(before: Mapping[str, Any], wanted: dict[str, Any]) -> None:
 
 
 def _angle_keys(document: Mapping[str, Any], name: str) -> tuple[str, ...]:
-    """Return the keys of a table that are angles; the limits of a joint that slides are none."""
+    """Return the keys of a table that are angles; the limits of a prismatic joint are not."""
     slides = document.get("kind", "revolute") != "revolute"
     return () if slides and name == "limits" else _ANGLES.get(name, ())

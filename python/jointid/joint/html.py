@@ -1,4 +1,4 @@
-"""What a notebook shows of a joint: its given facts, and the table of its parameters."""
+"""A joint's display in notebooks: its known facts, and the table of its parameters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from jointid.joint.parameters import Parameter
 
 
 def html_facts(joint: JointFields) -> Html:
-    """Return the facts that are given, then the parameters that are."""
+    """Return the known facts, then the known parameters."""
     stated: list[tuple[str, object]] = [
         ("kind", joint.kind),
         ("model", str(joint.model) or "not stated"),

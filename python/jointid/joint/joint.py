@@ -1,4 +1,4 @@
-"""A joint: its known values before an identification, and the identified ones after it."""
+"""A joint: its known values before an identification, and its identified values after it."""
 
 import functools
 import os
@@ -82,7 +82,7 @@ class Joint(JointFields):
     Raises
     ------
     InputError
-        A field that cannot be used, or fields that contradict each other.
+        A field is invalid, or fields contradict each other.
 
     Examples
     --------
@@ -141,12 +141,12 @@ class Joint(JointFields):
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Joint":
-        """Return the joint that a joint file (TOML) describes.
+        """Return the joint in a joint file (TOML).
 
         Raises
         ------
         InputError
-            No such file, not TOML, or a value that cannot be used: the error names file, table and key.
+            The file does not exist, is not TOML, or has an invalid value; the error names file, table and key.
         """
         from jointid.joint.joint_file import joint_from_document, read_document
 
@@ -160,8 +160,8 @@ class Joint(JointFields):
         Raises
         ------
         InputError
-            Another ending than ``.toml``, a folder that does not exist, or an existing file that is not a
-            joint file.
+            The name does not end in ``.toml``, the folder does not exist, or an existing file is not a joint
+            file.
         OSError
             The file cannot be written; an existing one is untouched.
         """
@@ -175,7 +175,7 @@ class Joint(JointFields):
         Raises
         ------
         InputError
-            No such field, or a value that cannot be used.
+            There is no such field, or a value is invalid.
         """
         known = [item.name for item in fields(self)]
         for name in changes:
@@ -193,12 +193,12 @@ class Joint(JointFields):
         Parameters
         ----------
         values : mapping of str to float
-            By parameter name, in SI units at the output.
+            Values by parameter name, in SI units at the output.
 
         Raises
         ------
         InputError
-            An unknown parameter, a value that is not a finite number, or one outside the parameter's bounds.
+            A parameter is unknown, or a value is not finite or is outside the parameter's bounds.
         """
         check_mapping("", "values", values)
         table = merge(self.parameters, {name: {"value": value} for name, value in values.items()})
@@ -212,18 +212,18 @@ class Joint(JointFields):
         Parameters
         ----------
         recording : Recording
-            With `torque`, or `motor_torque` (times the gear ratio), or `current` (times torque
+            Recording with `torque`, or `motor_torque` (times the gear ratio), or `current` (times torque
             constant and gear ratio).
 
         Returns
         -------
         ndarray, shape (n,)
-            [N·m] or [N].
+            Torque [N·m] or force [N].
 
         Raises
         ------
         InputError
-            The recording has none of the signals, or the current and the joint no torque constant.
+            The recording has none of these signals, or it has only a current and the joint has no torque constant.
         """
         if recording.torque is not None:
             return recording.torque
@@ -256,7 +256,7 @@ class Joint(JointFields):
         return str(html_facts(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor: read-only mappings cannot be pickled.
+        # Use the constructor, because read-only mappings cannot be pickled.
         return functools.partial(type(self), **_values(self)), ()
 
 

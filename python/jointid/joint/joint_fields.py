@@ -1,4 +1,4 @@
-"""The fields of a joint, and what follows from them."""
+"""The fields of a joint, and quantities that follow from them."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from jointid.recording.signals import Kind, TorqueHold
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class JointFields:
-    """What a `Joint` holds; it checks them."""
+    """Fields of a `Joint`, which checks them."""
 
     name: str = ""
     kind: Kind = "revolute"
@@ -41,7 +41,7 @@ class JointFields:
 
     @property
     def facts(self) -> dict[str, float | None]:
-        """The given facts that may have a tolerance, by its name."""
+        """Known facts that may have a tolerance, by the tolerance's name."""
         link = self.link
         return {
             "torque_constant": self.torque_constant,
@@ -78,14 +78,14 @@ class JointFields:
     def known_inertia(self) -> float | None:
         """Inertia that the drive's torque accelerates [kg·m²], or [kg]; None if it is not known.
 
-        A torque sensor sees the link; without one the link's inertia and the drive's are one.
+        A torque sensor measures the link's part; without one, the inertias of link and drive add up.
         """
         drive = self.reflected_inertia
         return drive if drive is None or self.sensor else drive + self.link_inertia
 
     @property
     def gravity_coefficients(self) -> GravityCoefficients:
-        """Coefficients of the torque of gravity on the link, mass · gravity · centre_of_mass · cos(q + angle).
+        """Return the coefficients of the link's gravity torque, mass · gravity · centre_of_mass · cos(q + angle).
 
         Raises
         ------

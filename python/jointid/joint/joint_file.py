@@ -27,11 +27,11 @@ from jointid.joint.voltage_drive import KEYS, drive_keys, voltage_of
 J = TypeVar("J", bound=JointFields)
 
 SCHEMA = 2
-"""Increased when a reader of the earlier format would misread the new one."""
+"""Version of the format; increased if a reader of the earlier format would misread the new one."""
 
 _TOP = ("schema", "name", "kind")
 _DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_hold")
-# A model's fields; its name has the key of older files.
+# Fields of a model; its name has the key of older files.
 _NAME = "friction"
 _MODEL = (_NAME, *FIELDS, "torque_offset")
 _KEYS: dict[str, tuple[str, ...]] = {
@@ -39,12 +39,12 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "model": _MODEL,
     "sensor": ("present",),
     "link": tuple(field.name for field in fields(Link)),
-    "parameters": (),  # the core has the names
+    "parameters": (),  # the core defines the names
     "limits": tuple(field.name for field in fields(Limits)),
     "tolerances": tuple(field.name for field in fields(Tolerances)),
 }
-# Tables that are not fields of the joint, and are kept: `estimate` is the origin of values, `session` the
-# settings of the joint's bench, `user` is free.
+# Tables that are kept but are not fields of the joint: `estimate` is the origin of values, `session` holds
+# settings of the joint's test bench, `user` is free.
 _KEPT = ("estimate", "session", "user")
 
 
@@ -54,7 +54,7 @@ def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        No such file, or not TOML.
+        The file does not exist, or is not TOML.
     """
     place = require_path("path", path)
     return _parsed(_text(place), place)
@@ -78,7 +78,7 @@ def joint_text(joint: JointFields) -> str:
 
 
 def joint_document(joint: JointFields) -> dict[str, Any]:
-    """Return a joint as the tables and keys of its file, in JSON types and without None."""
+    """Return a joint as the tables and keys of its file, in JSON's types and without None."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "name": joint.name,
@@ -103,21 +103,21 @@ def joint_document(joint: JointFields) -> dict[str, Any]:
 
 
 def joint_from_document(document: Mapping[str, Any], source: str, kind: type[J]) -> J:
-    """Return the joint that tables and keys describe; the inverse of `joint_document`.
+    """Return the joint from tables and keys; inverse of `joint_document`.
 
     Parameters
     ----------
     document : mapping
-        Tables `estimate`, `session` and `user` are ignored.
+        Tables and keys; `estimate`, `session` and `user` are ignored.
     source : str
-        Its origin, for errors: the name of a file.
+        Name of the file, for messages.
     kind : type
         `Joint`.
 
     Raises
     ------
     InputError
-        Names source, table and key.
+        A table or key is invalid; the error names source, table and key.
     """
     _check_schema(document, source)
     for key in document:
@@ -149,8 +149,8 @@ def joint_from_document(document: Mapping[str, Any], source: str, kind: type[J])
         return kind(**arguments)
     except InputError as error:
         tables_of = {key: table for table in ("drive", "model") for key in _KEYS[table]}
-        own = error.argument in _TOP  # a model has a name, too
-        if error.place is not None and error.place.endswith(": tolerances"):  # named as the facts
+        own = error.argument in _TOP  # a model also has a name
+        if error.place is not None and error.place.endswith(": tolerances"):  # named like the facts
             tables_of[error.argument] = "tolerances"
         _refuse(source, "" if own else tables_of.get(error.argument, ""), error)
 
@@ -302,7 +302,7 @@ def _text(path: Path) -> str:
     except OSError as error:
         raise InputError(f"the file cannot be read: {error.strerror}", place=str(path)) from error
     try:
-        return content.decode("utf-8-sig")  # some editors on Windows write a byte order mark
+        return content.decode("utf-8-sig")  # some Windows editors write a byte order mark
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(
@@ -351,8 +351,8 @@ def _edited(before: str, joint: JointFields, path: Path) -> str:
         usual = {} if inline else _defaults(type(joint)(), new=not before.strip())
         update_table([editable], wanted, usual, kept=_KEPT, inline=inline)
         text = tomlkit.dumps(editable)
-        # The result is verified: TOML has very many layouts, and in some of them a new table cannot have
-        # lines of its own, or be empty.
+        # The result is verified, because in some layouts of TOML a new table cannot have its own lines, or
+        # cannot be empty.
         try:
             if joint_from_document(tomllib.loads(text), str(path), type(joint)) == joint:
                 return text.replace("\n", "\r\n") if windows else text
@@ -364,10 +364,10 @@ def _edited(before: str, joint: JointFields, path: Path) -> str:
 
 
 def _defaults(empty: JointFields, *, new: bool) -> dict[str, Any]:
-    """Return the tables and keys that are not written, because they have their defaults."""
-    # NOTE: with the value, so that a table with a value is always written.
+    """Return the tables and keys that are not written because they equal their defaults."""
+    # NOTE: the value is included, so that a table with a value is always written.
     usual = {name: {"value": None, "vary": True} for name in _core.parameter_names()}
-    if new:  # a new file shows all other fields, so that a reader can change them
+    if new:  # a new file shows all other fields, so that the user can change them
         return {"parameters": usual}
     link = {field.name: field.default for field in fields(Link)}
     return {**joint_document(empty), "link": link, "parameters": usual}

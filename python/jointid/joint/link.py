@@ -27,21 +27,20 @@ class Link:
     Parameters
     ----------
     mass : float
-        [kg]
+        Mass [kg].
     centre_of_mass : float
-        Its distance from the joint's axis [m].
+        Distance of the centre of mass from the joint's axis [m].
     angle : float
-        Angle of the centre of mass above the horizontal where the position is zero [rad].
-        Default 0.
+        Angle of the centre of mass above the horizontal at position zero [rad]. Default 0.
     inertia : float, optional
-        About the joint's axis [kg·m²].
+        Inertia about the joint's axis [kg·m²]. Default: a point mass.
     gravity : float
-        [m/s²], perpendicular to the axis. Default 9.80665.
+        Gravity perpendicular to the axis [m/s²]. Default 9.80665.
 
     Raises
     ------
     InputError
-        A value that is not finite, or negative (except the angle).
+        A value is not finite, or is negative (except the angle).
 
     Examples
     --------
@@ -63,12 +62,12 @@ class Link:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Limits that the joint must not exceed; a limit that is None is not known.
+    """Limits that the joint must not exceed; None means not known.
 
     Parameters
     ----------
     position : tuple of float, optional
-        Lowest and highest [rad] or [m].
+        Lowest and highest position [rad] or [m].
     velocity, torque, current : float, optional
         Largest magnitudes: velocity [rad/s] or [m/s], torque at the output [N·m] or [N], current in the
         motor [A].
@@ -76,7 +75,7 @@ class Limits:
     Raises
     ------
     InputError
-        A limit that is not finite or not positive, or a position range that is empty.
+        A limit is not finite or not positive, or the position range is empty.
 
     Examples
     --------

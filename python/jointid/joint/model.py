@@ -21,10 +21,10 @@ Load = Literal["drive", "link"]
 ModelName = Literal[
     "coulomb_viscous", "stribeck", "stribeck_general", "smooth_coulomb_viscous", "auto"
 ]
-"""Names of models, for type checkers; text with options is `Model.parse`'s."""
+"""Names of models, for type checkers; `Model.parse` reads text with options."""
 
 AUTO = "auto"
-"""Name of a model that `identify` chooses from the recordings; as good as no name."""
+"""Name of a model that `identify` chooses from the recordings; same as no name."""
 
 _GRAVITIES, _LOADS = get_args(Gravity), (None, *get_args(Load))
 _GRAVITY_ORDER = 1.0
@@ -77,7 +77,7 @@ class Model:
     Raises
     ------
     InputError
-        A field of the wrong kind, an unknown name, or fields with indistinguishable terms.
+        A field has a wrong type, the name is unknown, or terms are indistinguishable.
 
     Examples
     --------
@@ -121,7 +121,7 @@ class Model:
 
     @classmethod
     def of(cls, value: object, argument: str = "model") -> Model:
-        """Return a model from a model, its text, a mapping of its fields, or None.
+        """Return a model from a `Model`, its text, a mapping of its fields, or None.
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ class Model:
         Raises
         ------
         InputError
-            Something else, or a field that cannot be used.
+            The value has another type, or a field is invalid.
         """
         if isinstance(value, Model):
             return value
@@ -157,7 +157,7 @@ class Model:
         Raises
         ------
         InputError
-            Not text, an unknown option, or a repeated option.
+            The argument is not a text, or an option is unknown or repeated.
         """
         if not isinstance(text, str):
             raise InputError(
@@ -201,19 +201,19 @@ class Model:
         Raises
         ------
         InputError
-            No such field, or a value that cannot be used.
+            There is no such field, or a value is invalid.
         """
         for key in changes:
             _check_field(key)
         return replace(self, **changes)
 
     def over(self, base: Model) -> Model:
-        """Return this model, with the fields that it does not state taken from another."""
+        """Return this model, with unset fields taken from another model."""
         return Model(**(base.stated() | self.stated()))
 
     @property
     def named(self) -> bool:
-        """Whether the name is stated, and is not "auto"."""
+        """Whether the name is set and is not "auto"."""
         return self.name not in (None, AUTO)
 
     @property
@@ -270,7 +270,7 @@ def _check_field(key: object) -> None:
 
 
 def _orders(field: str, value: Any) -> tuple[float, ...]:
-    """Return the orders of a harmonic as a tuple of different positive numbers."""
+    """Return the orders of a harmonic as a tuple of distinct positive numbers."""
     single = isinstance(value, Real) and not isinstance(value, bool)
     values = (value,) if single else _listed(field, value, "orders like [2] or 2 are expected")
     try:
@@ -279,7 +279,7 @@ def _orders(field: str, value: Any) -> tuple[float, ...]:
         raise _refused(field, values, "different orders above 0 are expected, like [2]") from None
     if any(order <= 0.0 for order in orders) or len(set(orders)) < len(orders):
         raise _refused(field, values, "different orders above 0 are expected, like [2]")
-    # An order is part of its parameter's name, with six digits.
+    # A parameter's name contains its order, with six digits.
     if any(not _core.is_parameter(f"ripple_cos_{o:g}") or float(f"{o:g}") != o for o in orders):
         raise _refused(field, values, "orders have at most six digits")
     return orders
@@ -330,7 +330,7 @@ def _read(key: str, text: str) -> Any:
 
 
 def _number_or_text(key: str, text: str) -> Any:
-    """Return a number, or the text where it is none."""
+    """Return a number, or the text if it is not a number."""
     if key == "per_recording":
         return text
     number = None if "_" in text else number_in(text)  # Python reads 1_0 as 10

@@ -1,4 +1,4 @@
-"""The text of a new joint file: what is known as lines, what is not as commented lines that say what to put there."""
+"""The text of a new joint file: known facts as lines, unknown facts as commented lines with an example."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class Fact:
     ----------
     table, key : str
     example : str
-        As the file has it, for a commented line.
+        Example value in the file's form, for a commented line.
     meaning : str
-        What it is, with its unit.
+        Meaning of the key, with its unit.
     """
 
     table: str
@@ -45,7 +45,7 @@ FACTS: tuple[Fact, ...] = (
     Fact("limits", "torque", "100.0", "N·m at the output, largest"),
     Fact("limits", "current", "5.0", "A in the motor, largest"),
 )  # fmt: skip
-"""What most joint files hold, in their order; docs/guide.md has all keys."""
+"""Usual facts of a joint file, in order; docs/guide.md has all keys."""
 
 _SLIDING = {"rad/s": "m/s", "rad, or deg as text": "m", "N·m at": "N at", "kg·m²": "kg"}
 
@@ -56,14 +56,14 @@ def new_joint_text(joint: Joint, notes: Sequence[str] = ()) -> str:
     Parameters
     ----------
     joint : Joint
-        Facts that have their defaults count as not known.
+        Joint to describe; facts equal to their defaults count as unknown.
     notes : sequence of str
-        Lines of comment at the top. Default: none.
+        Comment lines at the top. Default: none.
 
     Raises
     ------
     InputError
-        The joint has parameters or tolerances: such a joint is saved, not begun.
+        The joint has parameters or tolerances; use `Joint.save` for such a joint.
 
     Examples
     --------
@@ -99,7 +99,7 @@ def new_joint_text(joint: Joint, notes: Sequence[str] = ()) -> str:
 
 def _table(table: str, known: dict[str, object], kind: str) -> list[str]:
     facts = [fact for fact in FACTS if fact.table == table]
-    # A link needs its mass: without one the table is a comment, too.
+    # A link needs its mass; without it the table is also a comment.
     lines = [f"[{table}]" if known or table != "link" else f"# [{table}]"]
     others = [key for key in known if key not in {fact.key for fact in facts}]
     lines += [f"{key} = {_written(known[key])}" for key in others]
@@ -124,10 +124,10 @@ def _sensor(*, present: bool) -> list[str]:
 
 
 def _written(value: object) -> str:
-    """A value as TOML writes it."""
+    """Return a value as TOML text."""
     import json
 
     if isinstance(value, list):
         return f"[{', '.join(map(_written, value))}]"
-    # A JSON string is one of TOML's; DEL is the only character that TOML forbids and JSON leaves.
+    # A JSON string is a TOML string, except for DEL, which TOML forbids and JSON does not escape.
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,4 +1,4 @@
-"""Own terms of a model: named signals of a recording, and how each enters the torque balance."""
+"""Own terms of a model: named signals of a recording, and their kinds of term in the torque balance."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.joint.checks import suggestion
 
-# Kind → the words that begin the names of its parameters; "_of_SIGNAL" follows.
+# Kind → first words of its parameters' names; "_of_SIGNAL" follows.
 _PARAMETERS = {
     "viscous": ("viscous",),
     "coulomb": ("coulomb",),
@@ -27,22 +27,22 @@ _PARAMETERS = {
     "torque_over": ("torque_cos", "torque_sin"),
 }
 KINDS = tuple(_PARAMETERS)
-"""How a signal may enter; see `Model`."""
+"""Kinds of term; see `Model`."""
 
 FRICTION = ("viscous", "coulomb")
-"""Kinds that are friction, of another joint or of this one."""
+"""Kinds that are friction of this joint or another one."""
 
 INERTIA = ("inertia", "inertia_own", "inertia_others", "scaled_inertia")
-"""Kinds whose signal is an inertia."""
+"""Kinds with an inertia as signal."""
 
 TORQUES = ("known", "scaled", "torque_over")
-"""Kinds that are a torque of a load, or a function of an angle, as gravity is."""
+"""Kinds that are a load torque, or a function of an angle like gravity."""
 
 CENTRED = ("inertia_over", "torque_over")
-"""Kinds that are functions of an angle, centred in its range."""
+"""Kinds that are functions of an angle, centred in the angle's range."""
 
 POSITION = "position"
-"""Names the joint's own position as the signal of a term."""
+"""Name of the joint's own position as the signal of a term."""
 
 _RATE = "@rate"
 _KIND = rf"([a-z_]+)(?:\(([^()]*)\))?({_RATE})?"
@@ -52,7 +52,7 @@ _FIXED = ("known_of_", "known_inertia_of_")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnTerm:
-    """One way in which one signal enters.
+    """One term of one signal.
 
     Attributes
     ----------
@@ -60,9 +60,9 @@ class OwnTerm:
         Name of an extra signal, or "position".
     kind : str
     rate : bool
-        Whether it is the signal's rate of change that enters.
+        Whether the term uses the signal's rate of change.
     centre : float or None
-        Angle that a function of the signal is centred at [rad]; None: the middle of its range.
+        Centre of a function of the signal [rad]. None: the middle of the signal's range.
     """
 
     signal: str
@@ -72,12 +72,12 @@ class OwnTerm:
 
     @property
     def source(self) -> str:
-        """What its parameters are named after."""
+        """Text at the end of the parameters' names: the signal, or "SIGNAL_rate"."""
         return f"{self.signal}_rate" if self.rate else self.signal
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Keys of the core's terms, which are the names of the parameters, too."""
+        """Keys of the core's terms; they are also the parameters' names."""
         return tuple(f"{word}_of_{self.source}" for word in _PARAMETERS[self.kind])
 
     def __str__(self) -> str:
@@ -87,12 +87,12 @@ class OwnTerm:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OwnTerms(Mapping[str, str]):
-    """A mapping from signals to how they enter, as text, e.g. ``{"q6": "viscous@rate+coulomb@rate"}``.
+    """A mapping from signals to kinds of term as text, e.g. ``{"q6": "viscous@rate+coulomb@rate"}``.
 
     Attributes
     ----------
     each : tuple of OwnTerm
-        In the order given, signal by signal.
+        Terms in the stated order, signal by signal.
     """
 
     each: tuple[OwnTerm, ...] = ()
@@ -104,7 +104,7 @@ class OwnTerms(Mapping[str, str]):
         Raises
         ------
         InputError
-            Something else, an unknown kind, or one parameter twice.
+            The value has another type, a kind is unknown, or a parameter occurs twice.
         """
         if isinstance(value, OwnTerms):
             return value
@@ -130,7 +130,7 @@ class OwnTerms(Mapping[str, str]):
         Raises
         ------
         InputError
-            Another text.
+            The text has another form.
         """
         entries: dict[str, str] = {}
         for part in [] if text == "none" else text.split(","):
@@ -153,7 +153,7 @@ class OwnTerms(Mapping[str, str]):
 
     @property
     def keys_in_core(self) -> tuple[str, ...]:
-        """Keys of the core's terms, in the order given."""
+        """Keys of the core's terms, in the stated order."""
         return tuple(key for own in self.each for key in own.keys)
 
     def __getitem__(self, signal: str) -> str:
@@ -188,7 +188,7 @@ NO_TERMS = OwnTerms()
 
 
 def is_fixed(name: str) -> bool:
-    """Whether a parameter is the gain of something known, which is 1 unless a call frees it."""
+    """Whether a parameter is the gain of a known term, which is 1 unless a call frees it."""
     return name.startswith(_FIXED)
 
 

@@ -27,10 +27,10 @@ class Parameter:
     Parameters
     ----------
     name : str
-        E.g. "inertia", "coulomb", "static", "stribeck", "viscous", "torque_offset", "gravity_cos",
+        Name, e.g. "inertia", "coulomb", "static", "stribeck", "viscous", "torque_offset", "gravity_cos",
         "gravity_sin", "sensor_gain", "sensor_offset".
     value : float, optional
-        In SI units, on the output side of the gear. Default: not known.
+        Value in SI units, on the output side of the gear. Default: not known.
     min, max : float, optional
         Bounds of the search, both included. Default: computed from the recording.
     vary : bool
@@ -39,8 +39,8 @@ class Parameter:
     Raises
     ------
     InputError
-        An unknown name, a number that is not finite, min above max, a value outside the bounds,
-        a fixed parameter without a value, or a Stribeck velocity or exponent that is not above 0.
+        The name is unknown, a number is not finite, min exceeds max, the value is outside the bounds, a
+        fixed parameter has no value, or a Stribeck velocity or exponent is not above 0.
 
     Examples
     --------
@@ -96,7 +96,7 @@ class Parameter:
 
 @functools.cache
 def _above_zero() -> frozenset[str]:
-    """Return the shapes that are no shapes at 0."""
+    """Return the shape parameters that must not be 0."""
     return frozenset(shape for row in _core.terms() if row.above_zero for shape in row.shapes)
 
 
@@ -108,13 +108,13 @@ def parameter_table(
     Parameters
     ----------
     entries : mapping
-        By parameter name: a number, which fixes it; a mapping with some of ``value``, ``min``,
+        Entries by parameter name: a number, which fixes it; a mapping with some of ``value``, ``min``,
         ``max``, ``vary``; or a `Parameter`.
 
     Raises
     ------
     InputError
-        An unknown name or field (with the nearest known one), or values that cannot be used.
+        A name or field is unknown (the error proposes the nearest known one), or a value is invalid.
     """
     return merge({}, entries)
 
@@ -128,26 +128,26 @@ def merge(
     Parameters
     ----------
     base : mapping of str to Parameter
-        It is not changed.
+        Table to start from; it is not modified.
     changes : mapping
-        As in `parameter_table`. A number changes value and vary; a mapping changes the fields it
-        names (None removes one); a `Parameter` changes vary and its fields that are not None.
+        Entries as in `parameter_table`. A number changes value and vary. A mapping changes its fields
+        (None removes a field). A `Parameter` changes vary and its fields that are not None.
 
     Raises
     ------
     InputError
-        As in `parameter_table`; also if a change contradicts the other fields.
+        Same errors as in `parameter_table`, or a change contradicts other fields.
     """
     check_mapping("", "parameters", changes)
     table = dict(base)
     for name, entry in changes.items():
         check_parameter_name(name)
         if type(entry) is Parameter and entry.name == name and name not in table:
-            table[name] = entry  # frozen, and checked when it was made
+            table[name] = entry  # frozen, and already checked
             continue
         known = {} if name not in table else _fields(table[name])
         table[name] = Parameter(**{"name": name, **known, **_stated(name, entry)})
-    # Harmonics follow the others, in the order of the tables.
+    # Harmonics follow the other parameters, in the order of the tables.
     order = _order()
     return {name: table[name] for name in sorted(table, key=lambda n: order.get(n, len(order)))}
 
@@ -168,7 +168,7 @@ def _fields(parameter: Parameter) -> dict[str, Any]:
 
 
 def _stated(name: str, entry: object) -> dict[str, Any]:
-    """Return the fields that an entry of a table states."""
+    """Return the fields that a table's entry sets."""
     if isinstance(entry, Parameter):
         if entry.name != name:
             raise InputError(

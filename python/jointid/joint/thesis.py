@@ -9,7 +9,7 @@ from jointid.joint.parameters import Parameter
 def thesis_joint() -> Joint:
     """Return the joint of the thesis: a strain-wave drive with a built-in torque sensor.
 
-    It has the drive's data and the bounds of the search, but no values of friction or sensor.
+    It has the drive's data and the search bounds, but no friction or sensor values.
 
     Examples
     --------
@@ -34,7 +34,7 @@ def thesis_joint() -> Joint:
         torque_constant=0.198,
         torque_hold="zoh",
         sensor=True,
-        # Gravity acts behind the sensor, which measures it with the link's torque.
+        # Gravity acts behind the sensor, so that the sensor measures it.
         model=Model("stribeck", gravity="none"),
         link=link,
         parameters={

@@ -1,4 +1,4 @@
-"""How well the given facts of a joint are known."""
+"""Tolerances of the known facts of a joint."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _EXPECTED = 'a share such as "5 %", or a number in the unit of the fact, is expe
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tolerances:
-    """How far given facts may be off: each ± a share, as text (``"5 %"``), or ± a number in the fact's own unit.
+    """Tolerances of known facts: each ± a relative tolerance as text (``"5 %"``), or ± a number in the fact's unit.
 
     Parameters
     ----------
@@ -25,19 +25,19 @@ class Tolerances:
         Torque constant of the motor [N·m/A]. A drive computes its torque from its current, so it scales the torque
         of any signal. A relative tolerance needs no known torque constant.
     gear_ratio : str or float, optional
-        It scales a torque that is recorded on the motor side, and the reflected inertia of a rotor.
+        Gear ratio. It scales a torque that is recorded on the motor side, and the reflected inertia of a rotor.
     inertia, rotor_inertia : str or float, optional
-        [kg·m²]
+        Inertia at the output, and of the rotor on the motor side [kg·m²].
     mass, centre_of_mass, link_inertia : str or float, optional
         Mass [kg], center of mass [m] and inertia [kg·m²] of the link.
     symmetry : str or float, optional
-        How far the Coulomb friction of each direction may be off the mean of both, as a share of it or in its unit:
-        a sensor's offset takes that up. Default, where none is stated: "10 %".
+        Largest difference of each direction's Coulomb friction from the mean of both, relative or in its unit.
+        It affects a sensor's offset. Default: "10 %".
 
     Raises
     ------
     InputError
-        Neither a share below 100 % nor a number, or a negative one.
+        A tolerance is neither a share below 100 % nor a number, or is negative.
 
     Examples
     --------
@@ -60,12 +60,12 @@ class Tolerances:
 
     @classmethod
     def of(cls, value: object) -> Tolerances:
-        """Return tolerances from tolerances or a mapping.
+        """Return tolerances from `Tolerances` or a mapping.
 
         Raises
         ------
         InputError
-            Something else, or a fact that has no tolerance.
+            The value has another type, or names a fact without a tolerance.
         """
         if isinstance(value, Tolerances):
             return value
@@ -83,18 +83,18 @@ class Tolerances:
 
     @property
     def given(self) -> dict[str, Any]:
-        """Those that are stated, by name."""
+        """Stated tolerances by name."""
         stated = {item.name: getattr(self, item.name) for item in fields(self)}
         return {name: value for name, value in stated.items() if value is not None}
 
     def size(self, name: str, value: float | None) -> float | None:
-        """Return a fact's tolerance in its own unit; None where it is not stated, or the fact is not known.
+        """Return a fact's tolerance in the fact's unit; None if the tolerance is not stated, or the fact is unknown.
 
         Parameters
         ----------
         name : str
         value : float or None
-            The fact.
+            Value of the fact.
         """
         stated = getattr(self, name)
         if stated is None or value is None:
@@ -103,14 +103,14 @@ class Tolerances:
 
 
 def share_of(text: str) -> float:
-    """Return the share that a text such as "5 %" states."""
+    """Return the share from a text such as "5 %"."""
     found = re.fullmatch(_PERCENT, text)
     assert found is not None  # checked before
     return float(found[1]) / 100.0
 
 
 def _checked(name: str, value: object) -> str | float:
-    """Return a tolerance in its usual form, or refuse it."""
+    """Return a tolerance in its normal form, or refuse it."""
     place = "tolerances"
     if isinstance(value, str):
         if re.fullmatch(_PERCENT, value) is None or share_of(value) >= 1.0:

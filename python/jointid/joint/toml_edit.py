@@ -1,4 +1,4 @@
-"""Edits of a TOML document that keep its comments, order and layout."""
+"""Edits of a TOML document that preserve comments, order and layout."""
 
 from collections.abc import Collection, Mapping
 from typing import Any
@@ -12,18 +12,18 @@ def update_table(
     kept: Collection[str] = (),
     inline: bool,
 ) -> None:
-    """Change a tomlkit table where it differs from the wanted values.
+    """Change the entries of a tomlkit table that differ from the wanted values.
 
     Parameters
     ----------
     parts : list
-        Parts of the table; other tables may lie between them.
+        Parts of the table; other tables may be between them.
     wanted : mapping
-        Its new keys and values.
+        New keys and values.
     defaults : mapping
-        Values that are not added.
+        Default values, which are not added.
     kept : collection of str
-        Other keys that are not removed. Default: none.
+        Further keys that are not removed. Default: none.
     inline : bool
         Whether new tables are inline.
     """
@@ -42,13 +42,13 @@ def update_table(
         else:
             fixed = isinstance(value, Mapping) and not value.keys() - {"value", "vary"}
             if fixed and value["vary"] is False:
-                value = value["value"]  # a number alone fixes a parameter
+                value = value["value"]  # a number without a table fixes a parameter
             if part[key] != value:
                 part[key] = _entries(value, usual, inline)
 
 
 def _entries(value: Any, defaults: Any, inline: bool) -> Any:
-    """Return a value for a tomlkit table, without its defaults."""
+    """Return a value for a tomlkit table, without entries equal to defaults."""
     import tomlkit
 
     if not isinstance(value, Mapping):
@@ -74,7 +74,7 @@ def _body(table: Any) -> list[Any]:
 
 
 def _parts(table: Any, key: str) -> list[Any]:
-    """Return the parts of an inner table; other tables may lie between them."""
+    """Return the parts of an inner table; other tables may be between them."""
     from tomlkit.items import Table
 
     found = [item for name, item in _body(table) if name is not None and name.key == key]
@@ -99,7 +99,7 @@ def _add(table: Any, key: str, value: Any) -> None:
     table[key] = value
     if first is None or isinstance(value, Mapping):
         return
-    # tomlkit adds it directly before the first table, with a blank line after it.
+    # tomlkit adds a key directly before the first table, with a blank line after it.
     first.trivia.indent = indent
     body = _body(table)
     at = [name and name.key for name, _ in body].index(key)

@@ -1,4 +1,4 @@
-"""The units on the axes: of velocity and torque, and of parameters from the table of terms."""
+"""Units: axis labels of velocity and torque, and units of parameters from the table of terms."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def torque_unit(kind: str) -> str:
 
 
 def parameter_unit(name: str, kind: str = "revolute") -> str:
-    """Return the unit of a parameter, ``""`` for a name that no term or shape has."""
+    """Return the unit of a parameter; ``""`` for an unknown name."""
     units = {row.name: (row.unit, row.unit_prismatic) for row in _core.terms()}
     units |= {row.name: (row.unit, row.unit_prismatic) for row in _core.shapes()}
     return units.get(name, ("", ""))[kind == "prismatic"]

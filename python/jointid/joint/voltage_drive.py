@@ -1,4 +1,4 @@
-"""A drive whose input is a voltage: a servo that logs a duty instead of a torque."""
+"""A drive with a voltage as input: a servo that logs a duty instead of a torque."""
 
 from __future__ import annotations
 
@@ -19,29 +19,29 @@ from jointid.joint.checks import (
 )
 
 SIGNALS = ("duty", "supply", "driven", "gain")
-"""Extra signals of a servo's recording: duty [1], supply [V], whether the motor is driven, gain of the loop."""
+"""Extra signals of a servo's recording: duty [1], supply [V], whether the motor is driven, loop gain."""
 
 INPUTS = ("torque", "voltage")
-"""What `input` in a joint file's [drive] may be."""
+"""Values of `input` in a joint file's [drive]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PositionLoop:
-    """The servo's own loop: duty = gain · (reference - position), limited to the saturation.
+    """The servo's position loop: duty = gain · (reference - position), limited to the saturation.
 
     Parameters
     ----------
     gain : float
-        Duty per error [1/rad]; with a recorded signal "gain", per error and unit of that signal.
+        Duty per position error [1/rad]; with a recorded signal "gain", also per unit of that signal.
     saturation : float
         Largest magnitude of the duty. Default 1.
     delay : float
-        From the error to the duty [s]. Default 0.
+        Delay from the error to the duty [s]. Default 0.
 
     Raises
     ------
     InputError
-        A value that is not finite, a saturation that is not positive, or a negative delay.
+        A value is not finite, the saturation is not positive, or the delay is negative.
     """
 
     gain: float
@@ -61,7 +61,7 @@ class PositionLoop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VoltageDrive:
-    """A motor on a voltage: torque = (k_t / R) · duty · supply - (k_t² / R) · velocity, at the output.
+    """A motor with a voltage as input: torque = (k_t / R) · duty · supply - (k_t² / R) · velocity, at the output.
 
     k_t is the joint's `torque_constant` times its gear ratio. Unknown constants are identified.
 
@@ -76,13 +76,13 @@ class VoltageDrive:
     position_loop : PositionLoop or mapping, optional
         Computes the duty if none is logged, and closes the loop in a rollout. Default: not known.
     signals : mapping of str to str
-        Which columns hold the extra signals "duty", "supply", "driven" (0 where the motor turns freely) and "gain".
-        Default: none; the command line then uses columns with these names.
+        Headers of the extra signals "duty", "supply", "driven" (0 while the motor turns freely) and "gain". Default:
+        none; the command line then uses columns with these names.
 
     Raises
     ------
     InputError
-        A value that cannot be used.
+        A value is invalid.
 
     Examples
     --------
@@ -143,16 +143,16 @@ def _rebuilt(values: dict[str, Any]) -> VoltageDrive:
 
 
 KEYS = ("input", *(item.name for item in fields(VoltageDrive)))
-"""Keys of a joint file's [drive] that describe its input."""
+"""Keys of a joint file's [drive] that describe the input."""
 
 
 def voltage_of(table: dict[str, Any]) -> VoltageDrive | None:
-    """Take the input's keys out of a joint file's table [drive], and return what they describe.
+    """Remove the input's keys from a joint file's table [drive], and return the voltage drive that they describe.
 
     Raises
     ------
     InputError
-        An input that is unknown, or keys of a voltage drive without ``input = "voltage"``.
+        The input is unknown, or there are keys of a voltage drive without ``input = "voltage"``.
     """
     given = {key: table.pop(key) for key in KEYS if key in table}
     kind = given.pop("input", "torque")
@@ -188,7 +188,7 @@ def drive_keys(voltage: VoltageDrive | None) -> dict[str, Any]:
 
 
 def _checked_keys(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of a position loop; its gain must be there."""
+    """Return the fields of a position loop; the gain is required."""
     known = [item.name for item in fields(PositionLoop)]
     place = "drive.position_loop"
     for key in given:
