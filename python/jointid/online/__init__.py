@@ -1,1 +1,1 @@
-"""On-line identification: an estimate that follows the joint while it runs."""
+"""Online identification: estimates of a joint while it runs."""

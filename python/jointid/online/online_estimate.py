@@ -1,4 +1,4 @@
-"""An estimate of the on-line identifier."""
+"""An estimate of the online identifier."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PLAIN = (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OnlineEstimate(Result):
-    """An estimate from the last seconds of a motion that continues.
+    """An estimate from the last seconds of a continuing motion.
 
     Its intervals contain random errors only. `identify` on a recording also checks the signals, and
     includes the effect of the choice of windows.
@@ -27,26 +27,26 @@ class OnlineEstimate(Result):
     Attributes
     ----------
     parameters : mapping of str to ParameterEstimate
-        By name; fixed ones too.
+        Parameters by name, fixed ones included.
     undetermined : tuple of str
         Free parameters whose standard error exceeds 5 % of the value: the last seconds do not determine
         them.
     at_bound : tuple of str
-        Parameters that a bound holds.
+        Parameters that ended on a bound.
     begin, end : float
-        First and last instant of the samples used, on their clock [s].
+        Time of the first and last sample used [s].
     windows : int
         Number of integration windows with motion.
     penalty : float
-        Sum of squared window residuals, by the direct sum.
+        Sum of squared window residuals, summed directly.
     joint : Joint
-        With the estimated values, ready for a controller.
+        Joint with the estimated values, ready for a controller.
     update : int
-        Number of estimates so far, this one included.
+        Number of estimates so far, including this one.
     seconds : float
         Computing time of this update [s].
     dropped : int
-        Number of samples that arrived faster than they could be processed and were left out so far.
+        Number of samples left out so far, because they arrived faster than they could be processed.
 
     Examples
     --------
@@ -94,7 +94,7 @@ class OnlineEstimate(Result):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything but the joint in JSON's types; a number that is not finite is a text."""
+        """Return everything except the joint in JSON's types; a number that is not finite becomes a text."""
         return dict(
             json_types(
                 {
@@ -110,7 +110,7 @@ class OnlineEstimate(Result):
         Parameters
         ----------
         verbose : bool
-            Whether to add the fixed parameters, and what the last seconds do not determine. Default False.
+            Whether to add the fixed and the undetermined parameters. Default False.
         """
         lines = [str(self)]
         if verbose:

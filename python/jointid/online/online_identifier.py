@@ -1,4 +1,4 @@
-"""`OnlineIdentifier`: estimates from samples as they arrive, computed on a thread of its own."""
+"""`OnlineIdentifier`: estimates from arriving samples, computed on a separate thread."""
 
 from __future__ import annotations
 
@@ -33,35 +33,35 @@ class OnlineIdentifier:
     """Identify a joint while it runs, from the last seconds of its motion.
 
     `feed` takes samples and returns at once. A thread of the identifier processes them piece by piece,
-    removes those older than `window`, and computes a new estimate. Time and memory are bounded: an update
-    takes a few milliseconds at any sample rate, and nothing older than the window is kept. Windows of
-    integration and bounds are chosen as in `identify`; they are checked while the window fills, and then
-    once per window. A window of integration has at least five samples: below about 50 samples per second
-    the default window of 30 s has few of them, and the estimate is less accurate near reversals. The gain is
-    found by regression: `residual` is "sensor" (default with a sensor) or "torque".
+    removes samples older than `window`, and computes a new estimate. Time and memory are bounded: an update
+    takes a few milliseconds at any sampling rate, and no sample older than the window is kept. Windows of
+    integration and bounds are chosen as in `identify`. They are checked while the window fills, and then
+    once per window. A window of integration has at least five samples. Below about 50 samples per second,
+    the default window of 30 s has few windows of integration, and the estimate is less accurate near reversals.
+    The gain is found by regression: `residual` is "sensor" (default with a sensor) or "torque".
 
-    `close`, or the end of a `with` block, ends the thread; so does deleting the identifier, unless its
-    callback refers to it.
+    `close`, or the end of a `with` block, ends the thread. Deleting the identifier also ends it, unless the
+    callback refers to the identifier.
 
     Parameters
     ----------
     joint : Joint, optional
-        Known values, bounds and the model, as for `identify`. Bounds that it does not state are computed
-        from the first seconds, and again if one of them holds a parameter.
+        Known values, bounds and the model, as for `identify`. Other bounds are computed from the first
+        seconds, and again if a parameter reaches one of them.
     window : float
-        Duration of the past that estimates use [s]; default 30.
+        Duration of the samples that an estimate uses [s]. Default 30.
     update : float
-        Time between estimates, and duration of a piece [s], rounded up to a whole number of integration
-        windows; default 0.5.
+        Time between estimates, and duration of a piece [s]; rounded up to a whole number of integration
+        windows. Default 0.5.
     **options
     callback : callable, optional
-        Called with each `OnlineEstimate`, on the identifier's thread. The next call, or the end of the
-        `with` block, raises the exceptions of the callback.
+        Function that gets each `OnlineEstimate`, called on the identifier's thread. The next call, or the end
+        of the `with` block, raises the callback's exceptions.
 
     Raises
     ------
     InputError
-        Settings that cannot be used, at once; samples that cannot be used, in the next call after them.
+        Settings are invalid (raised at once), or samples are invalid (raised in the next call).
 
     Examples
     --------
@@ -110,22 +110,22 @@ class OnlineIdentifier:
         torque: ArrayLike | None = None,
         **others: ArrayLike | None,
     ) -> None:
-        """Add one sample, or several. Any thread may do so; each call is taken as a whole.
+        """Add one or several samples. Any thread may call this; each call is processed as a whole.
 
         Parameters
         ----------
         time : float or array
-            [s], increasing.
+            Time [s], increasing.
         position, torque : float or array
-            Output side [rad, N·m] (or [m, N]).
+            Position and torque on the output side [rad, N·m] (or [m, N]).
         **others : float or array
-            velocity, sensor; instead of the torque, motor_torque or current, which a joint with
-            gear_ratio (and torque_constant) converts. The same signals in every call.
+            Further signals: velocity and sensor. Instead of the torque: motor_torque or current, which a
+            joint with gear_ratio (and torque_constant) converts. Every call needs the same signals.
 
         Raises
         ------
         InputError
-            Samples that cannot be used, these or earlier ones.
+            These or earlier samples are invalid.
         """
         for name in others:
             if name not in _OPTIONAL:
@@ -140,7 +140,7 @@ class OnlineIdentifier:
             self._take(given)
 
     def _take(self, given: Mapping[str, ArrayLike | None]) -> None:
-        """Check samples against those before, and hand them to the thread; by one caller at a time."""
+        """Check samples against the previous ones and pass them to the thread; one caller at a time."""
         here = tuple(name for name, value in given.items() if value is not None)
         signals = self._signals or here
         if "position" not in signals:
@@ -172,7 +172,7 @@ class OnlineIdentifier:
 
     @property
     def estimate(self) -> OnlineEstimate | None:
-        """The latest estimate, or None before the first."""
+        """Latest estimate, or None before the first one."""
         return self._worker.latest()
 
     def wait(self, timeout: float | None = None) -> OnlineEstimate | None:
@@ -181,19 +181,19 @@ class OnlineIdentifier:
         Parameters
         ----------
         timeout : float, optional
-            [s]. Default: no limit.
+            Longest wait [s]. Default: no limit.
 
         Raises
         ------
         TimeoutError
             The samples were not processed in time.
         InputError
-            Called from the callback, which would wait for itself.
+            The call comes from the callback, which would wait for itself.
         """
         return self._worker.wait(timeout)
 
     def close(self) -> None:
-        """End the thread; samples in the queue are not processed."""
+        """End the thread; samples in the queue are discarded."""
         self._worker.stop()
         self._worker.join()
 

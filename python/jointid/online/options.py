@@ -1,4 +1,4 @@
-"""What `OnlineIdentifier` takes by keyword besides joint, window and update."""
+"""Keyword options of `OnlineIdentifier` in addition to joint, window and update."""
 
 import numbers
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ from jointid.problem.settings import BalanceOptions
 
 
 def checked_duration(name: str, value: Any) -> float:
-    """Return a duration [s], or refuse what is none."""
+    """Return a duration [s], or refuse an invalid one."""
     if not is_number(value):
         raise InputError("a duration in seconds is expected", argument=name, value=value)
     try:
@@ -44,20 +44,20 @@ class _OwnOptions(TypedDict, total=False):
         Model | ModelName | Mapping[str, Any] | None,
         Option(
             kind="Model, str or mapping, optional",
-            help="As for `identify`, with at most one shape parameter; it is not chosen here. Default: the joint's, "
-            'or "coulomb_viscous".',
+            help="Same as for `identify`, with at most one shape parameter and no automatic choice. Default: the "
+            'joint\'s model, or "coulomb_viscous".',
         ),
     ]
     windows: Annotated[
         float | None,
         Option(
             kind="float, optional",
-            help="Duration of an integration window [s]; `window` must contain more than two per parameter. Default: "
-            "from the noise of the samples.",
+            help="Duration of an integration window [s]; `window` must hold more than two of them per parameter. "
+            "Default: from the noise of the samples.",
             checked=_windows,
         ),
     ]
 
 
 class OnlineOptions(_OwnOptions, BalanceOptions, total=False):
-    """Those of the balance, and its own."""
+    """Options of the balance, and of the online identifier."""

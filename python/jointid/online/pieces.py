@@ -1,4 +1,4 @@
-"""The next piece of the samples to process, and its context on both sides."""
+"""The next piece of samples to process, with its context on both sides."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from jointid.online.plan import Plan
 
 Array = NDArray[np.float64]
 
-SHORTEST = 8  # samples that a recording needs
-_LONG = 3.5  # sample periods; a longer interval is a gap, as in a recording
+SHORTEST = 8  # samples: shortest recording
+_LONG = 3.5  # sample periods: a longer interval is a gap, as in a recording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Piece:
-    """Samples begin to end, both included, within their context, before to after - 1.
+    """Samples `begin` to `end`, both included, within their context `before` to `after` - 1.
 
     Attributes
     ----------
     next : int
-        First sample of the following piece: `end`, or the first one after a gap.
+        First sample of the next piece: `end`, or the first sample after a gap.
     """
 
     begin: int
@@ -35,8 +35,8 @@ class Piece:
 def next_piece(times: Array, begin: int, plan: Plan) -> Piece | None:
     """Return the piece that begins with sample `begin`, or None while it is not complete.
 
-    It ends where a gap begins, or else after the plan's duration: no piece contains a gap, and samples
-    older than the window are removed in time.
+    A piece ends at a gap, or after the plan's duration. No piece contains a gap, and samples older than
+    the window are removed in time.
     """
     if begin + 1 >= len(times):
         return None

@@ -1,4 +1,4 @@
-"""The plan that the samples so far define: terms, bounds, windows, and the threshold of standstill."""
+"""The plan from the samples so far: terms, bounds, windows, and the threshold of standstill."""
 
 from __future__ import annotations
 
@@ -13,46 +13,46 @@ from jointid.problem.problem import Problem
 from jointid.problem.terms import choose_terms
 from jointid.recording.recording import Recording
 
-# The table of shapes covers this multiple of the largest speed so far.
+# Range of the table of shapes, as a multiple of the largest speed so far.
 _FASTER = 1.5
-# Context before and after a piece, which decides whether the joint stands still at its ends [s]; at most
-# a share of the window.
+# Context before and after a piece, which shows whether the joint stands still at the piece's ends [s]; at
+# most this share of the window.
 _CONTEXT = 0.15
 _LONGEST_CONTEXT = 0.1
-# A plan is replaced when noise, speed or rate have changed by these ratios: once when the window is full
-# for the first time, and later.
+# Ratios by which noise, speed or rate must change before a plan is replaced: when the window is full for
+# the first time, and later.
 _DIFFERS = 1.05
 _CHANGED = 1.3
-# As a share of the planned travel: less is a pause, which does not define windows.
+# Share of the planned travel: less travel is a pause, which does not define windows.
 _RESTING = 0.01
 
 
 @dataclass(slots=True, kw_only=True)
 class Plan:
-    """How samples are processed; computed from the samples in memory at one instant.
+    """Settings for the processing of samples, computed from the samples in memory at one instant.
 
     Attributes
     ----------
     problem : Problem
     frame : Penalty
-        The direct sum over the samples of that instant, for the names of its parameters and its terms.
+        Direct sum over the samples at that instant; it has the names of parameters and terms.
     domain : SearchDomain
     penalty : SlidingPenalty
-        The penalty to which pieces are added.
+        Penalty to which pieces are added.
     scale : MotionScale
-        Scale of the whole motion, with which slow motion is found.
+        Scale of the whole motion, used to find slow motion.
     speed : float
         Largest speed that the table of shapes covers [rad/s or m/s].
     period : float
-        Between samples [s].
+        Time between samples [s].
     duration : float
         Duration of an integration window [s].
     stretch : float
         Duration of a piece, a whole number of windows [s].
     context : float
-        Duration of the context on either side of a piece [s].
+        Duration of the context on each side of a piece [s].
     made : float
-        Instant of the plan, on the samples' clock [s].
+        Time of the plan, on the samples' clock [s].
     full : bool
         Whether a whole window of samples was in memory.
     """
@@ -72,7 +72,7 @@ class Plan:
 
 
 def make_plan(settings: OnlineSettings, recording: Recording, fastest: float) -> Plan | None:
-    """Return a plan from the samples in memory; None while they do not suffice.
+    """Return a plan from the samples in memory; None if they are not sufficient yet.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ def make_plan(settings: OnlineSettings, recording: Recording, fastest: float) ->
     recording : Recording
         The samples in memory.
     fastest : float
-        A speed that the plan must cover [rad/s or m/s].
+        Speed that the plan must cover [rad/s or m/s].
 
     Raises
     ------
     InputError
-        The signals contradict the settings, or a whole window does not suffice.
+        The signals contradict the settings, or a whole window is not sufficient.
     """
     choice = choose_terms((recording,), settings.joint, settings.request)
     if choice.residual == "instruments":
@@ -128,7 +128,7 @@ def make_plan(settings: OnlineSettings, recording: Recording, fastest: float) ->
         speed=speed,
         period=period,
         duration=duration,
-        # A whole number of windows, so that they are as long as those of one long recording.
+        # A whole number of windows, so that windows are as long as in one long recording.
         stretch=duration * math.ceil(settings.update / duration - 1e-6),
         context=max(
             _CONTEXT,
@@ -141,7 +141,7 @@ def make_plan(settings: OnlineSettings, recording: Recording, fastest: float) ->
 
 
 def outdated(plan: Plan, settings: OnlineSettings, recording: Recording) -> bool:
-    """Return whether the samples in memory need another plan because of noise, speed or rate."""
+    """Return whether noise, speed or rate of the samples in memory require a new plan."""
     core = settings.problem(recording, plan.problem.choice).in_core[0]
     scale = _core.MotionScale(core)
     if not scale.moves or scale.travel < _RESTING * plan.scale.travel:
@@ -157,5 +157,5 @@ def outdated(plan: Plan, settings: OnlineSettings, recording: Recording) -> bool
 def _wanted_duration(
     core: _core.Recording, domain: SearchDomain, settings: OnlineSettings
 ) -> float:
-    """Return the window duration for the velocity's noise; the frame's divides the recording evenly instead."""
+    """Return the window duration for the velocity's noise; the frame's windows divide the recording evenly instead."""
     return _core.window_duration(core, len(domain.names), settings.posed.mask_standstill)

@@ -1,4 +1,4 @@
-"""The raw samples of the last seconds, and those not yet processed."""
+"""The raw samples of the last seconds, and samples that are not yet processed."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Array = NDArray[np.float64]
 
 
 class Samples:
-    """A buffer of signals: new samples are added at the end, old ones removed at the beginning.
+    """A buffer of signals: new samples are added at the end, old samples are removed at the beginning.
 
     Parameters
     ----------
     signals : tuple of str
-        "time" and others; each sample has all of them.
+        Names of the signals, "time" among them; each sample has all of them.
     """
 
     def __init__(self, signals: tuple[str, ...]) -> None:
@@ -32,14 +32,14 @@ class Samples:
 
     @property
     def time(self) -> Array:
-        """Of each sample [s]."""
+        """Time of each sample [s]."""
         return self._rows[self.signals.index("time"), self._begin : self._end]
 
     def append(self, given: Mapping[str, Array]) -> None:
-        """Add samples; all signals are of one length."""
+        """Add samples; all signals have the same length."""
         count = given["time"].size
         if self._end + count > self._rows.shape[1]:
-            # Space for as many again, so that copying stays cheap.
+            # Double the space, so that copies are rare.
             grown = np.empty((len(self.signals), max(1024, 2 * (len(self) + count))))
             grown[:, : len(self)] = self._rows[:, self._begin : self._end]
             self._rows, self._end, self._begin = grown, len(self), 0
@@ -65,7 +65,7 @@ def checked(given: Mapping[str, ArrayLike | None], signals: tuple[str, ...]) -> 
     Raises
     ------
     InputError
-        A signal that is missing, unexpected, of another length or not finite.
+        A signal is missing, unexpected, of another length or not finite.
     """
     here = {name for name, value in given.items() if value is not None}
     for name in signals:
@@ -106,7 +106,7 @@ def _array(name: str, value: ArrayLike | None) -> Array:
     """Return a signal's samples as an array, or refuse them."""
     try:
         return np.atleast_1d(np.asarray(value, dtype=np.float64))
-    except (OverflowError, TypeError, ValueError) as error:  # from NumPy, about the caller's value
+    except (OverflowError, TypeError, ValueError) as error:  # raised by NumPy
         raise InputError(
             "a number or an array of numbers is expected",
             argument=name,

@@ -1,4 +1,4 @@
-"""Settings of an on-line identification, checked before the first sample."""
+"""Settings of an online identification, checked before the first sample."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from jointid.recording.recording import Recording
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OnlineSettings:
-    """Settings of an on-line identification; see `OnlineIdentifier`.
+    """Settings of an online identification; see `OnlineIdentifier`.
 
     Attributes
     ----------
     posed : Settings
-        How the samples of a window pose a problem.
+        Settings of the problem for the samples of a window.
 
     Raises
     ------
     InputError
-        Values that cannot be used, by themselves or for this joint.
+        Values are invalid, alone or for this joint.
     """
 
     joint: Joint | None
@@ -66,12 +66,12 @@ class OnlineSettings:
 
     @property
     def request(self) -> Request:
-        """The terms and the residual that the call asks for."""
+        """Terms and residual that the call requests."""
         return Request(model=self.posed.model, residual=self.posed.residual)
 
     @property
     def windows(self) -> float | None:
-        """Duration of an integration window, if it is stated [s]."""
+        """Stated duration of an integration window [s]; None: not stated."""
         windows = self.posed.windows
         assert windows is None or isinstance(windows, float)
         return windows
@@ -86,12 +86,12 @@ class OnlineSettings:
         )
 
     def check_signals(self, signals: tuple[str, ...]) -> None:
-        """Refuse signals without one that the terms need.
+        """Refuse signals if one that the terms need is missing.
 
         Raises
         ------
         InputError
-            No torque, or no sensor although the joint has one; parameters that are not among these terms.
+            There is no torque, or no sensor although the joint has one, or parameters are not among these terms.
         """
         joint = self.joint
         if joint is not None and joint.sensor and "sensor" not in signals:
@@ -123,7 +123,7 @@ class OnlineSettings:
             )
 
     def _check_terms(self) -> None:
-        """Refuse settings that are wrong for any samples; only the samples show whether there is a sensor."""
+        """Refuse settings that are wrong for any samples; the sensor is checked later, with the samples."""
         model = self.posed.model
         chosen = (model if self.joint is None else self.joint.model).resolved
         if (model if self.joint is None else self.joint.model).name == AUTO:

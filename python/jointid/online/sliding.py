@@ -1,4 +1,4 @@
-"""From the samples of the last seconds to an estimate: what the identifier's thread does."""
+"""Computation of estimates from the samples of the last seconds, on the identifier's thread."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 _LARGE_ERROR = 0.05
-# Largest error of the compressed penalty, as a share of the columns' squared size: no direct sum can verify it.
+# Largest error of the compressed penalty over the columns' squared size, because no direct sum can verify it.
 _ROUGH = 1e-11
-# The plan is checked each time the samples in memory have grown by this share.
+# The plan is checked whenever the samples in memory have grown by this share.
 _GROWTH = 0.4
-# Samples kept in addition to the window while there is no plan [s].
+# Duration of samples kept in addition to the window while there is no plan [s].
 _ROOM = 0.3
 
 
@@ -41,9 +41,9 @@ class Sliding:
     ----------
     settings : OnlineSettings
     signals : tuple of str
-        "time" and others.
+        Names of the signals, "time" among them.
     closed : callable, optional
-        Whether to stop; called once per piece. Default: never.
+        Function that returns whether to stop; called once per piece. Default: never.
     """
 
     def __init__(
@@ -56,8 +56,8 @@ class Sliding:
         self._closed = closed
         self._samples = Samples(signals)
         self._plan: Plan | None = None
-        self._look = -np.inf  # instant of the next check of the plan, or attempt at one [s]
-        self._digested = 0  # index of the first sample that is not processed
+        self._look = -np.inf  # time of the plan's next check or attempt [s]
+        self._digested = 0  # index of the first unprocessed sample
         self._updates = 0
 
     def append(self, given: Mapping[str, Array]) -> None:
@@ -78,7 +78,7 @@ class Sliding:
         found = self._solve(self._plan, began, dropped)
         if found is not None and self._outgrown(self._plan, found):
             self._plan.made = found.end
-            self._renew(self._remembered())  # the next piece begins with bounds from all samples
+            self._renew(self._remembered())  # the next piece uses bounds from all samples
         return found
 
     def _recording(self, begin: int, end: int) -> Recording:
@@ -90,7 +90,7 @@ class Sliding:
         return self._recording(0, len(self._samples))
 
     def _adopt(self, plan: Plan) -> None:
-        """Begin with a new plan: the samples in memory are processed again."""
+        """Start with a new plan; the samples in memory are processed again."""
         self._plan = plan
         self._digested = 0
         self._look_later()
@@ -105,7 +105,7 @@ class Sliding:
         times, update = self._samples.time, self._settings.update
         if len(times) < SHORTEST or times[-1] - times[0] < 2.0 * update or times[-1] < self._look:
             return
-        # Without a pause, a joint at rest would make every call look at all samples.
+        # Without a pause, every call would examine all samples while the joint is at rest.
         self._look = float(times[-1]) + update
         plan = make_plan(self._settings, self._remembered(), 0.0)
         if plan is not None:
@@ -125,12 +125,12 @@ class Sliding:
         try:
             made = make_plan(self._settings, remembered, 0.0)
         except InputError:
-            return  # the motion is too poor for a new plan; the present one stays
+            return  # the motion is too small for a new plan; the present plan stays
         if made is not None:
             self._adopt(made)
 
     def _digest(self) -> bool:
-        """Process every complete piece, and return whether there was one."""
+        """Process all complete pieces, and return whether there was one."""
         fresh = False
         while self._plan is not None and not self._closed():
             plan = self._plan
@@ -140,7 +140,7 @@ class Sliding:
             if piece.end > piece.begin:
                 recording = self._recording(piece.before, piece.after)
                 inside = slice(piece.begin - piece.before, piece.end - piece.before)
-                # Without the context: a derived velocity is several times as noisy at the ends.
+                # Without the context, because a derived velocity is several times noisier at the ends.
                 fastest = float(np.abs(recording.velocity[inside.start : inside.stop + 1]).max())
                 if fastest > plan.speed:
                     fresh = False
@@ -159,12 +159,12 @@ class Sliding:
             self._adopt(plan)
 
     def _outgrown(self, plan: Plan, found: OnlineEstimate) -> bool:
-        """Return whether a bound computed from earlier samples holds a parameter, and new ones may release it."""
+        """Return whether a parameter ended on a bound from earlier samples, and new bounds may release it."""
         held = set(found.at_bound) & set(plan.domain.from_data)
         return bool(held) and found.end - plan.made >= 0.5 * self._settings.window
 
     def _trim(self) -> None:
-        """Remove samples that are older than the window and its context, processed or not."""
+        """Remove samples older than the window and its context, processed or not."""
         times, settings, plan = self._samples.time, self._settings, self._plan
         if len(times) == 0:
             return

@@ -1,4 +1,4 @@
-"""The thread that processes samples, and the data that it shares with the caller's thread."""
+"""The thread that processes samples, and the data shared with the caller's thread."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ Array = NDArray[np.float64]
 
 
 class Worker:
-    """Accepts samples, processes them on a thread of its own, and keeps the latest estimate.
+    """Accepts samples, processes them on a separate thread, and keeps the latest estimate.
 
-    It has no reference to the identifier that owns it, so that an identifier that is garbage-collected
-    without `close` ends the thread.
+    It has no reference to its identifier. Therefore the thread also ends if the identifier is
+    garbage-collected without `close`.
     """
 
     def __init__(
@@ -29,7 +29,7 @@ class Worker:
     ) -> None:
         self._settings = settings
         self._callback = callback
-        self._condition = threading.Condition()  # re-entrant: a finalizer may stop us at any moment
+        self._condition = threading.Condition()  # re-entrant: a finalizer may stop it
         self._waiting: deque[dict[str, Array]] = deque()
         self._dropped = 0
         self._busy = False
@@ -39,7 +39,7 @@ class Worker:
         self.thread: threading.Thread | None = None
 
     def put(self, samples: dict[str, Array]) -> None:
-        """Add samples to the queue; samples older than a window are removed from it."""
+        """Add samples to the queue; samples older than a window are dropped."""
         with self._condition:
             self._raise_failure()
             if self._closed:
@@ -59,7 +59,7 @@ class Worker:
             self._condition.notify_all()
 
     def latest(self) -> OnlineEstimate | None:
-        """Return the latest estimate, or raise the failure that was not raised yet."""
+        """Return the latest estimate, or raise a pending failure."""
         with self._condition:
             self._raise_failure()
             return self._estimate
@@ -80,7 +80,7 @@ class Worker:
             return self._estimate
 
     def stop(self) -> None:
-        """Let the thread end after the present piece."""
+        """End the thread after the present piece."""
         with self._condition:
             self._closed = True
             self._waiting.clear()
@@ -92,7 +92,7 @@ class Worker:
             self.thread.join()
 
     def raise_failure(self) -> None:
-        """Raise the failure that was not raised yet."""
+        """Raise a pending failure."""
         with self._condition:
             self._raise_failure()
 
@@ -125,7 +125,7 @@ class Worker:
     def _digest(
         self, sliding: Sliding, taken: list[dict[str, Array]], dropped: int
     ) -> Sliding | None:
-        """Process samples; None after an error, which the samples in memory may have caused."""
+        """Process samples and return a new estimate; None after an error, because the samples may be its cause."""
         try:
             for samples in taken:
                 sliding.append(samples)
@@ -145,6 +145,6 @@ class Worker:
             return
         try:
             self._callback(found)
-        except BaseException as error:  # of the user's callback, raised by the next call
+        except BaseException as error:  # from the user's callback, raised by the next call
             with self._condition:
                 self._failure = error
