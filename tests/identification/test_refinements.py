@@ -46,7 +46,7 @@ def test_a_late_signal_is_named_and_shifted_back(
     for name, value in TRUTH.items():
         assert estimate.parameters[name].value == pytest.approx(value, rel=0.015), name
     assert "delay_removed" in {each.code for each in estimate.findings}
-    assert "taken away" in estimate.report(verbose=True)
+    assert "(removed)" in estimate.report(verbose=True)
 
 
 def test_a_reading_late_before_the_controller_is_named() -> None:
@@ -111,7 +111,7 @@ def test_a_shift_that_is_wrong_is_told_with_what_it_leaves(run: jid.Recording) -
     estimate = identified(run, shift={"torque": 0.003})
     found = estimate.delays["torque"]
     assert found.left == pytest.approx(-0.003, abs=1e-4)
-    stated = f"+3.00 ms was taken away as stated, {1e3 * found.left:.2f} ms is left"
+    stated = f"+3.00 ms was removed as stated, {1e3 * found.left:.2f} ms remains"
     assert stated in estimate.report(verbose=True)
     gain = estimate.parameters["sensor_gain"]
     assert abs(gain.value - TRUTH["sensor_gain"]) < 2.0 * gain.systematic["lag"]

@@ -1,4 +1,4 @@
-"""The answer in a few lines: the verdict, the values with their errors, what is wrong, and what to do about it."""
+"""The short answer of an estimate: verdict, values with errors, problems, and remedies."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from jointid.estimate.verdict import Verdict, judged
 from jointid.estimate.wording import number, percent, rounded, two_digits
 
 COLUMNS = 100
-"""A line is at most so long, but for a command, which stays in one piece."""
+"""Largest length of a line; a command is never broken."""
 
-_VALUES = 7  # values, of more the rest is a number
+_VALUES = 7  # values shown; the number of further values follows
 _FINDINGS = 2
-_NAMED = 4  # names in a line
+_NAMED = 4  # names per line
 
 
 def answer(estimate: EstimateRecord, action: Callable[[Action], str] = str, saved: str = "") -> str:
@@ -30,9 +30,9 @@ def answer(estimate: EstimateRecord, action: Callable[[Action], str] = str, save
     ----------
     estimate : Estimate
     action : callable
-        Words an action. Default: as at a Python prompt.
+        Words an action. Default: for a Python prompt.
     saved : str
-        The file that has the estimate. Default: there is none.
+        File with the estimate. Default: none.
     """
     verdict = judged(estimate)
     return printable(
@@ -48,7 +48,7 @@ def answer(estimate: EstimateRecord, action: Callable[[Action], str] = str, save
 
 
 def purposes(verdict: Verdict) -> list[str]:
-    """How good it is for each purpose, in a line; no line where nothing is known of that."""
+    """Return one line with the accuracy for each purpose; no line if nothing is known."""
     said = []
     for purpose, use in verdict.uses.items():
         if use.level == "not usable":
@@ -64,7 +64,7 @@ def purposes(verdict: Verdict) -> list[str]:
 
 
 def value_with_error(p: ParameterEstimate) -> tuple[str, str, str]:
-    """A value, its standard error, and its unit with a remark: two digits of the error decide how many of the value."""
+    """Return value, standard error, and unit with a remark; the value is rounded to two digits of its error."""
     note = remark(p)
     if p.stderr is None:
         return number(p.shown_value), "", f"{p.unit} ({note})" if note else p.unit
@@ -76,8 +76,8 @@ def value_with_error(p: ParameterEstimate) -> tuple[str, str, str]:
 
 
 def values(parameters: Sequence[ParameterEstimate]) -> list[str]:
-    """One line a value; of many the first, and how many there are."""
-    # What was not identified is no answer, but for an inertia that the call states.
+    """Return one line per value; for many values the first ones and the number of further values."""
+    # Fixed values are no answer, except for an inertia that the call states.
     wanted = [p for p in parameters if p.vary or p.name == "inertia"]
     shown = wanted if len(wanted) <= _VALUES else wanted[: _VALUES - 1]
     cells = [(p.name, *value_with_error(p)) for p in shown]
@@ -92,7 +92,7 @@ def values(parameters: Sequence[ParameterEstimate]) -> list[str]:
 
 
 def in_line(p: ParameterEstimate | None) -> str:
-    """A value with its name, error and unit, for a line of a joint that has others; nothing where there is none."""
+    """Return a value with name, error and unit for a joint's line; empty if there is no value."""
     if p is None:
         return ""
     if p.at_bound is not None:
@@ -104,7 +104,7 @@ def in_line(p: ParameterEstimate | None) -> str:
 
 
 def joint_lines(rows: Sequence[Sequence[str]]) -> list[str]:
-    """One line a joint: its cells in columns, without the last columns where a line would be too long."""
+    """Return one line per joint, with aligned cells; the last columns are left out if a line would be too long."""
     count = len(rows[0]) if rows else 0
     for kept in range(count, 0, -1):
         widths = [max(len(row[column]) for row in rows) for column in range(kept)]
@@ -124,7 +124,7 @@ def findings(
     saved: str = "",
     clean: Sequence[str] = ("no warnings",),
 ) -> list[str]:
-    """Two lines for each of the first findings that matter, and the codes of the others; `clean` if none does."""
+    """Return two lines for each of the first important findings, and the codes of the others; `clean` without any."""
     serious = [each for each in found if each.severity != "info"]
     blocking = [each for each in serious if each.severity == "blocking"]
     shown = serious[:most]
@@ -145,13 +145,13 @@ def findings(
 
 
 def two_lines(found: Finding, action: Callable[[Action], str] = str) -> list[str]:
-    """What was found, and what to do about it."""
+    """Return the title of a finding and its remedy."""
     what = next(filter(None, (action(each) for each in found.advice)), "")
     return [f"{found.severity}: {found.title}", *([f"  do: {what}"] if what else [])]
 
 
 def explained(found: Finding, action: Callable[[Action], str] = str) -> list[str]:
-    """Everything that a finding says, in lines."""
+    """Return all content of a finding, in lines."""
     lines = [f"{found.severity} ({found.code}): {found.title}"]
     lines += [f"  {each}" for each in found.details.split("; ") if each]
     lines += [
@@ -169,5 +169,5 @@ def _listed(codes: Sequence[str]) -> str:
 
 
 def cut(line: str) -> str:
-    """A line of at most `COLUMNS`."""
+    """Return a line cut to `COLUMNS`."""
     return line if len(line) <= COLUMNS else line[: COLUMNS - 1] + "…"

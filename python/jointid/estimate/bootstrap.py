@@ -1,4 +1,4 @@
-"""The result of a block bootstrap: how the values scatter when stretches of the recording are drawn anew."""
+"""The result of a block bootstrap: scatter of the values over draws of stretches of the recording."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jointid.estimate.wording import number, percent, two_digits
 
 Array = NDArray[np.float64]
 
-_LONGEST_NAME = 40  # letters, in a table
+_LONGEST_NAME = 40  # characters in a table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,16 +29,16 @@ class BootstrapParameter:
     ----------
     name, unit : str
     value : float
-        The estimate's.
+        Value of the estimate.
     stderr : float
-        Half of the range that holds the middle 68.3 % of the draws: their standard error, whatever the few do that
-        lack a direction of motion.
+        Standard error: half of the range of the middle 68.3 % of the draws. A few draws that lack a direction of
+        motion do not affect it.
     interval : tuple of float
-        95 % interval: value ± t · stderr, or percentiles of the draws where `near_bound`.
+        95 % interval: value ± t · stderr, or percentiles of the draws if `near_bound`.
     ratio : float or None
-        `stderr` over the estimate's error of chance; None where that has none.
+        `stderr` over the estimate's random error; None if the estimate has none.
     near_bound : bool
-        Whether a bound lies within three standard errors, or a draw in a hundred ends on one.
+        Whether a bound is within three standard errors, or at least 1 % of the draws end on a bound.
     """
 
     name: str
@@ -57,13 +57,13 @@ class Bootstrap(Result):
     Attributes
     ----------
     parameters : mapping of str to BootstrapParameter
-        Those that vary, in the order of the torque balance.
+        Free parameters, in the order of the torque balance.
     samples : ndarray, shape (n, p)
-        The refitted values of each draw, a column for each of `parameters`.
+        Refitted values of each draw, one column for each of `parameters`.
     block : float
         Length of a block [s].
     blocks : int
-        Blocks in a draw.
+        Number of blocks per draw.
     seed : int
 
     Examples
@@ -126,7 +126,7 @@ class Bootstrap(Result):
         Parameters
         ----------
         verbose : bool
-            Changes nothing: the answer is everything.
+            No effect: the report is always complete.
         """
         del verbose
         table = [("parameter", "value", "± bootstrap", "95 % interval", "unit", "of reported")]
@@ -146,5 +146,5 @@ class Bootstrap(Result):
 
 
 def _short(name: str) -> str:
-    """A name that leaves room for the table; a base parameter of a robot is a long sum."""
+    """Return a name short enough for the table; a base parameter of a robot is a long sum."""
     return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"

@@ -1,4 +1,4 @@
-"""Why a model does not fit: causes by name, with what they explain and which values they move."""
+"""Causes of a poor fit, by name, with the explained share of the residual and the effect on the values."""
 
 from __future__ import annotations
 
@@ -20,42 +20,42 @@ _NOTHING = "no cause of the residual was found"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cause:
-    """Something that the model lacks, and that the recordings show.
+    """An effect that the recordings show and the model lacks.
 
     Attributes
     ----------
     name : str
-        E.g. "gravity", "load_friction", "drift"; `docs/findings.md` lists them.
+        Name, e.g. "gravity", "load_friction", "drift"; `docs/findings.md` lists all.
     meaning : str
-        What the name means, as the beginning of a sentence.
+        Meaning of the name, as the beginning of a sentence.
     detail : str
-        Which of its kind: the coefficient that drifts, the order of a harmonic, the signal that is late.
+        Specification: the drifting coefficient, the order of a harmonic, the late signal.
     share : float
-        Share of the residual that it explains, in stretches of time that it was not fitted to.
+        Explained share of the residual, in held-out stretches of time.
     scale : float
-        Length of the windows at which that share was taken [s].
+        Length of the windows for this share [s].
     size : str
-        How large it is, with its unit; empty where one number does not say it.
+        Size of the effect with its unit; empty if one number is not enough.
     numbers : mapping of str to Measured
         The numbers in `detail` and `size`.
     shifts : mapping of str to float
-        How much each parameter would change if the model had it, in the parameter's unit.
+        Change of each parameter if the model had the effect, in the parameter's unit.
     relative : mapping of str to float
-        The same as shares of the values, of those that change noticeably.
+        Relative changes of the parameters that change noticeably.
     shares : mapping of str to float
-        The same of all values, noticeable or not.
+        Relative changes of all parameters.
     uncertain : mapping of str to float
         Large relative changes of uncertain values, in standard errors.
     near_zero : mapping of str to str
-        Changes of values near zero, in words: "from 0 to 0.12 N·m".
+        Changes of values near zero as text: "from 0 to 0.12 N·m".
     effect : str
-        What it does to the values as a part of a sentence, where that is more than a list of changes.
+        Effect on the values as part of a sentence, if it is more than a list of changes.
     harmful : bool
-        Whether a value moves by more than 5 %, or by more than two of its errors.
+        Whether a value changes by more than 5 %, or by more than two of its errors.
     alike : tuple of str
-        Other causes that these recordings hardly tell from it.
+        Other causes that these recordings can hardly separate from this one.
     advice : tuple of Action
-        What to do about it.
+        Remedies.
     """
 
     name: str
@@ -84,21 +84,21 @@ class Cause:
         object.__setattr__(self, "near_zero", MappingProxyType(dict(self.near_zero)))
 
     def __str__(self) -> str:
-        """Title and details."""
+        """Return title and details."""
         return f"{self.title}; {self.details}"
 
     @property
     def title(self) -> str:
-        """What is missing, its size, and what it moves, as much as a title holds."""
+        """Missing effect, its size, and the values that change, within the length of a title."""
         return self.titled(TITLE)
 
     def titled(self, most: int) -> str:
-        """Return what is missing and its size, and what it moves up to so many letters."""
+        """Return the missing effect, its size, and the values that change, within this number of characters."""
         inside = ", ".join(filter(None, (self.detail, self.size.partition(", ")[0])))
         what = self.meaning + (f" ({inside})" if inside else "")
         if not self.harmful:
             return f"{what}: harmless"
-        if self.effect:  # says more than a title holds
+        if self.effect:  # longer than a title
             return what
         title, before = what, ": with it, "
         for each in self._moved:
@@ -108,17 +108,17 @@ class Cause:
 
     @property
     def details(self) -> str:
-        """How much it explains, what it does, and what looks like it."""
+        """Explained share, effect on the values, and causes that look alike."""
         said = [
             f"explains {percent(self.share)} of the residual in windows of {_seconds(self.scale)}",
             self.size.partition(", ")[2],
             "" if self.harmful and self._is_in_title else self.does,
-            f"hardly separable from {' and '.join(self.alike)}" if self.alike else "",
+            f"hard to separate from {' and '.join(self.alike)}" if self.alike else "",
         ]
         return "; ".join(filter(None, said))
 
     def evidence(self, shifts: Mapping[str, float]) -> dict[str, Measured]:
-        """Return the numbers of its finding, with what it moves as shares."""
+        """Return the numbers of the finding, with the relative changes of the values."""
         measured = {"share": Measured(self.share), "windows": Measured(self.scale, "s")}
         moved = {f"{name}.shift": Measured(share) for name, share in shifts.items()}
         return measured | dict(self.numbers) | moved
@@ -136,20 +136,20 @@ class Cause:
 
     @property
     def does(self) -> str:
-        """What it does to the values, as a clause."""
+        """Effect on the values, as a clause."""
         if not self.harmful:
             return f"it {self.harmless}"
         return self.effect or f"with it in the model, {self.changes}"
 
     @property
     def changes(self) -> str:
-        """The largest changes with their verb: "inertia changes by +27 %, viscous by −3 %"."""
+        """Largest changes with their verb: "inertia changes by +27 %, viscous by −3 %"."""
         name, _, rest = self.moves.partition(" ")
         return f"{name} changes {rest}"
 
     @property
     def moves(self) -> str:
-        """The largest changes, as a part of a sentence."""
+        """Largest changes, as part of a sentence."""
         known = {name: share for name, share in self.shares.items() if name not in self.uncertain}
         moved = _largest(self.relative if self.harmful else known)
         named = [f"{name} {self._change(name, change)}" for name, change in moved]
@@ -165,12 +165,12 @@ class Cause:
 
     @property
     def harmless(self) -> str:
-        """How little it moves, as a part of a sentence."""
+        """Statement that no value changes noticeably, as part of a sentence."""
         return f"moves no parameter noticeably ({self.moves})"
 
     @property
     def did(self) -> str:
-        """What it moved where it was taken away, as a part of a sentence."""
+        """Past effect of a cause that was removed, as part of a sentence."""
         if self.harmful:
             return f"moved {self.moves}"
         return f"moved no parameter noticeably ({self.moves})"
@@ -185,16 +185,16 @@ class Cause:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Causes(Result):
-    """What an attribution found.
+    """Result of an attribution of the residual.
 
     Attributes
     ----------
     found : tuple of Cause
-        Causes that matter: certain, and they move a parameter. The one that explains most comes first.
+        Certain causes that change a parameter, with the largest explained share first.
     harmless : tuple of Cause
-        Causes that are certain and move no parameter by more than 5 % or two errors.
+        Certain causes that change no parameter by more than 5 % or two errors.
     tried : tuple of str
-        Names of all causes that were looked for.
+        Names of all examined causes.
     """
 
     found: tuple[Cause, ...]
@@ -220,24 +220,24 @@ class Causes(Result):
                 )
                 for cause in (*self.found, *self.harmless)
             ),
-            facts=(("looked for and not found", ", ".join(tried)),) if tried else (),
+            facts=(("searched but not found", ", ".join(tried)),) if tried else (),
         )
 
     @property
     def excluded(self) -> tuple[str, ...]:
-        """Causes that were looked for and not found."""
+        """Causes that were searched but not found."""
         named = {cause.name for cause in (*self.found, *self.harmless)}
         return tuple(name for name in self.tried if name not in named)
 
     def report(self, action: Callable[[Action], str] = str, *, verbose: bool = False) -> str:
-        """Return the causes as text, one a line, with their advice.
+        """Return the causes as text, one per line, with their remedies.
 
         Parameters
         ----------
         action : callable
-            Words one action. Default: as at a Python prompt.
+            Words one action. Default: for a Python prompt.
         verbose : bool
-            Changes nothing: the answer is everything.
+            No effect: the report is always complete.
         """
         del verbose
         lines = [
@@ -248,7 +248,7 @@ class Causes(Result):
         if not lines:
             lines = [_NOTHING]
         if self.excluded:
-            lines.append(f"looked for and not found: {', '.join(self.excluded)}")
+            lines.append(f"searched but not found: {', '.join(self.excluded)}")
         return "\n".join(lines)
 
     def __str__(self) -> str:
@@ -283,7 +283,7 @@ def _document(cause: Cause) -> dict[str, Any]:
 
 
 def _sentence(cause: Cause) -> str:
-    """The cause, and what to do about it."""
+    """Return the cause and its remedies as a sentence."""
     advice = "; or ".join(filter(None, map(str, cause.advice)))
     return f"{cause.name}: {cause}{f'; do: {advice}' if advice else ''}."
 

@@ -11,19 +11,19 @@ from jointid.base.values import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SecondValue:
-    """One parameter by the cross-check.
+    """One parameter from the cross-check.
 
     Attributes
     ----------
     value : float
-        In the parameter's unit.
+        Value in the parameter's unit.
     stderr : float
-        Standard error from blocks of the recording that are left out in turn.
+        Standard error from leaving out blocks of the recording in turn.
     spread : float
-        Range of the value over the settings of filter and rows; 0 where the first setting agrees, and no other is
-        asked.
+        Range of the value over settings of filter and rows; 0 if the first setting agrees, because no other is
+        then tried.
     agrees : bool
-        Whether it contradicts the estimate's value by no more than both errors and 5 %.
+        Whether the difference from the estimate's value is within both errors and 5 %.
     """
 
     value: float
@@ -33,7 +33,7 @@ class SecondValue:
 
     @property
     def error(self) -> float:
-        """Error of all kinds, as one standard error."""
+        """Total error, as one standard error."""
         return math.hypot(self.stderr, self.spread)
 
 
@@ -44,12 +44,12 @@ class CrossCheck:
     Attributes
     ----------
     values : mapping of str to SecondValue
-        By parameter, those that the cross-check determines. Static friction and the Stribeck shape are never among
-        them. Default: none.
+        Parameter → value, for parameters that the cross-check determines. Static friction and the Stribeck shape
+        are never among them. Default: none.
     delay : float
-        By which the torque (with a sensor: the reading) was shifted [s]. Default 0.
+        Shift of the torque (with a sensor: of the reading) [s]. Default 0.
     reason : str
-        Why there is no cross-check. Default: there is one.
+        Reason why there is no cross-check. Default: there is one.
     """
 
     values: Mapping[str, SecondValue] = field(default_factory=dict)
@@ -58,10 +58,10 @@ class CrossCheck:
 
     @property
     def contradicted(self) -> tuple[str, ...]:
-        """Parameters at which the two ways disagree."""
+        """Parameters for which the two methods disagree."""
         return tuple(name for name, each in self.values.items() if not each.agrees)
 
     @property
     def disagrees(self) -> bool | None:
-        """Whether any value disagrees; None where there is no cross-check."""
+        """Whether any value disagrees; None without a cross-check."""
         return None if self.reason else bool(self.contradicted)

@@ -1,4 +1,4 @@
-"""Delays of the signals against the position, as an estimate carries them."""
+"""Delays of the signals against the position, in an estimate."""
 
 from __future__ import annotations
 
@@ -14,17 +14,16 @@ class Delay:
     signal : str
         "torque", "sensor" or "velocity".
     value : float
-        As recorded, before any shift [s]; positive: the signal is late.
+        Delay as recorded, before any shift [s]; positive: the signal is late.
     stderr : float
-        [s]; clustered over stretches of the motion.
+        Standard error [s], clustered over stretches of the motion.
     certain : bool
-        Whether what is left of it is significant, long enough to matter, and the same for every part of the
-        signal.
+        Whether the remaining delay is significant, long enough to matter, and equal in all parts of the signal.
     fits : bool
-        Whether the torque balance fits better without what is left of it; asked where that is certain. Without
-        a shift in the call it is then taken away.
+        Whether the torque balance fits better without the remaining delay; only examined if it is certain. If the
+        call states no shift, such a delay is removed.
     applied : float
-        What the signal was shifted by before the identification [s]; 0: not at all.
+        Shift of the signal before the identification [s]; 0: none.
     """
 
     signal: str
@@ -36,16 +35,16 @@ class Delay:
 
     @property
     def left(self) -> float:
-        """What the identification still had of it [s]; with an error of `stderr`."""
+        """Remaining delay in the identification [s], with the error `stderr`."""
         return self.value - self.applied
 
     @property
     def shown(self) -> str:
-        """What was measured, what was taken away, and what is left, in milliseconds."""
+        """Measured, removed and remaining delay as text, in milliseconds."""
         text = f"{self.signal} {1e3 * self.value:+.2f} ± {1e3 * self.stderr:.2g} ms"
         if not self.applied:
             return text
         if self.applied == self.value:
-            return f"{text} (taken away)"
-        stated = f"{1e3 * self.applied:+.2f} ms was taken away as stated"
-        return f"{text} ({stated}, {1e3 * self.left:+.2f} ms is left)"
+            return f"{text} (removed)"
+        stated = f"{1e3 * self.applied:+.2f} ms was removed as stated"
+        return f"{text} ({stated}, {1e3 * self.left:+.2f} ms remains)"

@@ -16,7 +16,7 @@ from jointid.problem.constant_torque import undivided
 
 Array = NDArray[np.float64]
 
-_FLAT = 1e-10  # of the largest information: none
+_FLAT = 1e-10  # share of the largest information that counts as zero
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,22 +27,22 @@ class DerivedValue:
     ----------
     name : str
         "breakaway", "stribeck_velocity", "coulomb_sum" or "constant", with the parameters' suffix for direction or
-        recording; "coulomb_and_viscous" of any two that the recording does not divide.
+        recording. A name such as "coulomb_and_viscous" is the sum of two parameters that the recording cannot separate.
     meaning : str
     unit : str
     value : float
     stderr : float or None
-        Standard error by the delta method, correlations of the parameters included; None when a
-        parameter was held at a bound, or is not determined, or all are fixed.
+        Standard error by the delta method, with correlations. None if a parameter ended on a bound or is
+        undetermined, or if all are fixed.
     interval : tuple of float or None
-        95 % interval, with the correlations of the parameters and what theirs contain.
+        95 % interval, with the parameters' correlations and the same parts as their intervals.
     formula : str
-        How it follows, e.g. "coulomb + static".
+        Formula, e.g. "coulomb + static".
     systematic_total : float
-        What the interval has of the parameters' systematic parts, with their correlations, as one standard error.
-        Default 0.
+        Systematic part of the interval from the parameters' systematic parts, with correlations, as one standard
+        error. Default 0.
     largest_part : str or None
-        Name of the systematic part that moves it most; None (default) without one.
+        Name of the largest systematic part; None (default) without one.
     """
 
     name: str
@@ -57,7 +57,7 @@ class DerivedValue:
 
 
 def derived_values(estimate: EstimateRecord) -> dict[str, DerivedValue]:
-    """Return breakaway friction, Stribeck velocity, and what is known of an undivided offset, if the model has them."""
+    """Return breakaway friction, Stribeck velocity, and the sums for an offset that cannot be separated, if present."""
     values = (
         *_breakaway(estimate),
         *_constants(estimate),
@@ -68,7 +68,7 @@ def derived_values(estimate: EstimateRecord) -> dict[str, DerivedValue]:
 
 
 def _breakaway(estimate: EstimateRecord) -> Iterator[DerivedValue]:
-    """The friction to overcome at rest: Coulomb friction and the static excess over it."""
+    """Yield the breakaway friction at rest: Coulomb friction plus the static excess."""
     parameters = estimate.parameters
     for direction in ("", "_positive", "_negative"):
         pair = (f"coulomb{direction}", f"static{direction}")
@@ -89,7 +89,7 @@ def _breakaway(estimate: EstimateRecord) -> Iterator[DerivedValue]:
 
 
 def _constants(estimate: EstimateRecord) -> Iterator[DerivedValue]:
-    """What a recording tells where it does not divide an offset from the difference of Coulomb frictions."""
+    """Yield the determined sums if a recording cannot separate an offset from the difference of Coulomb frictions."""
     found = estimate.parameters
     sides = ("coulomb_positive", "coulomb_negative")
     if not all(name in found for name in sides):
@@ -122,9 +122,9 @@ def _constants(estimate: EstimateRecord) -> Iterator[DerivedValue]:
 
 
 def sums_of_splits(estimate: EstimateRecord) -> Iterator[DerivedValue]:
-    """Yield what is known of two coefficients that the recording does not divide: their sum in its motion.
+    """Yield the sum of two coefficients, in the recorded motion, if the recording cannot separate them.
 
-    The second counts as often as makes the sum the best known: a viscous friction by the speed, an offset once.
+    The weight of the second makes the sum most accurate: a speed for viscous friction, 1 for an offset.
     """
     found = estimate.parameters
     for finding in estimate.findings:
@@ -146,7 +146,7 @@ def sums_of_splits(estimate: EstimateRecord) -> Iterator[DerivedValue]:
             times = "" if abs(abs(factor) - 1.0) < 5e-4 else f"{abs(factor):.4g} · "
             yield DerivedValue(
                 name=f"{one}_and_{other}",
-                meaning=f"{one} and {other} together in the recorded motion, which does not divide them",
+                meaning=f"{one} and {other} together in the recorded motion, which cannot separate them",
                 unit=found[one].unit,
                 value=value,
                 stderr=error,
@@ -164,7 +164,7 @@ def _is_force(estimate: EstimateRecord, name: str) -> bool:
 
 
 def _pair(estimate: EstimateRecord, one: str, other: str) -> Array | None:
-    """The covariance of two parameters, large instead of infinite along what the recording does not determine."""
+    """Return the covariance of two parameters; large instead of infinite along undetermined directions."""
     information = estimate.information
     if information is None:
         return None
@@ -179,7 +179,7 @@ def _pair(estimate: EstimateRecord, one: str, other: str) -> Array | None:
 
 
 def _stribeck_velocity(estimate: EstimateRecord) -> Iterator[DerivedValue]:
-    """The speed at which the static excess has decayed to 1/e."""
+    """Yield the speed at which the static excess has decayed to 1/e."""
     shape = estimate.parameters.get("stribeck")
     if shape is not None and shape.value > 0.0:
         yield _derived(
@@ -194,7 +194,7 @@ def _stribeck_velocity(estimate: EstimateRecord) -> Iterator[DerivedValue]:
 
 
 def _slope(stribeck: float) -> float:
-    """Derivative of 1/√stribeck; infinite where the number is too large for a float."""
+    """Return the derivative of 1/√stribeck; infinite if it overflows."""
     try:
         return -0.5 * float(stribeck**-1.5)
     except OverflowError:
@@ -243,7 +243,7 @@ def _largest_part(estimate: EstimateRecord, slopes: Mapping[str, float]) -> str 
 
 
 def _error(estimate: EstimateRecord, slopes: Mapping[str, float], matrix: Array) -> float | None:
-    """Error of a quantity with these slopes by the parameters: √(slopes · matrix · slopes)."""
+    """Return the error of a quantity with these derivatives by the parameters: √(slopes · matrix · slopes)."""
     free = [name for name in slopes if name in estimate.free]
     held = [name for name in slopes if name not in free and estimate.parameters[name].vary]
     if not free or held:
@@ -256,7 +256,7 @@ def _error(estimate: EstimateRecord, slopes: Mapping[str, float], matrix: Array)
     for each in undivided(estimate.free):
         if sum(slopes.get(name, 0.0) * sign for name, sign in each.change.items()) != 0.0:
             return None
-        if each.offset in free:  # it cancels; the others' covariance is that at a given offset
+        if each.offset in free:  # the offset cancels; the others' covariance is for a fixed offset
             covariance[free.index(each.offset), free.index(each.offset)] = 0.0
     variance = float(slope @ covariance @ slope)
     return math.sqrt(max(variance, 0.0)) if math.isfinite(variance) else None

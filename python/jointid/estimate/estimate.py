@@ -34,7 +34,7 @@ class Estimate(Questions, KeptResult):
     status : str
         "converged", or "stopped" when a callback ended the search early.
     message : str
-        How the search ended.
+        Description of the end of the search.
     penalty : float
         Sum of squared window residuals. With ``gain="instruments"`` the residuals are those of the torque, and the
         part that the motion explains replaces the sensor's reading.
@@ -53,9 +53,9 @@ class Estimate(Questions, KeptResult):
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
-        None without a genetic or random search.
+        The search, generation by generation; None without a genetic or random search.
     findings : tuple of Finding
-        What the data and the fit show, the most severe first; `docs/findings.md` lists the codes.
+        Problems and remarks on data and fit, most severe first; `docs/findings.md` lists the codes.
     derived : mapping of str to DerivedValue
         Quantities that follow from the parameters, with standard errors: "breakaway" (coulomb + static),
         "stribeck_velocity" (1/√stribeck). Asymmetric friction adds "coulomb_sum" and, with an offset,
@@ -101,15 +101,15 @@ class Estimate(Questions, KeptResult):
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
         return f"Estimate({values}; {len(self.warnings)} warnings)"
 
-    __iter__ = None  # `parameters` is what a loop goes over
+    __iter__ = None  # loop over `parameters` instead
 
     def __getitem__(self, name: str) -> ParameterEstimate | DerivedValue:
-        """Return a parameter, or a derived quantity, by its name.
+        """Return a parameter or a derived quantity by name.
 
         Raises
         ------
         InputError
-            The estimate has neither.
+            The estimate has no such parameter or quantity.
 
         Examples
         --------
@@ -132,14 +132,14 @@ class Estimate(Questions, KeptResult):
 
     @property
     def derived(self) -> Mapping[str, DerivedValue]:
-        """Breakaway friction and Stribeck velocity with standard errors, if the model has them."""
+        """Derived quantities by name, e.g. breakaway friction, with standard errors, if the model has them."""
         from jointid.estimate.derived import derived_values
 
         return derived_values(self)
 
     @property
     def verdict(self) -> Verdict:
-        """Whether the values may be used, and for what; `jointid.estimate.verdict.judged` takes a self-test, too."""
+        """Whether the values may be used, and for what; `jointid.estimate.verdict.judged` also uses a self-test."""
         from jointid.estimate.verdict import judged
 
         return judged(self)
@@ -152,12 +152,12 @@ class Estimate(Questions, KeptResult):
         return overview_of(self)
 
     def friction(self, velocity: ArrayLike, *, load: float = 0.0) -> FrictionCurve:
-        """Friction at given velocities, with a pointwise 95 % band.
+        """Return the friction at these velocities, with a pointwise 95 % band.
 
         Parameters
         ----------
         velocity : array_like, shape (n,)
-            [rad/s or m/s]
+            Velocities [rad/s or m/s].
         load : float
             Torque that the drive transmits [N·m or N], for load-dependent friction; its sign does not matter.
             Default 0: friction without load, as in `windows.friction`.
@@ -169,7 +169,7 @@ class Estimate(Questions, KeptResult):
         Raises
         ------
         InputError
-            A velocity or a load that is not a number.
+            A velocity or a load is not a number.
 
         Examples
         --------
@@ -200,19 +200,19 @@ class Estimate(Questions, KeptResult):
         Raises
         ------
         InputError
-            When the recording lacks a signal that the estimate's terms need.
+            The recording lacks a signal that the estimate's terms need.
         """
         from jointid.estimate.prediction import predict
 
         return predict(self, recording)
 
     def report(self, *, verbose: bool = False) -> str:
-        """Return the answer as text: verdict, values with standard errors, what to do.
+        """Return the answer as text: verdict, values with standard errors, remedies.
 
         Parameters
         ----------
         verbose : bool
-            Whether to add systematic errors, intervals, the quality of the fit and complete findings. Default False.
+            Whether to add systematic errors, intervals, quality of the fit and complete findings. Default False.
         """
         if verbose:
             from jointid.estimate.tables import text_report
@@ -223,14 +223,14 @@ class Estimate(Questions, KeptResult):
         return answer(self)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the parameters and derived quantities as a data frame, one row each.
+        """Return the parameters and derived quantities as a data frame, one row per quantity.
 
         Returns
         -------
         DataFrame
-            Indexed by name, with the attributes of `ParameterEstimate`: value, stderr, systematic, the ends of
-            the interval (low, high), bounds (min, max), vary, at_bound, unit, meaning. A derived
-            quantity lacks some of them.
+            Frame indexed by name, with the attributes of `ParameterEstimate`: value, stderr, systematic, the ends of
+            the interval (low, high), bounds (min, max), vary, at_bound, unit, meaning. Derived quantities lack
+            some of them.
 
         Raises
         ------
@@ -247,7 +247,7 @@ class Estimate(Questions, KeptResult):
         return parameter_frame(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the whole estimate in JSON's types, as `to_json` writes it."""
+        """Return the whole estimate in JSON's types, same as in `to_json`."""
         from jointid.estimate.json import estimate_document
 
         return estimate_document(self)
@@ -260,7 +260,7 @@ class Estimate(Questions, KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimate that a JSON text holds.
+        """Return the estimate in a JSON text.
 
         Parameters
         ----------
@@ -270,8 +270,8 @@ class Estimate(Questions, KeptResult):
         Raises
         ------
         InputError
-            Not JSON, not an estimate, a newer schema, or a value that cannot be used; its place is the
-            JSON path, e.g. "parameters.coulomb.value".
+            The text is not JSON, is not an estimate, has a newer schema, or has an invalid value; the place is
+            the JSON path, e.g. "parameters.coulomb.value".
         """
         from jointid.base.schema import read_json
         from jointid.estimate.json import estimate_of
@@ -280,7 +280,7 @@ class Estimate(Questions, KeptResult):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Return the estimate that a .json file holds.
+        """Return the estimate in a .json file.
 
         Parameters
         ----------
@@ -289,7 +289,8 @@ class Estimate(Questions, KeptResult):
         Raises
         ------
         InputError
-            No such file, not JSON, not an estimate, or a newer schema; names the file and the place in it.
+            The file does not exist, is not JSON, is not an estimate, or has a newer schema; the error names the file
+            and the place in it.
         """
         from jointid.base.schema import read_text
 
@@ -297,7 +298,7 @@ class Estimate(Questions, KeptResult):
         text = read_text(path)
         if not text.lstrip().startswith(
             ("{", "[")
-        ):  # another file: where its JSON ends would not help
+        ):  # another kind of file: the place of a JSON error would not help
             raise InputError(
                 "an estimate is expected, the .json file that identify saves",
                 place=str(path),
@@ -308,19 +309,19 @@ class Estimate(Questions, KeptResult):
             raise error.at(str(path)) from error
 
     def save(self, path: str | Path) -> Path:
-        """Save to a joint file (.toml: values go into its parameter table, comments stay) or to .json.
+        """Save to .json, or to a joint file (.toml: its parameter table is updated, comments stay).
 
-        The file is written completely or not at all; its path is returned.
+        The file is written completely or not at all. The method returns its path.
 
         Parameters
         ----------
         path : path-like
-            The ending chooses the format.
+            File name; the ending chooses the format.
 
         Raises
         ------
         InputError
-            Another ending, a folder that does not exist, or an existing joint file that cannot be read.
+            The name has another ending, the folder does not exist, or an existing joint file cannot be read.
         OSError
             The file cannot be written.
         """

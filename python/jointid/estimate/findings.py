@@ -1,4 +1,4 @@
-"""A finding: what the data or the fit show, how severe it is, why, and what to do; as data."""
+"""A finding about the data or the fit: what was found, severity, reason and remedies, as data."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.base.values import dataclass
 
 Severity = Literal["info", "warning", "blocking"]
 TITLE = 90
-"""Characters of a title at most: with the severity before it, it is one line."""
+"""Largest length of a title in characters: with the severity, it fits on one line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class Measured:
     ----------
     value : float
     unit : str
-        "" for a pure number; a share is a pure number, 0.05 for 5 %.
+        Unit; "" for a pure number. A share is a pure number: 0.05 for 5 %.
     """
 
     value: float
@@ -32,26 +32,26 @@ class Measured:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Finding:
-    """What the data or the fit show.
+    """A problem or a remark that the data or the fit show.
 
     Attributes
     ----------
     code : str
         Stable name, e.g. "undetermined"; `docs/findings.md` lists them.
     severity : {"info", "warning", "blocking"}
-        Whether it is worth knowing, may bias values, or makes the values unusable.
+        "info" is worth knowing, "warning" may bias values, "blocking" makes the values unusable.
     parameters : tuple of str
-        Concerned parameters.
+        Affected parameters.
     evidence : mapping of str to Measured
-        The numbers it rests on, by name.
+        Numbers that support the finding, by name.
     title : str
         What was found, with its numbers, in at most 90 characters without the syntax of any interface.
     details : str
-        Why, what follows, and the other numbers. Default: nothing.
+        Reason, consequences, and further numbers. Default: none.
     advice : tuple of Action
-        What to do; the first that can be done helps most.
+        Remedies; the first one that is possible helps most.
     recordings : tuple of str
-        Names of those concerned, of several; empty where it concerns all together.
+        Names of the affected recordings; empty if the finding is about all of them.
     """
 
     code: str
@@ -72,12 +72,12 @@ class Finding:
         return f"<Finding {self.code} ({self.severity}): {_shortened(self.title)}>"
 
     def worded(self, action: Callable[[Action], str] = str) -> str:
-        """The whole finding: title, details, and the advice as an interface words it.
+        """Return the whole finding: title, details, and the remedies in the wording of an interface.
 
         Parameters
         ----------
         action : callable
-            Words one action. Default: as at a Python prompt.
+            Words one action. Default: for a Python prompt.
         """
         advice = "; or ".join(action(each) for each in self.advice)
         return f"{self.cause}; {advice}" if advice else self.cause
@@ -89,7 +89,7 @@ class Finding:
 
     @property
     def message(self) -> str:
-        """Title, details and advice, as Python shows them."""
+        """Title, details and remedies, in Python's wording."""
         return self.worded()
 
     def __str__(self) -> str:

@@ -20,14 +20,14 @@ def parameter_frame(estimate: EstimateRecord) -> pd.DataFrame:
 
 
 def estimate_rows(estimate: EstimateRecord) -> list[dict[str, Any]]:
-    """Return a record for each parameter and derived quantity."""
+    """Return one record per parameter and derived quantity."""
     return parameter_rows((*estimate.parameters.values(), *derived_values(estimate).values()))
 
 
 def parameter_rows(
     parameters: Iterable[ParameterEstimate | DerivedValue],
 ) -> list[dict[str, Any]]:
-    """Return a record for each, with the columns of `Estimate.to_pandas`."""
+    """Return one record per parameter, with the columns of `Estimate.to_pandas`."""
     return [_row(p) for p in parameters]
 
 

@@ -12,11 +12,11 @@ from jointid.estimate.statistics import FrictionCurve
 
 Array = NDArray[np.float64]
 
-_STEP = 1e-6  # relative, for the derivative by a shape parameter
+_STEP = 1e-6  # relative step for the derivative by a shape parameter
 
 
 def shared_value(values: Mapping[str, float], name: str) -> float:
-    """A parameter's value; of one that each recording has for itself, the mean."""
+    """Return a parameter's value; the mean over recordings if each recording has its own."""
     if name in values:
         return values[name]
     return float(np.mean([value for key, value in values.items() if key.startswith(f"{name}[")]))
@@ -25,7 +25,7 @@ def shared_value(values: Mapping[str, float], name: str) -> float:
 def friction_torque(
     terms: Sequence[str], values: Mapping[str, float], velocity: Array, load: float = 0.0
 ) -> Array:
-    """Friction at each velocity [N·m or N] while the drive transmits the torque `load`, of the friction terms."""
+    """Return the friction at each velocity [N·m or N] while the drive transmits the torque `load`."""
     total = np.zeros_like(velocity)
     for key in terms:
         term = _core.term(key)
@@ -37,7 +37,7 @@ def friction_torque(
 
 
 def friction_curve(estimate: EstimateRecord, velocity: Array, load: float = 0.0) -> FrictionCurve:
-    """Friction at each velocity, and its pointwise 95 % band by linear propagation of the intervals."""
+    """Return the friction at each velocity, and its pointwise 95 % band by linear propagation of the intervals."""
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}
     terms = estimate.settings["terms"]
     torque = friction_torque(terms, values, velocity, load)
@@ -47,7 +47,7 @@ def friction_curve(estimate: EstimateRecord, velocity: Array, load: float = 0.0)
         above = friction_torque(terms, {**values, name: values[name] + step}, velocity, load)
         below = friction_torque(terms, {**values, name: values[name] - step}, velocity, load)
         sensitivity[:, column] = (above - below) / (2.0 * step)
-    # An infinite variance must not meet a sensitivity of exactly zero.
+    # Avoid the product of an infinite variance and a sensitivity of exactly zero.
     matrix = squared_half_widths(estimate)
     finite = np.where(np.isfinite(matrix), matrix, 0.0)
     errors = [estimate.parameters[name].stderr for name in estimate.free]

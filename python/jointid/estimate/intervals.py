@@ -1,4 +1,4 @@
-"""Intervals of quantities that follow from several parameters."""
+"""Confidence intervals of quantities from several parameters."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ NORMAL = 1.959964
 _TINY = 1e-100  # a file may hold any number
 
 
-BESIDE = ("given", "residual_side")  # systematic parts that no interval contains
+BESIDE = ("given", "residual_side")  # systematic parts outside all intervals
 
 
 def interval_part(p: ParameterEstimate) -> float:
-    """The systematic parts that a parameter's interval contains, together, as one standard error."""
+    """Return the total of the systematic parts within a parameter's interval, as one standard error."""
     return math.hypot(*(size for name, size in p.systematic.items() if name not in BESIDE))
 
 
@@ -37,9 +37,9 @@ def quantile_of(estimate: EstimateRecord) -> float:
 
 
 def half_widths(estimate: EstimateRecord, *, without: str = "") -> Array:
-    """Return half of each free parameter's interval, in its standard errors by chance: the normal quantile or more.
+    """Return half of each free parameter's interval in random standard errors; at least the normal quantile.
 
-    Each parameter's interval has its own quantile and its own systematic part; the part `without` is left out.
+    Each parameter's interval has its own quantile and systematic parts; the part `without` is left out.
     """
     scale = np.full(len(estimate.free), NORMAL)
     quantile = quantile_of(estimate)
@@ -51,7 +51,7 @@ def half_widths(estimate: EstimateRecord, *, without: str = "") -> Array:
             share = math.sqrt(max(0.0, 1.0 - (left_out / error) ** 2))
             scale[i] = share * 0.5 * (p.interval[1] - p.interval[0]) / p.stderr
         elif p.stderr == np.inf:
-            # Of what no recording divides only sums are known: their chance is the covariance's, at a given offset.
+            # Parameters that no recording separates are known as sums; the covariance is for a fixed offset.
             chance = float(np.sqrt(max(estimate.covariance[i, i], 0.0)))
             if _TINY < chance < np.inf:
                 scale[i] = quantile * np.hypot(chance, interval_part(p)) / chance

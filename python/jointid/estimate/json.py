@@ -1,4 +1,4 @@
-"""Estimates as JSON: complete enough to redraw every picture and to repeat the run."""
+"""Estimates as JSON, complete enough to redraw every picture and to repeat the run."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
@@ -29,8 +29,8 @@ from jointid.problem.window_table import WindowTable
 Saved = TypeVar("Saved", bound=EstimateRecord)
 
 SCHEMA = 3
-"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings; 3: a standard
-error is of chance alone, its systematic parts are beside it."""
+"""Version; increased if a reader of the old form would misread the new one. 2: findings instead of warnings. 3: a
+standard error is random only, with systematic parts listed separately."""
 
 _KIND = "jointid estimate"
 _OTHERS = {
@@ -44,10 +44,10 @@ _OTHERS = {
 
 
 def estimate_document(estimate: EstimateRecord) -> dict[str, Any]:
-    """The estimate in JSON types; an infinite number is the string "inf"."""
+    """Return the estimate in JSON's types; an infinite number is the text "inf"."""
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
     for item in fields(EstimateRecord):
-        if item.name != "follow_up":  # it holds the recordings, which have files of their own
+        if item.name != "follow_up":  # it holds the recordings, which have their own files
             document[item.name] = plain(getattr(estimate, item.name))
     document["derived"] = plain(derived_values(estimate))
     document["verdict"] = judged(estimate).document()
@@ -56,13 +56,13 @@ def estimate_document(estimate: EstimateRecord) -> dict[str, Any]:
 
 
 def estimate_of(document: Any, cls: type[Saved]) -> Saved:
-    """An estimate of this class from its document.
+    """Return an estimate of this class from its document.
 
     Raises
     ------
     InputError
-        Not an estimate, a newer schema, or a field that cannot be used; its place is the JSON path, e.g.
-        "parameters.coulomb.value".
+        The document is not an estimate, has a newer schema, or has an invalid field; the place is the JSON path,
+        e.g. "parameters.coulomb.value".
     """
     if not isinstance(document, dict) or document.get("kind") != _KIND:
         kind = document.get("kind") if isinstance(document, dict) else None
@@ -116,7 +116,7 @@ def _estimate(d: Mapping[str, Any], cls: type[Saved]) -> Saved:
 
 
 def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Places where fields, each right by itself, do not fit together."""
+    """Yield place and reason of valid fields that contradict each other."""
     names, free = d["parameters"], d["free"]
     for name, entry in names.items():
         if entry["name"] != name:
@@ -150,7 +150,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def empty_calls(findings: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:
-    """Places of findings that advise a call with no arguments, and why that cannot be."""
+    """Yield place and reason of findings that advise a call without arguments."""
     for i, found in enumerate(findings):
         for j, action in enumerate(found["advice"]):
             if action["kind"] == "call" and not action["arguments"]:
@@ -160,12 +160,12 @@ def empty_calls(findings: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, st
 def _term(key: str) -> _core.Term | None:
     try:
         return _core.term(key)
-    except InputError:  # the core's answer to an unknown key
+    except InputError:  # from the core, for an unknown key
         return None
 
 
 def parameter_of(entry: Mapping[str, Any]) -> ParameterEstimate:
-    """A parameter from its checked entry."""
+    """Return a parameter from its checked entry."""
     interval = None if entry["interval"] is None else tuple(entry["interval"])
     return ParameterEstimate(**{**entry, "interval": interval})
 
@@ -184,12 +184,12 @@ def _cross_check(entry: Mapping[str, Any] | None) -> CrossCheck | None:
 
 
 def documents_of(findings: Iterable[Finding]) -> list[dict[str, Any]]:
-    """Findings as JSON has them; older versions of jointid read the cause, other programs the message."""
+    """Return findings in JSON's types. Older versions of jointid read the cause, other programs the message."""
     return [{**plain(found), "cause": found.cause, "message": found.message} for found in findings]
 
 
 def finding_of(entry: Mapping[str, Any]) -> Finding:
-    """A finding from its checked entry."""
+    """Return a finding from its checked entry."""
     return Finding(
         code=entry["code"],
         severity=entry["severity"],
@@ -207,7 +207,7 @@ def _action(entry: Mapping[str, Any]) -> Action:
 
 
 def _with_ellipsis(value: Any) -> Any:
-    """An argument of an action; "..." stands for a value that only the user knows."""
+    """Return an argument of an action; "..." stands for a value that only the user knows."""
     if isinstance(value, Mapping):
         return {name: _with_ellipsis(entry) for name, entry in value.items()}
     if isinstance(value, list):
@@ -216,14 +216,14 @@ def _with_ellipsis(value: Any) -> Any:
 
 
 def _old_warning(entry: Mapping[str, Any]) -> Finding:
-    """A finding of schema 1: a finished sentence."""
+    """Return a finding from schema 1, which has a complete sentence."""
     return Finding(
         code=entry["code"], parameters=tuple(entry["parameters"]), title=entry["message"]
     )
 
 
 def matrix_of(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
-    """A square matrix from its rows."""
+    """Return a square matrix from its rows."""
     return np.array(rows, dtype=np.float64).reshape(len(rows), len(rows))
 
 
@@ -231,7 +231,7 @@ _INTEGERS = ("recording", "generation", "evaluations")
 
 
 def arrays_of(columns: Mapping[str, Any]) -> dict[str, Any]:
-    """Arrays from checked lists; some are of integers."""
+    """Return arrays from checked lists; some hold integers."""
     return {
         name: np.array(values, dtype=np.int64 if name in _INTEGERS else np.float64)
         for name, values in columns.items()
@@ -239,13 +239,13 @@ def arrays_of(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """JSON's own types for everything an estimate holds."""
+    """Return any value of an estimate in JSON's types."""
     if isinstance(value, Joint):
         return joint_document(value)
     if isinstance(value, np.ndarray):
         listed = value.tolist()
         if value.dtype.kind in "iu" or (value.dtype.kind == "f" and np.isfinite(value).all()):
-            return listed  # thousands of numbers, each of which JSON knows
+            return listed  # a long list of numbers that JSON can hold
         return plain(listed)
     if isinstance(value, bool | int | str) or value is None:
         return value

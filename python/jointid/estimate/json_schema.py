@@ -1,4 +1,4 @@
-"""What the JSON of an estimate may hold, by schema number."""
+"""Schemas of an estimate's JSON, by schema number."""
 
 from typing import get_args
 
@@ -9,7 +9,7 @@ from jointid.estimate.selection import SELECTION
 from jointid.estimate.settings import SETTINGS
 from jointid.estimate.statistics import SYSTEMATIC_PARTS
 
-_VALUE = Number(low=-1e100, high=1e100)  # far beyond any joint, and its square is still a number
+_VALUE = Number(low=-1e100, high=1e100)  # far beyond any joint, and the square does not overflow
 _NOT_NEGATIVE = Number(low=0.0, high=1e100)
 _POSITIVE = Number(low=1e-12, high=1e100)
 _COUNT = Number(low=0, high=2**62, whole=True)
@@ -68,7 +68,7 @@ _ACTION = Record(
         "function": Text(),
     }
 )
-_SENTENCES = Text(longest=1_000_000)  # one for each of up to thousands of parameters
+_SENTENCES = Text(longest=1_000_000)  # one sentence for each of up to thousands of parameters
 FINDING = Record(
     {
         "code": Text(),
@@ -125,16 +125,16 @@ _FIELDS: dict[str, Kind] = {
     "residuals": RESIDUALS,
     "windows": WINDOWS,
     "convergence": OrNull(_CONVERGENCE),
-    "joint": TableOf(Plain()),  # the joint has a reader of its own
+    "joint": TableOf(Plain()),  # the joint has its own reader
     "settings": SETTINGS,
     "seconds": _NOT_NEGATIVE,
 }
 _OLD_FIELDS: dict[str, Kind] = {**_FIELDS, "parameters": TableOf(Record(_OLD_PARAMETER))}
 VERDICT = Record({"level": Text(), "reasons": ListOf(_SENTENCES), "uses": TableOf(Plain())})
-"""Not used again: it is judged again."""
+"""Not read: the verdict is computed again."""
 ESTIMATE: dict[int, Kind] = {
     1: Record({**_OLD_FIELDS, "warnings": ListOf(_WARNING)}),
-    # What is derived is computed again.
+    # Derived quantities are computed again.
     2: Record({**_OLD_FIELDS, "findings": ListOf(FINDING)}, {"derived": Plain()}),
     3: Record(
         {**_FIELDS, "findings": ListOf(FINDING)},

@@ -1,4 +1,4 @@
-"""What speaks against the use of an estimate, as its findings say it."""
+"""Reasons against the use of an estimate, from its findings."""
 
 from __future__ import annotations
 
@@ -17,35 +17,35 @@ if TYPE_CHECKING:
     from jointid.estimate.self_test import SelfTest
     from jointid.estimate.statistics import ParameterEstimate
 
-EXPLAINED = 0.9  # of the variance of windows, at least
-_MATTERS = 0.05  # of a value: a smaller tolerance does not matter
+EXPLAINED = 0.9  # least explained share of the windows' variance
+_MATTERS = 0.05  # of a value: a smaller tolerance has little effect
 LARGE = 0.1
-"""Of all friction: a part of it that may be so much more or less is not known."""
-_HALF = 0.5  # of a value: what may be off by more is not known
-# What follows from a cause, and names none.
+"""Share of all friction: a part of it with a larger error is unknown."""
+_HALF = 0.5  # of a value: with a larger error it is unknown
+# Findings that are effects and name no cause.
 _SYMPTOMS = frozenset(
     (
         *("explained", "self_test", "at_bound", "model_too_rich", "few_windows", "poor_fit"),
         *("structured_residual", "given", "errors"),
     )
 )
-_MOST = 0.5  # of a misfit: its cause goes before what follows from it
+_MOST = 0.5  # share of the residual: its cause is listed before its effects
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Objection:
-    """One reason against a use.
+    """One reason against the use of an estimate.
 
     Attributes
     ----------
     code : str
         Code of the finding.
     reason : str
-        In a sentence.
+        The reason as a sentence.
     blocking : bool
-        Whether the values cannot be used.
+        Whether the values must not be used.
     parameters : tuple of str
-        Those concerned; empty where all are.
+        Affected parameters; empty for all.
     share : float
         Share of the residual that it causes. Default 0.
     """
@@ -58,7 +58,7 @@ class Objection:
 
     @property
     def rank(self) -> int:
-        """Its place among the reasons: causes before what follows from them, what blocks before what does not."""
+        """Rank among the reasons: causes before effects, blocking before others."""
         cause = self.code not in _SYMPTOMS
         if self.blocking and cause:
             return 0
@@ -68,7 +68,7 @@ class Objection:
 
 
 def objections_of(estimate: EstimateRecord, self_test: SelfTest | None) -> Iterable[Objection]:
-    """Yield what findings, the misfit, a self-test and the given facts' tolerances say."""
+    """Yield the reasons from findings, the residual, a self-test, and the tolerances of stated facts."""
     for found in estimate.findings:
         if found.severity != "info" and not _is_of_compensation(found):
             yield Objection(
@@ -103,15 +103,15 @@ def objections_of(estimate: EstimateRecord, self_test: SelfTest | None) -> Itera
 
 
 def explained_text(explained: float, of_what: str) -> str:
-    """Return how much of a variance the model explains."""
+    """Return a sentence with the share of a variance that the model explains."""
     share = f"{100.0 * explained:.0f} %" if explained > 0.005 else "nothing"
     return f"the model explains {share} of the variance of {of_what}"
 
 
 def no_values(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable[Objection]:
-    """Friction and sensor's values that are none: on a bound, or a part of a sum that nothing in the recording divides.
+    """Yield friction and sensor parameters without a value: on a bound, or part of a sum that cannot be separated.
 
-    Where friction differs by direction, an offset is one quantity with it for any motion, and need not be separated.
+    If friction differs by direction, no motion can separate an offset from it, and no purpose needs this separation.
     """
     yield from held_on_bounds(estimate.findings, asked)
     doubted = _named(estimate.findings, "undetermined")
@@ -138,7 +138,7 @@ def no_values(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable[Obje
 
 
 def held_on_bounds(findings: Iterable[Finding], asked: Collection[str]) -> Iterable[Objection]:
-    """Friction on its bound that may be more than a tenth of all friction."""
+    """Yield friction on its bound that may be more than a tenth of all friction."""
     bounded = _named(findings, "at_bound")
     needed = tuple(name for name, share in bounded.items() if name in asked and share > LARGE)
     if needed:
@@ -151,7 +151,7 @@ def held_on_bounds(findings: Iterable[Finding], asked: Collection[str]) -> Itera
 
 
 def without_friction(estimate: EstimateRecord) -> Iterable[Objection]:
-    """A torque that holds no friction: of that compensation alone knows nothing."""
+    """Yield the reason that the torque contains no friction; it affects only compensation."""
     for found in estimate.findings:
         if _is_of_compensation(found):
             yield Objection(
@@ -163,14 +163,14 @@ def without_friction(estimate: EstimateRecord) -> Iterable[Objection]:
 
 
 def _is_of_compensation(found: Finding) -> bool:
-    """Whether a finding speaks against compensation alone: a friction of 0 is a good value of a joint without any."""
+    """Whether a finding affects only compensation: a friction of 0 is a valid value for a frictionless joint."""
     return found.code == "no_friction" and found.severity == "warning"
 
 
 def _is_split(p: ParameterEstimate, share: float) -> bool:
-    """Whether only a sum with it is known: it may be off by any amount, or by half of it and much of all friction.
+    """Whether only a sum is known: the error is infinite, or half of the value and much of all friction.
 
-    `share` is half of its interval, of all friction.
+    `share` is half of the parameter's interval over all friction.
     """
     if p.stderr is not None and math.isinf(p.stderr):
         return True
@@ -179,12 +179,12 @@ def _is_split(p: ParameterEstimate, share: float) -> bool:
 
 
 def hidden_inertia(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable[Objection]:
-    """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
+    """Yield an inertia that the recording does not determine: unlike friction, an inertia cannot be zero."""
     doubted = _named(estimate.findings, "undetermined")
     for name, p in estimate.parameters.items():
         if name.partition("[")[0] != "inertia":
             continue
-        if p.at_bound is not None:  # such a one is not among the free ones
+        if p.at_bound is not None:  # not among the free parameters
             yield Objection(
                 code="at_bound",
                 reason=f"a simulation needs {name}, which ended on its bound",
@@ -201,7 +201,7 @@ def hidden_inertia(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable
 
 
 def _named(findings: Iterable[Finding], code: str) -> dict[str, float]:
-    """What warnings of this code name, with their shares of all friction as far as they say them."""
+    """Return parameter → share of all friction (0 if not stated), from warnings with this code."""
     return {
         name: found.evidence[key].value if (key := f"{name}.share") in found.evidence else 0.0
         for found in findings
@@ -215,7 +215,7 @@ def _free(estimate: EstimateRecord, found: Finding) -> tuple[str, ...]:
 
 
 def _named_share(estimate: EstimateRecord) -> float:
-    """How much of the misfit a finding has a cause for: the finding says what that moves, so it needs care alone."""
+    """Return the share of the residual with a named cause; its finding states the effect, so that care is enough."""
     shares = [
         found.evidence["share"].value
         for found in estimate.findings
@@ -225,10 +225,10 @@ def _named_share(estimate: EstimateRecord) -> float:
 
 
 def _explained(estimate: EstimateRecord) -> tuple[float, str]:
-    """Share of the variance that the model explains, of held-out torque where there is some.
+    """Return the explained share of the variance, of the held-out torque if there is any, and the name of this torque.
 
-    That torque does not excuse a reading that the model misses: the two do not belong together, e.g. because one of
-    them is late. A reading that hardly varies may be explained worse than by its mean, but little of it is left.
+    A well explained torque does not excuse a poorly explained reading: they do not belong together, e.g. because one is
+    late. A nearly constant reading may be explained worse than by its mean, if the residual is small.
     """
     left = estimate.residuals
     if estimate.selection is not None and not _missed(estimate):
@@ -239,7 +239,7 @@ def _explained(estimate: EstimateRecord) -> tuple[float, str]:
 
 
 def _missed(estimate: EstimateRecord) -> bool:
-    """Whether what was measured is missed altogether: a cause's name excuses no such values."""
+    """Whether the model explains nothing of the measured signal; then even a named cause is no excuse."""
     left = estimate.residuals
     return left.r_squared < 0.0 and left.relative**2 > 1.0 - EXPLAINED
 
@@ -251,7 +251,7 @@ def _rests_on_given(p: ParameterEstimate) -> bool:
 
 
 def acts_against_motion(name: str) -> bool:
-    """Whether a controller that compensates friction needs a parameter: it needs no inertia and no weight."""
+    """Whether friction compensation needs a parameter; it needs no inertia and no gravity."""
     base = name.partition("[")[0]
     rows = {row.name: row for row in _core.terms()}
     row = rows.get(base)

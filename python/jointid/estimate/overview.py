@@ -1,4 +1,4 @@
-"""Summary of an estimate for a report page: values, how they were found, findings."""
+"""The summary of an estimate for a report page."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _quantity(p: ParameterEstimate | DerivedValue, name: str, value: float, text
 def settings_of(
     settings: Mapping[str, Any], without: Collection[str] = ()
 ) -> tuple[tuple[str, str], ...]:
-    """Return settings as label and text, without those of some names and without those that are not set."""
+    """Return settings as label and text, without these names and without unset settings."""
     pairs = ((name, _text(value)) for name, value in settings.items() if name not in without)
     return tuple((name.replace("_", " "), text) for name, text in pairs if text)
 

@@ -30,14 +30,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedModel:
-    """What a prediction needs of a fit, with or without its inference.
+    """The parts of a fit that a prediction needs, with or without statistical inference.
 
     Attributes
     ----------
     settings : mapping
-        As `Estimate.settings`; of a fit without inference without the recordings.
+        Same as `Estimate.settings`; without the recordings for a fit without inference.
     joint : Joint or None
-        None: a joint without a gear, of which nothing is known.
+        The joint. None: a joint without a gear and without known values.
     values : mapping of str to float
         Values of all parameters.
     """
@@ -48,21 +48,21 @@ class FittedModel:
 
     @classmethod
     def of(cls, estimate: EstimateRecord) -> FittedModel:
-        """Return that of an estimate."""
+        """Return the parts of an estimate."""
         values = {name: parameter.value for name, parameter in estimate.parameters.items()}
         return cls(settings=estimate.settings, joint=estimate.joint, values=values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PredictedTorque:
-    """The drive's torque in each window, and what a prediction from motion and reading misses of it.
+    """The drive's torque in each window, and its residual after a prediction from motion and reading.
 
     Attributes
     ----------
     start, stop : ndarray
-        [s]
+        Start and end of the windows [s].
     torque, residual : ndarray
-        Integrals [N·m·s]; the residual is the torque less the predicted one.
+        Integrals [N·m·s]; the residual is the torque minus the prediction.
     """
 
     start: Array
@@ -86,18 +86,18 @@ def predict(estimate: EstimateRecord, recording: Recording) -> Prediction:
 
 
 class TorquePredictor:
-    """Predictions of the drive's torque by several fits, which mostly pose the same problem: it is cut once."""
+    """Predictions of the drive's torque by several fits; fits with the same problem share its windows."""
 
     def __init__(self) -> None:
         self._last: tuple[Problem, Any, _core.Penalty] | None = None
 
     def predicted(self, fitted: FittedModel, recording: Recording) -> PredictedTorque:
-        """Return how a fit predicts the drive's torque, by whichever residual it was made.
+        """Return a fit's prediction of the drive's torque, independent of the residual of the fit.
 
         Raises
         ------
         InputError
-            As `Estimate.predict`.
+            Same errors as `Estimate.predict`.
         """
         problem, windows = _posed(fitted, recording), fitted.settings["windows"]
         if self._last is None or self._last[:2] != (problem, windows):
@@ -122,13 +122,13 @@ def _predicted_torque(
 
 
 def _posed(fitted: FittedModel, recording: Recording) -> Problem:
-    """Return the problem that a recording poses."""
+    """Return the problem of a recording with the fit's settings."""
     require_kind("recording", recording, Recording)
     settings = fitted.settings
     choice = TermChoice(
         terms=tuple(settings["terms"]),
         model=model_of(settings),
-        # In terms of the reading, too: few windows do not show again how the motion explains it.
+        # Use the reading itself: few windows cannot show again how the motion explains it.
         residual="torque" if settings["residual"] == "torque" else "sensor",
         sensor="sensor_gain" in settings["terms"],
         gear_ratio=1.0 if fitted.joint is None else fitted.joint.gear_ratio,

@@ -1,4 +1,4 @@
-"""Questions that an estimate answers later, with other rooms: is it true, why does it not fit, what to record next."""
+"""Methods of an estimate that need other folders: self-test, bootstrap, causes, next motion."""
 
 from __future__ import annotations
 
@@ -19,26 +19,24 @@ if TYPE_CHECKING:
 
 
 class Questions(EstimateRecord):
-    """The questions of an `Estimate`."""
+    """Methods of an `Estimate` that need its recordings."""
 
     __slots__ = ()
 
     def selftest(self, trials: int = 3, seed: int = 0) -> SelfTest:
-        """Test whether known parameters come back from the recorded motion with the noise of the recordings.
+        """Test whether known parameters are recovered from the recorded motion with the recordings' noise.
 
-        Each trial keeps the recorded motion, without its noise, and computes the torque and the sensor's
-        reading that known parameters need there. Noise as in the recordings is added: the quantum and the
-        white noise of position, velocity and sensor, and the residuals of the estimate as a disturbance
-        torque, in blocks in another order and with other signs. Then the parameters are identified with the
-        same settings. The first trial injects the estimate itself, the others parameters from its intervals.
-
-        What comes back can be identified from such a motion *if the joint is as modelled*; what does not,
-        cannot.
+        Each trial uses the recorded motion without noise, and computes the torque and the sensor's reading for
+        known parameters. Then it adds noise as in the recordings: quantization and white noise of position,
+        velocity and sensor, and a disturbance torque from the residuals, in blocks with random order and signs.
+        Then it identifies the parameters with the same settings. The first trial uses the estimated parameters;
+        the others draw parameters from the intervals. If a parameter is recovered, such a motion can identify it,
+        *provided that the joint is as modelled*; otherwise it cannot.
 
         Parameters
         ----------
         trials : int
-            1 to 1000. Default 3.
+            Number of trials, 1 to 1000. Default 3.
         seed : int
             The same seed gives the same bits, on any number of threads. Default 0.
 
@@ -49,7 +47,7 @@ class Questions(EstimateRecord):
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold the recordings; or another number.
+            The estimate was read from a file, which does not hold the recordings; or `trials` is out of range.
         KeyboardInterrupt
             Ctrl-C; it is raised within 0.1 s.
 
@@ -63,16 +61,16 @@ class Questions(EstimateRecord):
         return self._with_recordings("selftest").selftest(self, trials, seed)
 
     def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
-        """Draw stretches of the recordings anew, and refit the parameters to each draw (block bootstrap).
+        """Draw stretches of the recordings with replacement, and refit the parameters to each draw (block bootstrap).
 
-        A check of the standard errors that does not rest on their formula. The blocks are as long as a segment
-        of motion: an eighth of the motion, between 0.25 and 1 s, and longer on recordings over 10 min. A draw is
-        refitted inside the bounds of the search, with the torque balance linearised at the estimate.
+        This checks the standard errors without their formula. A block is as long as a segment of motion: an
+        eighth of the motion, between 0.25 and 1 s, and longer for recordings over 10 min. The refit stays within
+        the search bounds, with the torque balance linearised at the estimate.
 
         Parameters
         ----------
         n : int
-            Draws, 20 to 1,000,000. Default 1000.
+            Number of draws, 20 to 1,000,000. Default 1000.
         seed : int
             The same seed gives the same bits, on any number of threads. Default 0.
 
@@ -83,7 +81,7 @@ class Questions(EstimateRecord):
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold the recordings; or another number.
+            The estimate was read from a file, which does not hold the recordings; or `n` is out of range.
         KeyboardInterrupt
             Ctrl-C; it is raised within 0.1 s.
 
@@ -97,17 +95,17 @@ class Questions(EstimateRecord):
         return self._with_recordings("bootstrap").bootstrap(self, n, seed)
 
     def causes(self, signals: Mapping[str, ArrayLike] | None = None) -> Causes:
-        """Say why the model does not fit: causes by name, what they explain, what they move, what to do.
+        """Return the causes of a poor fit: name, explained share of the residual, effect on the values, remedies.
 
-        Each candidate is fitted together with the model to part of the recording and judged on the rest,
-        at windows of 1, 4, 16 and 64 times the length used. `identify` does so by itself where the
-        residuals are more than noise, and reports the causes as findings.
+        Each candidate is fitted together with the model to a part of the recording, and judged on the rest, with
+        windows of 1, 4, 16 and 64 times the usual length. `identify` does this automatically if the residuals
+        exceed the noise, and reports the causes as findings.
 
         Parameters
         ----------
         signals : mapping of str to array_like, optional
-            Further signals of the recording that may act on the joint, by name, one value a sample:
-            another joint's velocity, a temperature. Default: none.
+            Further signals that may act on the joint, by name, one value per sample: another joint's velocity,
+            a temperature. Default: none.
 
         Returns
         -------
@@ -116,8 +114,8 @@ class Questions(EstimateRecord):
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold the recordings; or a signal that does
-            not fit the recording.
+            The estimate was read from a file, which does not hold the recordings; or a signal does not fit
+            the recording.
 
         Examples
         --------
@@ -136,32 +134,31 @@ class Questions(EstimateRecord):
         duration: float = 12.0,
         **options: Any,
     ) -> Any:
-        """Design what to record next: the motion that adds most to what this estimate tells.
+        """Design the next motion to record: the motion that adds the most information to this estimate.
 
-        The information of its recordings counts, joints are drawn from its intervals, and the controller
-        believes its values, unless another is given. Identify both recordings together then:
+        The design uses the information of the estimate's recordings, draws joints from its intervals, and gives
+        its values to the controller (unless another controller is set). Then identify both recordings together:
         ``identify([first, second], joint)``.
 
         Parameters
         ----------
         limits : MotionLimits or mapping, optional
-            As in `design`. Default: the joint's.
+            Same as in `design`. Default: the joint's limits.
         duration : float
-            [s]. Default 12.
+            Duration of the motion [s]. Default 12.
         **options
-            `joint` gives facts that the joint of the identification lacked, e.g. a link; others as in
-            `design`. By default `parameters` are the free ones, `sensors` have the noise
-            that the residuals show.
+            `joint` adds facts that the identified joint lacked, e.g. a link; other options as in `design`. By
+            default `parameters` are the free parameters, and `sensors` have the noise from the residuals.
 
         Returns
         -------
         Design
-            Errors are those expected of both recordings together; `before` is that of this estimate.
+            The design, with the expected errors from both recordings together; `before` has this estimate's errors.
 
         Raises
         ------
         InputError
-            As `design`; or nothing is free, or another joint.
+            Same errors as `design`; or no parameter is free, or it is another joint.
 
         Examples
         --------
@@ -170,11 +167,11 @@ class Questions(EstimateRecord):
         >>> estimate.next_motion(limits, duration=4.0, search=search).duration
         4.0
         """
-        # The room that designs identifies what it rehearses, and so stands above this one.
+        # The folder `design` uses `identify`, so that this folder may not import it directly.
         return joined("next_motion")(self, limits, duration, **options)
 
     def _with_recordings(self, question: str) -> FollowUp:
-        """Return what answers questions that need the recordings."""
+        """Return the object that answers questions with the recordings."""
         if self.follow_up is None:
             raise InputError(
                 "this estimate was read from a file, which does not hold the recordings",

@@ -1,4 +1,4 @@
-"""The fields of an estimate, for whatever shows, judges, saves or uses them."""
+"""The fields of an estimate, for all code that shows, judges, saves or uses them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class EstimateRecord:
-    """The fields of an `Estimate`, which describes them."""
+    """The fields of an `Estimate`; see its description."""
 
     parameters: Mapping[str, ParameterEstimate]
     free: tuple[str, ...]
@@ -62,7 +62,7 @@ class EstimateRecord:
 
 
 class FollowUp(Protocol):
-    """Answers questions that need the recordings; `identify` leaves one in its estimate, a file does not hold it."""
+    """Answers questions that need the recordings. `identify` adds it to its estimate; files do not contain it."""
 
     def selftest(self, estimate: EstimateRecord, trials: int, seed: int) -> SelfTest:
         """Answer `Estimate.selftest`."""

@@ -1,4 +1,4 @@
-"""The result of a rollout: positions as logged and as simulated, for servos and for robots."""
+"""The result of a rollout: logged and simulated positions, for servos and robots."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ from jointid.base.values import dataclass
 Array = NDArray[np.float64]
 
 BISTABLE = math.radians(5.0)
-"""A run is bistable where a small change of the motor's torque moves its rollout farther [rad]."""
+"""Limit for bistable runs: a small change of the motor's torque moves the rollout further than this [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RunRollout:
-    """One run, simulated: of a servo, or of one joint of a robot.
+    """One simulated run of a servo, or of one joint of a robot.
 
     Attributes
     ----------
     name : str
     time, position, velocity : ndarray, shape (n,)
-        At the log's time stamps [s], [rad or m], [rad/s or m/s].
+        Simulated motion at the log's time stamps [s], [rad or m], [rad/s or m/s].
     measured : ndarray, shape (n,)
-        The logged position [rad or m].
+        Logged position [rad or m].
     error : float
         Mean absolute error of the position [rad or m].
     spread : float or None
-        How far the rollout moves at most when the motor's torque changes by 1 % [rad]; None: not tried.
+        Largest change of the rollout if the motor's torque changes by 1 % [rad]; None: not computed.
     closed : bool
         Whether the position loop was closed; otherwise the logged duty or torque drove the motor or the joint.
     before : float or None
-        The same error of the URDF without friction [rad or m]; None: not tried.
+        The same error for the URDF without friction [rad or m]; None: not computed.
     kind : {"revolute", "prismatic"}
     """
 
@@ -55,12 +55,12 @@ class RunRollout:
 
     @property
     def bistable(self) -> bool:
-        """Whether two motions far apart belong to nearly the same servo, so that its error says little."""
+        """Whether nearly equal servos give very different motions, so that the error means little."""
         return self.spread is not None and self.spread > BISTABLE
 
     @property
     def remark(self) -> str:
-        """What a reader must know of the error, in a few words; empty where there is nothing."""
+        """Short note on the error; empty if there is none."""
         opened = self.spread is not None and not self.closed
         return ", ".join(["bistable"] * self.bistable + ["duty as logged"] * opened)
 
@@ -76,14 +76,14 @@ class RunRollout:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rollout(Result):
-    """All runs, simulated.
+    """Rollouts of all runs.
 
     Attributes
     ----------
     runs : tuple of RunRollout
-        Rollouts; for a robot, one per recording and joint.
+        Simulated runs; for a robot, one per recording and joint.
     horizon : float or None
-        Length of the stretches that begin at the logged state [s]; None: each run as a whole.
+        Length of stretches that start at the logged state [s]. None: each run is one stretch.
     """
 
     runs: tuple[RunRollout, ...]
@@ -98,7 +98,7 @@ class Rollout(Result):
 
     @property
     def median(self) -> float:
-        """Median of the runs' errors [rad or m]: a bistable run does not decide it."""
+        """Median of the runs' errors [rad or m]; it is robust against bistable runs."""
         return float(np.median(self.errors))
 
     @property
@@ -127,7 +127,7 @@ class Rollout(Result):
 
     @property
     def sentence(self) -> str:
-        """The median error, how long the stretches are, and the error before, in a sentence."""
+        """Sentence with the median error, the length of the stretches, and the error without friction."""
         worst = max(self.runs, key=lambda run: run.error)
         shown = "median" if len({run.kind for run in self.runs}) == 1 else "largest"
         error = self.median if shown == "median" else worst.error
@@ -146,7 +146,7 @@ class Rollout(Result):
         Parameters
         ----------
         verbose : bool
-            Changes nothing: the answer is everything.
+            No effect: the report is always complete.
         """
         del verbose
         head, rows = self.table()
@@ -156,7 +156,7 @@ class Rollout(Result):
         return "\n".join(aligned([head, *rows]))
 
     def table(self) -> tuple[list[str], list[list[str]]]:
-        """Return head and rows: each run's error and, where they are known, what it was before and its spread."""
+        """Return head and rows: each run's error and, if known, its error without friction and its spread."""
         unit = " or ".join(dict.fromkeys(run.unit for run in self.runs))
         columns = {f"error [{unit}]": [f"{run.shown(run.error):.2f}" for run in self.runs]}
         if any(run.before is not None for run in self.runs):

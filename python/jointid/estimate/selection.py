@@ -1,4 +1,4 @@
-"""How a model was chosen that nobody named: what competed, the scores, and the reason."""
+"""The automatic choice of a model: candidates, scores, and reason."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from jointid.base.values import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
-    """A model that competed.
+    """A candidate model.
 
     Attributes
     ----------
     model : str
-        Its text, e.g. "stribeck:gravity=free".
+        Text of the model, e.g. "stribeck:gravity=free".
     parameters : int
-        Free parameters, shape parameters included.
+        Number of free parameters, shape parameters included.
     score : float
-        Norm of the held-out windows' residuals over that of their torque: how far the torque that it
-        predicts from motion, and from the sensor's reading if there is one, is from the drive's.
+        Norm of the residuals over the norm of the torque, in held-out windows. The torque is predicted from the
+        motion, and from the sensor's reading if there is one.
     excess : float
-        Mean squared residual of the held-out windows, less that of the best candidate, in standard errors
-        of this difference; 0 for the best.
+        Mean squared residual of the held-out windows minus that of the best candidate, in standard errors of
+        this difference; 0 for the best candidate.
     refused : str
-        Why it could not win; empty if it could.
+        Reason why it could not be chosen; empty if it could.
     """
 
     model: str
@@ -40,13 +40,13 @@ class Selection:
     Attributes
     ----------
     model : str
-        Text of the chosen one.
+        Text of the chosen model.
     runner_up : str or None
-        Text of the best of the others; None if there was no other.
+        Text of the second best model; None if there was no other.
     candidates : tuple of Candidate
-        The simplest first.
+        Candidates, simplest first.
     blocks : int
-        Parts of the recordings that were held out in turn.
+        Number of parts of the recordings that were held out in turn.
 
     Examples
     --------
@@ -65,7 +65,7 @@ class Selection:
         Raises
         ------
         KeyError
-            No such candidate.
+            There is no such candidate.
         """
         for each in self.candidates:
             if each.model == model:
@@ -74,7 +74,7 @@ class Selection:
 
     @property
     def sentence(self) -> str:
-        """What was chosen and why, in one line, with the runner-up and both scores."""
+        """The choice and its reason in one line, with the second best model and both scores."""
         chosen = self[self.model]
         if self.runner_up is None:
             return f"{self.model}: no other model could be compared"

@@ -1,4 +1,4 @@
-"""The result of a self-test: which known parameters come back from the user's own motion and noise."""
+"""The result of a self-test: the known parameters that are recovered from the user's motion and noise."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from jointid.base.values import dataclass
 from jointid.estimate.wording import number, percent, two_digits
 
 SCHEMA = 1
-"""Raised when a reader of the old form would misread the new one."""
+"""Version; increased if a reader of the old form would misread the new one."""
 
-_LARGE = 20.0  # an error that is so many times the truth is no share of it
+_LARGE = 20.0  # errors above this multiple of the truth are not shown as a share
 _REMARKS = {"yes": "comes back", "no": "does not come back"}
 _HEAD = ("parameter", "truth", "identified", "error", "95 % interval", "unit", "comes back")
 
@@ -27,11 +27,11 @@ class SelfTestRow:
     Attributes
     ----------
     trial : int
-        0: the estimate itself was injected; above: parameters drawn from its intervals.
+        0: the truth is the estimate itself. Above 0: the truth is drawn from its intervals.
     parameter : str
     unit : str
     truth : float
-        The injected value.
+        The true value in the simulation.
     value : float
         The identified value.
     interval : tuple of float or None
@@ -39,8 +39,8 @@ class SelfTestRow:
     covered : bool
         Whether the interval contains the truth.
     close : bool
-        Whether the identified value is near enough to be of use: within 5 % of the truth, or off by what
-        changes the torque by less than half a per cent.
+        Whether the identified value is accurate enough: within 5 % of the truth, or the error changes the torque
+        by less than 0.5 %.
     """
 
     trial: int
@@ -54,12 +54,12 @@ class SelfTestRow:
 
     @property
     def error(self) -> float:
-        """Identified value less truth."""
+        """Identified value minus truth."""
         return self.value - self.truth
 
     @property
     def shown_error(self) -> str:
-        """The error for people: a share of the truth, or with the unit where the truth is next to nothing."""
+        """The error as text: relative to the truth, or with the unit if the truth is nearly zero."""
         sign = "-" if self.error < 0.0 else "+"
         if abs(self.error) <= _LARGE * abs(self.truth):
             return f"{sign}{percent(abs(self.error / self.truth))}" if self.error else "0 %"
@@ -77,7 +77,7 @@ class SelfTest(Result):
     trials : int
     seed : int
     failed : str
-        Why a trial could not be identified at all; empty if all could.
+        Reason why a trial could not be identified; empty if all could.
 
     Examples
     --------
@@ -120,9 +120,9 @@ class SelfTest(Result):
         return tuple(dict.fromkeys(row.parameter for row in self.rows))
 
     def recovered(self, parameter: str) -> bool:
-        """Return whether a parameter comes back: close in every trial, and covered in all but one at most.
+        """Return whether a parameter is recovered: close in every trial, and covered in all trials except at most one.
 
-        A 95 % interval misses now and then by chance; that is no fault of the recording.
+        A 95 % interval sometimes misses the truth by chance; this is no fault of the recording.
         """
         mine = [row for row in self.rows if row.parameter == parameter]
         covered = sum(row.covered for row in mine)
@@ -130,17 +130,17 @@ class SelfTest(Result):
 
     @property
     def lost(self) -> tuple[str, ...]:
-        """Parameters that do not come back."""
+        """Parameters that are not recovered."""
         return tuple(name for name in self.parameters if not self.recovered(name))
 
     @property
     def passed(self) -> bool:
-        """Whether every parameter comes back."""
+        """Whether every parameter is recovered."""
         return not self.lost and not self.failed
 
     @property
     def verdict(self) -> str:
-        """The result in a sentence."""
+        """The result as a sentence."""
         if self.failed:
             return f"a trial could not be identified: {self.failed}"
         if self.passed:
@@ -159,12 +159,12 @@ class SelfTest(Result):
         return f"off by up to {max(mine, key=lambda row: abs(row.error)).shown_error.lstrip('+-')}"
 
     def report(self, *, verbose: bool = False) -> str:
-        """Return the result as text: a table for each trial, then the verdict.
+        """Return the result as text: one table per trial, then the verdict.
 
         Parameters
         ----------
         verbose : bool
-            Changes nothing: the answer is everything.
+            No effect: the report is always complete.
         """
         del verbose
         lines = [f"jointid self-test — {self.trials} trials, seed {self.seed}", ""]
@@ -187,7 +187,7 @@ class SelfTest(Result):
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's own types; a number that is not finite is a text."""
+        """Return everything in JSON's types; a number that is not finite becomes a text."""
         document: dict[str, Any] = json_types(
             {
                 "schema": SCHEMA,

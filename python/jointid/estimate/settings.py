@@ -1,4 +1,4 @@
-"""How an estimate was made: the settings it carries, and the one place that reads the model from them."""
+"""The settings of an estimate, and the functions that read the model from them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from jointid.base.schema import Flag, ListOf, Number, OrNull, Plain, Record, Tab
 from jointid.joint.model import FIELDS, Model
 from jointid.problem.terms import RESIDUALS
 
-# Only what is read again is declared. All else is there for people, and to repeat the run.
+# Only settings that the program reads are declared. All others are for people, and to repeat the run.
 SETTINGS = Record(
     fields={
         "version": Text(),
@@ -39,20 +39,20 @@ SETTINGS = Record(
 
 
 def model_of(settings: Mapping[str, Any]) -> Model:
-    """The model that was identified; settings of schema 1 have its fields beside its name.
+    """Return the identified model; settings of schema 1 have its fields next to its name.
 
     Raises
     ------
     InputError
-        A saved model that cannot be.
+        The saved model is invalid.
     """
-    # "terms" are here the keys of the core's terms, not the model's own ones.
+    # Here "terms" are the keys of the core's terms, not the model's own terms.
     beside = {name: settings[name] for name in FIELDS if name in settings and name != "terms"}
     return Model.of(beside).over(Model.parse(settings["model"]))
 
 
 def model_description(settings: Mapping[str, Any]) -> str:
-    """The model and the residual, for people, e.g. "stribeck:ripple=2, residual of the sensor"."""
+    """Return model and residual as text, e.g. "stribeck:ripple=2, residual of the sensor"."""
     text = f"{model_of(settings).resolved}, {residual_text(settings['residual'])}"
     if settings.get("residual_reason"):
         text = f"{text} ({settings['residual_reason']})"
@@ -60,15 +60,15 @@ def model_description(settings: Mapping[str, Any]) -> str:
 
 
 def residual_text(residual: str) -> str:
-    """What is compared, for people, e.g. "residual of the torque"."""
+    """Return the compared signal as text, e.g. "residual of the torque"."""
     return "gain by instruments" if residual == "instruments" else f"residual of the {residual}"
 
 
 def torque_unit(settings: Mapping[str, Any]) -> str:
-    """Unit of the drive's torque or force."""
+    """Return the unit of the drive's torque or force."""
     return "N" if settings["kind"] == "prismatic" else "N·m"
 
 
 def residual_unit(settings: Mapping[str, Any]) -> str:
-    """Unit of the signal that the residual compares."""
+    """Return the unit of the signal that the residual compares."""
     return torque_unit(settings) if settings["residual"] == "torque" else "sensor units"

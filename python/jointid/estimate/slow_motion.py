@@ -1,4 +1,4 @@
-"""How slow motion disagrees with faster motion, as an estimate carries it."""
+"""Disagreement of slow motion with faster motion, in an estimate."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from jointid.base.values import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlowMotion:
-    """Slow windows held against the friction that faster windows show.
+    """Friction in slow windows compared with the friction from faster windows.
 
     Attributes
     ----------
     speed : float
-        Windows below this mean speed are the slow ones [rad/s or m/s].
+        Windows below this mean speed are slow [rad/s or m/s].
     excess : float
-        Mean friction that the slow windows have beyond what the faster ones predict [N·m or N]; negative:
-        they have less, as a creeping or sticking joint does.
+        Mean friction in slow windows minus the prediction from faster windows [N·m or N]. Negative: slow windows
+        have less friction, like a creeping or sticking joint.
     stderr : float
         Standard error of `excess`, clustered over passes of slow motion.
     level : float
-        Dry friction of the faster windows [N·m or N].
+        Coulomb friction from the faster windows [N·m or N].
     share : float
-        Share of the windows' time that is slow.
+        Share of slow windows in the windows' time.
     applied : bool
         Whether motion slower than `speed` was left out.
     """

@@ -23,9 +23,9 @@ SYSTEMATIC_PARTS = (
     "residual_side",
     "given",
 )
-"""What moves a value however long the recording is."""
+"""Systematic errors: they do not decrease with the length of the recording."""
 
-_NOTHING = 1e-12  # N·m, kg·m², ...: below it a fixed value is what rounding left of 0
+_NOTHING = 1e-12  # N·m, kg·m², ...: a smaller fixed value is a rounding error of 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -35,32 +35,30 @@ class ParameterEstimate:
     Attributes
     ----------
     value : float
-        In `unit`.
+        Value in `unit`.
     stderr : float or None
-        Standard error: of chance alone, clustered over motion segments where the residuals hang together; None when
-        fixed or held at a bound.
+        Random standard error, clustered over motion segments if residuals are correlated; None if fixed or on a
+        bound.
     interval : tuple of float or None
-        95 % interval: of chance (Student's t, with as many degrees of freedom as the segments give), and of the
-        systematic parts "windows", "sampling", "curvature", "lag", "velocity", "extra" and "symmetry". It holds if the
-        given facts are right. Of a coefficient on its bound it is the interval as if there were no bound, of chance
-        alone.
+        95 % interval: random (Student's t, with the degrees of freedom from the segments) plus the systematic parts
+        "windows", "sampling", "curvature", "lag", "velocity", "extra" and "symmetry". It holds if the stated facts
+        are right. For a coefficient on its bound, it is the random interval without the bound.
     min, max : float
         Bounds of the search.
     vary : bool
-        False when it was fixed.
+        False if it was fixed.
     at_bound : str or None
-        "min" or "max" when the search ended on a bound.
+        "min" or "max" if the search ended on this bound.
     shift_halved, shift_doubled : float or None
-        How the value moves when the windows are halved and doubled.
+        Change of the value with windows of half and double length.
     systematic : mapping of str to float
-        Sizes of errors that do not decrease with the recording's length, by name:
-        "windows" (how the value moves when they are halved and doubled, without what noise of the velocity and of
-        extra signals adds to that), "curvature" (friction that is not straight between samples), "lag" (delays
-        between signals that are certain), "velocity" (its noise), "extra" (noise of the extra signals of own terms),
-        "symmetry" (of a sensor's offset: friction that is not the same in both directions), all as one standard
-        error; "sampling" (the unknown instant of the sensor's sample), at its limit; "residual_side" (how the value
-        moves when the other signal is compared; a gain by instruments needs no side); "given" (the tolerances of the
-        joint's facts, at their limits). Parts that do not apply are missing.
+        Sizes of errors that do not decrease with the recording's length, by name. As one standard error:
+        "windows" (change with windows of half and double length, without the effect of noise of velocity and extra
+        signals), "curvature" (friction that is not linear between samples), "lag" (certain delays between signals),
+        "velocity" (noise of the velocity), "extra" (noise of the extra signals of own terms), "symmetry" (friction that
+        differs between directions, for a sensor's offset). At its limit: "sampling" (unknown sampling instant of the
+        sensor), "given" (tolerances of the joint's facts). "residual_side": change of the value if the other signal is
+        compared (not for a gain by instruments). Parts that do not apply are missing.
     """
 
     name: str
@@ -85,9 +83,9 @@ class ParameterEstimate:
 
     @property
     def shown_value(self) -> float:
-        """The value as it is printed: the bound itself where the search ended there, 0 for what rounding left.
+        """The printed value: the bound itself if the search ended there, 0 for a rounding error of 0.
 
-        A search that ends on a bound of 0 leaves 1e-17, and cos 90° is 6e-17.
+        For example, a search that ends on a bound of 0 gives 1e-17, and cos 90° is 6e-17.
         """
         if self.at_bound is not None:
             return self.min if self.at_bound == "min" else self.max
@@ -95,23 +93,23 @@ class ParameterEstimate:
 
     @property
     def systematic_total(self) -> float:
-        """The systematic parts together: the root of the sum of their squares."""
+        """Total of the systematic parts: the root of the sum of squares."""
         return math.hypot(*self.systematic.values())
 
     @property
     def largest_part(self) -> str | None:
-        """Name of the largest systematic part; None when all are zero."""
+        """Name of the largest systematic part; None if all are zero."""
         name = max(self.systematic, key=self.systematic.__getitem__, default=None)
         return name if name is not None and self.systematic[name] > 0.0 else None
 
     @property
     def uncertainty(self) -> float:
-        """Chance and all systematic parts together, as one standard error."""
+        """Random error and all systematic parts together, as one standard error."""
         return math.hypot(self.stderr or 0.0, self.systematic_total)
 
 
 def distance_from_bound(p: ParameterEstimate) -> float:
-    """Return how far a value may be off its bound: within it, unless the best value lies beyond it for certain."""
+    """Return the possible distance of a value from its bound: inwards, unless the optimum is surely outside."""
     if p.interval is None:
         return math.inf
     inside, beyond = p.interval[1] - p.value, p.value - p.interval[0]
@@ -122,16 +120,16 @@ def distance_from_bound(p: ParameterEstimate) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResidualStatistics:
-    """The window residuals in numbers.
+    """Statistics of the window residuals.
 
     Attributes
     ----------
     windows : int
-        Windows used.
+        Number of windows used.
     window_duration : float
-        [s]
+        Duration of a window [s].
     noise_share : float
-        Variance of the velocity's noise over that of its change across a window.
+        Variance of the velocity's noise over the variance of its change across a window.
     rms : float
         Root mean square of the residual, as a mean over a window [unit of the compared signal].
     relative : float
@@ -141,11 +139,11 @@ class ResidualStatistics:
     autocorrelation : float
         Autocorrelation of neighboring windows; 0 for a perfect model with white noise.
     samples : int
-        Samples in the recordings.
+        Number of samples in the recordings.
     left_out : float
-        Share of the sample intervals left out: standing still, sticking, gaps.
+        Share of sample intervals that are left out: standstill, sticking, gaps.
     standing : float
-        Share of the samples at which the joint stood still or stuck.
+        Share of samples at which the joint stands still or sticks.
     """
 
     windows: int
@@ -168,13 +166,13 @@ class Convergence:
     ----------
     generation : ndarray of int
     best, mean : ndarray
-        Penalty of the best individual so far and mean over the population.
+        Penalty of the best individual so far, and mean over the population.
     diversity : ndarray
-        Genetic diversity measure, between 0 and 1; how it is formed is an option.
+        Measure of genetic diversity, between 0 and 1; an option selects its definition.
     crossover_probability, mutation_probability : ndarray
-        As used for the generation; they follow the diversity when the options say so.
+        Probabilities of the generation; they depend on the diversity if the options request it.
     evaluations : ndarray of int
-        Penalties computed so far.
+        Number of penalties computed so far.
     """
 
     generation: NDArray[np.int64]
@@ -188,14 +186,14 @@ class Convergence:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FrictionCurve:
-    """The estimated friction map; `numpy.asarray` of it is `torque`.
+    """The estimated friction map; `numpy.asarray` returns `torque`.
 
     Attributes
     ----------
     velocity : ndarray
-        [rad/s or m/s]
+        Velocities [rad/s or m/s].
     torque : ndarray
-        [N·m or N]; 0 at rest, where friction takes any value up to the breakaway friction.
+        Friction [N·m or N]; 0 at rest, where friction has any value up to the breakaway friction.
     lower, upper : ndarray
         Pointwise 95 % band.
     """
@@ -209,5 +207,5 @@ class FrictionCurve:
         return f"<FrictionCurve: {np.size(self.torque)} velocities, with a 95 % band>"
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
-        """The torque."""
+        """Return the torque."""
         return np.array(self.torque, dtype=dtype)

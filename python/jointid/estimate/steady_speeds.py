@@ -1,4 +1,4 @@
-"""Friction from a table of steady speeds and torques: no time, no motion, so no inertia."""
+"""Friction from a table of steady speeds and torques; without acceleration there is no inertia."""
 
 from __future__ import annotations
 
@@ -18,19 +18,17 @@ from jointid.estimate.wording import number, percent, two_digits
 
 Array = NDArray[np.float64]
 
-_FLOOR = 1e-4  # of the rms torque: a smaller misfit is rounding, and no reason for another term
-_SHAPES = 40  # Stribeck shapes that are tried
-_ZOOMS = 3  # times that a finer grid surrounds the best of them
-_CERTAIN = (
-    3.0  # standard errors: what a further term must be worth, and static friction be larger than 0
-)
-_SPARE = 2  # rows beyond the number of parameters
+_FLOOR = 1e-4  # of the rms torque: a smaller residual is rounding, and justifies no further term
+_SHAPES = 40  # number of tried Stribeck shapes
+_ZOOMS = 3  # number of refinements of the grid around the best shape
+_CERTAIN = 3.0  # standard errors: least improvement by a further term, and least static friction
+_SPARE = 2  # least number of rows in excess of the parameters
 _UNITS = {"viscous": ("N·m·s/rad", "N·s/m"), "stribeck": ("s²/rad²", "s²/m²")}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SteadyFriction:
-    """Friction over steady speed.
+    """Friction map from steady speeds.
 
     Attributes
     ----------
@@ -41,15 +39,15 @@ class SteadyFriction:
     speeds : tuple of float
         Smallest and largest speed [rad/s or m/s].
     directions : int
-        1 or 2.
+        Number of directions, 1 or 2.
     rows, at_rest : int
-        Rows that were fitted, and rows without speed, which say nothing of a set-valued friction.
+        Number of fitted rows, and of rows at rest, which are not used because friction at rest is set-valued.
     rms : float
-        What the friction misses of the torque [N·m or N].
+        Root mean square of the residual [N·m or N].
     share : float
-        The same, of the rms torque.
+        `rms` over the rms torque.
     assumed : tuple of str
-        Signals without a stated unit, which are taken as SI.
+        Signals without a stated unit; SI is assumed.
     """
 
     values: Mapping[str, float]
@@ -64,7 +62,7 @@ class SteadyFriction:
     assumed: tuple[str, ...] = ()
 
     def document(self) -> dict[str, object]:
-        """The map as JSON has it."""
+        """Return the map in JSON's types."""
         parameters = {
             name: {
                 "value": value,
@@ -78,7 +76,7 @@ class SteadyFriction:
         return {"friction_map": {"parameters": parameters} | {k: getattr(self, k) for k in others}}
 
     def report(self) -> str:
-        """The map as text."""
+        """Return the map as text."""
         table = [("parameter", "value", "± std. error", "95 % interval", "unit")]
         for name, value in self.values.items():
             low, high = self._interval(name)
@@ -120,20 +118,20 @@ class SteadyFriction:
 def steady_friction(velocity: Array, torque: Array, kind: str = "revolute") -> SteadyFriction:
     """Fit friction to steady speeds and torques by plain least squares.
 
-    Coulomb and viscous friction; of each direction its own, and Stribeck friction, where each further parameter
-    lowers the misfit by as much as three standard errors of it.
+    The model is Coulomb and viscous friction. Separate values per direction, and Stribeck friction, are added if each
+    further parameter reduces the residual by at least three standard errors.
 
     Parameters
     ----------
     velocity, torque : ndarray, shape (n,)
-        [rad/s] and [N·m], or [m/s] and [N].
+        Speeds and torques: [rad/s] and [N·m], or [m/s] and [N].
     kind : str
         "revolute" or "prismatic".
 
     Raises
     ------
     InputError
-        Too few rows or speeds.
+        There are too few rows or speeds.
     """
     moving = velocity != 0.0
     v, tau = velocity[moving], torque[moving]
@@ -164,7 +162,7 @@ _WAYS = ("_positive", "_negative")
 
 
 def _models(directions: int) -> list[list[str]]:
-    """Terms of the candidates: in which of them the directions differ, and each with and without Stribeck friction."""
+    """Return the candidates' terms: different sets of terms per direction, with and without Stribeck friction."""
     own = [(), ("coulomb",), ("coulomb", "viscous"), ("coulomb", "static", "viscous")]
     return [
         [f"{name}{way}" for name in names for way in (_WAYS if name in apart else ("",))]
@@ -175,7 +173,7 @@ def _models(directions: int) -> list[list[str]]:
 
 
 def _fitted(terms: Sequence[str], v: Array, tau: Array) -> _Fit | None:
-    """Criterion, values, standard errors and rms of a model; None if the rows do not determine it."""
+    """Return criterion, values, standard errors and rms of a model; None if the rows do not determine it."""
     falls = any(term.startswith("static") for term in terms)
     count = len(terms) + falls
     if len(v) < count + _SPARE:
@@ -214,7 +212,7 @@ def _basis(terms: Sequence[str], v: Array, shape: float) -> Array:
 
 
 def _best_shape(terms: Sequence[str], v: Array, tau: Array) -> float:
-    """The Stribeck shape (4-1) of the least misfit: friction falls between the slowest rows and the fastest."""
+    """Return the Stribeck shape (4-1) with the smallest residual; the decay is between slowest and fastest rows."""
     speeds = np.abs(v)
     low, high = math.log(1.0 / float(speeds.max()) ** 2), math.log(4.0 / float(speeds.min()) ** 2)
     best = low

@@ -21,25 +21,25 @@ Row = tuple[str, str, str, str, str, str, str]
 
 
 def subject(estimate: EstimateRecord) -> str:
-    """The joint's name for a title, and how many recordings the estimate is made from, of several."""
+    """Return the joint's name for a title, with the number of recordings if there are several."""
     runs = estimate.settings["recordings"]
     name = estimate.joint.name or "joint"
     if len(runs) == 1:
         return name
-    if name == runs[0]["name"]:  # nobody named the joint
+    if name == runs[0]["name"]:  # the joint has no name
         return f"{name} and {len(runs) - 1} more recording{'s' * (len(runs) > 2)}"
     return f"{name}, {len(runs)} recordings"
 
 
 def remark(p: ParameterEstimate) -> str:
-    """Whether a parameter is fixed or at a bound."""
+    """Return a remark if a parameter is fixed or on a bound."""
     if not p.vary:
         return "fixed"
     return f"at its {'lower' if p.at_bound == 'min' else 'upper'} bound" if p.at_bound else ""
 
 
 def shown_name(name: str) -> str:
-    """A parameter's or a derived quantity's name for people."""
+    """Return the readable name of a parameter or derived quantity."""
     if name.startswith("static"):
         return f"{name} (above Coulomb)"
     if name == "stribeck_velocity":
@@ -52,7 +52,7 @@ def shown_name(name: str) -> str:
 
 
 def rows(estimate: EstimateRecord) -> list[Row]:
-    """The parameter table: one row a parameter, then one a derived quantity."""
+    """Return the table: one row per parameter, then one per derived quantity."""
     table = [_row(p, remark(p)) for p in estimate.parameters.values()]
     return table + [_row(each, f"= {each.formula}") for each in derived_values(estimate).values()]
 
@@ -70,14 +70,14 @@ def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
 
 
 def systematic(p: ParameterEstimate | DerivedValue) -> str:
-    """All systematic parts together, and the name of the largest, e.g. "1.3 (given)"."""
+    """Return the total of the systematic parts and the name of the largest, e.g. "1.3 (given)"."""
     if p.largest_part is None:
         return ""
     return f"{two_digits(p.systematic_total)} ({p.largest_part.replace('_', ' ')})"
 
 
 def quality(estimate: EstimateRecord) -> list[tuple[str, str]]:
-    """Quality of the fit and what it is based on, as label and text."""
+    """Return the quality of the fit and its basis, as label and text."""
     r = estimate.residuals
     unit = residual_unit(estimate.settings)
     tolerances = estimate.joint.tolerances.given.items()
@@ -108,18 +108,18 @@ def quality(estimate: EstimateRecord) -> list[tuple[str, str]]:
 
 
 def second_look(estimate: EstimateRecord) -> str:
-    """The values of the cross-check, or why there are none, in a line."""
+    """Return one line with the values of the cross-check, or the reason why there are none."""
     check = estimate.cross_check
     if check is None or check.reason:
         return f"none: {check.reason}" if check else "none"
     values = [f"{name} {rounded(each.value, each.error)}" for name, each in check.values.items()]
     contradicted = ", ".join(check.contradicted)
-    verdict = f"disagrees at {contradicted}" if contradicted else "agrees"
+    verdict = f"disagrees in {contradicted}" if contradicted else "agrees"
     return f"plain least squares {verdict}: {', '.join(values)}"
 
 
 def recorded(estimate: EstimateRecord) -> list[tuple[str, str]]:
-    """What the estimate was made from, as label and text: recordings, and what the windows cover."""
+    """Return the data of the estimate as label and text: recordings, and the ranges of the windows."""
     windows, r = estimate.windows, estimate.residuals
     kind = estimate.settings["kind"]
     runs = estimate.settings["recordings"]
@@ -142,7 +142,7 @@ def recorded(estimate: EstimateRecord) -> list[tuple[str, str]]:
 
 
 def _refinements(estimate: EstimateRecord) -> list[tuple[str, str]]:
-    """What was found about the data before the search, and done about it."""
+    """Return the corrections of the data before the search, as label and text."""
     lines = []
     if estimate.delays:
         each = [delay.shown for delay in estimate.delays.values()]
@@ -163,7 +163,7 @@ def _refinements(estimate: EstimateRecord) -> list[tuple[str, str]]:
 
 
 def strongest_correlation(estimate: EstimateRecord) -> str:
-    """The pair of parameters with the strongest correlation."""
+    """Return the pair of parameters with the strongest correlation."""
     size = np.abs(np.triu(estimate.correlation, 1))
     if size.size < 2:
         return "a single free parameter"
@@ -173,13 +173,13 @@ def strongest_correlation(estimate: EstimateRecord) -> str:
 
 
 def text_report(estimate: EstimateRecord, action: Callable[[Action], str] = str) -> str:
-    """The estimate as text.
+    """Return the estimate as text.
 
     Parameters
     ----------
     estimate : Estimate
     action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
+        Words the remedies of a finding. Default: for a Python prompt.
     """
     table = [HEAD, *rows(estimate)]
     widths = [max(len(row[column]) for row in table) for column in range(len(HEAD))]
@@ -209,7 +209,7 @@ def text_report(estimate: EstimateRecord, action: Callable[[Action], str] = str)
 
 
 def _findings(estimate: EstimateRecord, action: Callable[[Action], str]) -> list[str]:
-    """One line a finding; between blocking ones and warnings, how many of these may be effects."""
+    """Return one line per finding; a line between blocking findings and warnings states how many may be effects."""
     lines = [
         f"{found.severity} ({found.code}): {found.worded(action)}" for found in estimate.findings
     ]

@@ -1,4 +1,4 @@
-"""Whether the numbers of an estimate may be used, and for what."""
+"""The verdict: whether the values of an estimate may be used, and for which purposes."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 Level = Literal["usable", "usable with care", "not usable"]
 LEVELS: tuple[Level, ...] = ("usable", "usable with care", "not usable")
-# What spoils a change between two recordings of the same motion, other than a bias that stays the same: chance, and
-# what is not the same the next time.
+# Findings that affect a comparison of two recordings of the same motion: random errors, and effects that change
+# between recordings. A constant bias does not matter.
 _CHANCE = frozenset(
     ("standing", "undetermined", "few_windows", "stopped", "at_bound", "model_too_rich")
 )
@@ -41,24 +41,24 @@ _CHANGING = frozenset(
         "torque_saturated",
     )
 )
-_NAMED = 5  # parameters, in words
-_SEEN = 0.036  # standard error, of a value: with it a change of a tenth is seen, at 95 %
+_NAMED = 5  # parameters named in a text
+_SEEN = 0.036  # relative standard error at which a change of 10 % is detected (95 %)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Use:
-    """Whether an estimate serves one purpose.
+    """Usability of an estimate for one purpose.
 
     Attributes
     ----------
     level : {"usable", "usable with care", "not usable"}
     parameters : tuple of str
-        Those to mind, or because of which it does not serve; empty where it is not about single ones.
+        Parameters that need care or prevent the use; empty if the reason is not about single parameters.
     codes : tuple of str
-        Codes of the findings behind it, and "explained", "self_test" or "given".
+        Codes of the findings that are the reason, and "explained", "self_test" or "given".
     within : float or None
-        How far off what it needs may be at most (95 %), as a share of it: of `Estimate.within`. None where it does not
-        serve, or where that is not known.
+        Largest relative error (95 %) of the quantities that the purpose needs, from `Estimate.within`. None if the
+        estimate is not usable, or the error is unknown.
     """
 
     level: Level
@@ -74,7 +74,7 @@ class Use:
 
     @property
     def how_good(self) -> str:
-        """How well it serves as a clause, e.g. ", to ± 9 %"; empty where that is not known."""
+        """Accuracy as a clause, e.g. ", to ± 9 %"; empty if unknown."""
         if self.within is None:
             return ""
         return f", to ± {percent(self.within)}" if self.within < 1.0 else ", worse than ± 100 %"
@@ -82,18 +82,18 @@ class Use:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """Whether the numbers of an estimate may be used.
+    """Usability of an estimate's values.
 
     Attributes
     ----------
     level : {"usable", "usable with care", "not usable"}
-        The worst of all purposes.
+        Worst level of all purposes.
     reasons : tuple of str
-        Why not without care, in a sentence each, the most severe first.
+        Reasons against use without care, one sentence each, most severe first.
     uses : mapping of str to Use
-        By purpose: "compensation" (of friction in a controller: its friction and sensor parameters), "simulation"
-        (all parameters), "monitoring" (changes of a tenth between recordings of the same motion, which a bias that
-        stays the same does not spoil).
+        Purpose → usability. "compensation": friction compensation in a controller (friction and sensor parameters).
+        "simulation": all parameters. "monitoring": changes of 10 % between recordings of the same motion; a constant
+        bias does not matter.
     """
 
     level: Level
@@ -106,7 +106,7 @@ class Verdict:
         return "; ".join(f"for {purpose}: {use}" for purpose, use in self.uses.items())
 
     def lines(self) -> list[str]:
-        """The verdict as text: one line, and one for each purpose where they differ or say how good they are."""
+        """Return the verdict as text: one line, and one per purpose if they differ or have an accuracy."""
         alike = len({(use.level, use.parameters) for use in self.uses.values()}) == 1
         first = f"verdict: {self if alike else self.level}"
         if alike and not any(use.how_good for use in self.uses.values()):
@@ -114,7 +114,7 @@ class Verdict:
         return [first, *(f"  {name}: {use}{use.how_good}" for name, use in self.uses.items())]
 
     def document(self) -> dict[str, Any]:
-        """The verdict, of JSON's types."""
+        """Return the verdict in JSON's types."""
         return {
             "level": self.level,
             "reasons": list(self.reasons),
@@ -135,25 +135,37 @@ def judged(
 ) -> Verdict:
     """Judge an estimate by its findings.
 
-    Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
-    variance explained by the model and a cause that a finding names (of held-out torque where the model was chosen by
-    it; neither counts where the windows are explained worse than by their mean and more than 10 % of their squares
-    are left); for compensation and simulation also a parameter that they need and that is no value: one on its bound
-    that `at_bound` warns of, one without a finite error that `undetermined` names (where friction differs by
-    direction, offset and directional Coulomb frictions have none for any motion, and need none), or a friction that
-    `undetermined` names and that may be off by half of its value and a tenth of all friction; for simulation also an
-    inertia on its bound, or an undetermined one whose 95 % interval reaches zero; for compensation alone a torque
-    that holds no friction.
-    Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is larger than everything
-    else together. Usable: else.
+    Not usable for any purpose, if
+
+    - a finding is blocking,
+    - a requested parameter fails the self-test, or
+    - the model and the causes in findings explain less than 90 % of the windows' variance. If held-out torque chose
+      the model, the variance of that torque counts. Neither counts if the windows are explained worse than by their
+      mean, and the residual is more than 10 % of their squares.
+
+    Not usable for compensation and simulation, if a parameter that they need has no value:
+
+    - it is on its bound, with a warning `at_bound`,
+    - it has no finite error, with a finding `undetermined`, or
+    - it is a friction with a finding `undetermined`, and its error may be half of its value and a tenth of all
+      friction.
+
+    If friction differs by direction, offset and directional Coulomb friction are exempt: no motion can separate them,
+    and no purpose needs it.
+
+    Not usable for simulation, if an inertia is on its bound, or is undetermined with a 95 % interval that reaches zero.
+    Not usable for compensation, if the torque contains no friction.
+
+    Usable with care, if there is a warning, or if a tolerance of the stated facts exceeds 5 % and all other errors
+    together. Otherwise usable.
 
     Parameters
     ----------
     estimate : Estimate
     self_test : SelfTest, optional
-        Self-test of this estimate. Default: none.
+        Self-test of the estimate. Default: none.
     parameters : iterable of str
-        Those asked for. Default: all that are free.
+        Requested parameters. Default: all free parameters.
 
     Returns
     -------
@@ -170,7 +182,7 @@ def judged(
     'usable'
     """
     asked = (parameters,) if isinstance(parameters, str) else tuple(parameters)
-    for name in asked:  # nothing is ever said against a name that is not there
+    for name in asked:  # an unknown name would never get an objection
         if name not in estimate.parameters:
             raise InputError(
                 f"the estimate has no such parameter; it has {', '.join(estimate.parameters)}",
@@ -194,7 +206,7 @@ def judged(
 def to_changes(
     objections: Iterable[Objection], parameters: Mapping[str, ParameterEstimate]
 ) -> Iterable[Objection]:
-    """Yield what spoils a change of a tenth between two recordings of the same motion."""
+    """Yield the objections to detecting a change of 10 % between two recordings of the same motion."""
     for each in objections:
         if each.code == "undetermined" and not each.blocking:
             vague = tuple(name for name in each.parameters if not _is_sharp(parameters[name]))
@@ -213,7 +225,7 @@ def _is_sharp(p: ParameterEstimate) -> bool:
 def concluded(
     uses: Mapping[str, Use], objections: Iterable[Objection], within: Mapping[str, float]
 ) -> Verdict:
-    """Return the verdict of these uses: the worst level, how good they are, and the reasons, the cause first."""
+    """Return the verdict of these uses: the worst level, the accuracies, and the reasons, causes first."""
     uses = {
         purpose: use if use.level == "not usable" else replace(use, within=within.get(purpose))
         for purpose, use in uses.items()
@@ -226,9 +238,9 @@ def concluded(
 def use_by(
     objections: Iterable[Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
 ) -> Use:
-    """Return the level by what concerns the parameters that a purpose needs; without parameters it concerns all.
+    """Return the level from objections to a purpose's parameters; objections without parameters affect all.
 
-    Where something blocks all, none is named: it would look as if the others were right.
+    If an objection blocks all parameters, none is named, because the others would seem right.
     """
     level: Level = "usable"
     names: dict[str, None] = {}

@@ -1,4 +1,4 @@
-"""What pictures show of windows: where they lie in time, where a line is interrupted, which velocities a curve has."""
+"""Windows in pictures: their times, interruptions of lines, and the velocities of curves."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ def fitted_signal(estimate: EstimateRecord) -> tuple[str, str]:
 
 
 def map_velocities(peak: float, count: int = 400) -> Array:
-    """Return velocities up to the peak, so many in each direction, dense near rest, where friction is nonlinear."""
+    """Return `count` velocities in each direction up to the peak, dense near rest, where friction is nonlinear."""
     half = peak * np.linspace(0.0, 1.0, count) ** 3
     half[0] = 1e-9 * peak
     return np.concatenate([-half[::-1], half])
 
 
 def whole_windows(windows: WindowTable) -> NDArray[np.bool_]:
-    """Return which windows hold enough samples for a mean: more than half of the usual time."""
+    """Return a mask of windows with enough samples for a mean: more than half of the usual time."""
     return windows.duration > 0.5 * median(windows.duration)
 
 
 def window_centres(windows: WindowTable) -> Array:
-    """Return the window centres on one time axis [s], on which recordings follow one another."""
+    """Return the window centres on one time axis [s], with the recordings one after the other."""
     centre = 0.5 * (windows.start + windows.stop)
     begin = 0.0
     for run in distinct(windows.recording):
@@ -47,7 +47,7 @@ def window_centres(windows: WindowTable) -> Array:
 
 
 def with_gaps(centre: Array, *values: Array) -> tuple[Array, ...]:
-    """Return centres and values with NaN where windows are missing: nothing was measured there."""
+    """Return centres and values with NaN for missing windows, because nothing was measured there."""
     if len(centre) < 3:
         return (centre, *values)
     steps = np.diff(centre)
