@@ -94,7 +94,7 @@ def test_the_report_says_what_is_not_in_it(
     path = table(tmp_path / "a.csv", SPEEDS, -friction(SPEEDS))
     assert main(["identify", str(path)]) == 0
     said = capsys.readouterr().out
-    assert "not in it  inertia and gravity" in said
+    assert "missing    inertia and gravity" in said
     assert "friction is negative: the torque must have the sign of the speed" in said
 
 

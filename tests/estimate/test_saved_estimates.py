@@ -189,7 +189,7 @@ def test_the_path_is_named() -> None:
         (("covariance", 1), "[1.0]", "4 rows of 4"),
         (("windows", "start"), "[1.0]", "same length"),
         (("convergence", "best"), "[1.0]", "same length"),
-        (("windows", "recording", 0), "1", "not so many recordings"),
+        (("windows", "recording", 0), "1", "fewer recordings"),
         (("findings", 0, "advice", 0, "kind"), '"shout"', "known are call, record, inspect"),
         (("findings", 0, "advice", 0, "arguments"), "{}", "a call needs arguments"),
         (("findings", 0, "severity"), '"mild"', "known are info, warning, blocking"),

@@ -43,7 +43,7 @@ def test_several_damaged_rows_make_a_gap(tmp_path: Path) -> None:
 
 def test_a_damaged_column_is_not_dropped_row_by_row(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", dict.fromkeys(range(30), "1e300"))
-    with pytest.raises(InputError, match="look at the column and its unit"):
+    with pytest.raises(InputError, match="check the column and its unit"):
         jid.load(path)
     with pytest.raises(InputError, match="30 of 60 rows have a value that no joint has"):
         jid.load(path, drop_invalid=True)

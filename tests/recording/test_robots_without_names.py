@@ -68,7 +68,7 @@ def test_a_block_keeps_the_units_of_its_headers(tmp_path: Path) -> None:
             {"position": "1:3", "torque": "4:5"},
             r"as many columns as there are joints \(position: 3",
         ),
-        ({"position": "1:3", "torque": "3:5"}, "column 3 is also of the block position"),
+        ({"position": "1:3", "torque": "3:5"}, "column 3 is also in the block position"),
         ({"position": "1:99"}, "the columns are 0 to 6"),
         ({"position": "3:1"}, "its first and its last"),
         ({"speed": "1:3"}, "speed"),

@@ -1,7 +1,7 @@
 """Schemas of jointid's own files: declared once, checked during reading.
 
 A schema is built from the kinds below. Each has one method, `read(value, place)`, which returns the
-checked value or raises an InputError whose place is the JSON path, e.g. "parameters.coulomb.value".
+checked value or raises an InputError with the JSON path as place, e.g. "parameters.coulomb.value".
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ else:
 def _frozen(cls: type[Any], **options: bool) -> type[Any]:
     compares, shows = options.get("eq", True), options.get("repr", True)
     options |= {"init": False, "eq": False, "repr": False, "frozen": False}
-    cls.__doc__ = cls.__doc__ or cls.__name__  # else made from the signature: slow
+    cls.__doc__ = cls.__doc__ or cls.__name__  # otherwise slow: made from the signature
     cls = dataclasses.dataclass(**options)(cls)
     said = cls.__dataclass_params__
     said.init, said.eq, said.repr, said.frozen = True, compares, shows, True

@@ -136,7 +136,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         if d[field] is not None and len({len(column) for column in d[field].values()}) > 1:
             yield field, "lists of the same length are expected"
     if max(d["windows"]["recording"]) >= len(d["settings"]["recordings"]):
-        yield "windows.recording", "there are not so many recordings in settings.recordings"
+        yield "windows.recording", "settings.recordings has fewer recordings"
     if (chosen := d.get("selection")) is not None:
         texts = [each["model"] for each in chosen["candidates"]]
         for field in ("model", "runner_up"):

@@ -90,7 +90,7 @@ class SteadyFriction:
             *("friction map of steady speeds", "", *aligned(table), ""),
             f"speeds     {self.speeds[0]:.4g} … {self.speeds[1]:.4g} {speed} in {ways}, {self.rows} rows{rest}",
             f"fit        misses {two_digits(self.rms)} {torque} rms, {percent(self.share)} of the torque",
-            "not in it  inertia and gravity: a table of steady speeds has no acceleration and no position; record "
+            "missing    inertia and gravity: a table of steady speeds has no acceleration and no position; record "
             "time, position and torque of a motion for them",
         ]
         if self.assumed:

@@ -29,7 +29,7 @@ class OnlineEstimate(Result):
     parameters : mapping of str to ParameterEstimate
         Parameters by name, fixed ones included.
     undetermined : tuple of str
-        Free parameters whose standard error exceeds 5 % of the value: the last seconds do not determine
+        Free parameters with a standard error above 5 % of the value: the last seconds do not determine
         them.
     at_bound : tuple of str
         Parameters that ended on a bound.

@@ -70,7 +70,7 @@ class Problem:
         Raises
         ------
         InputError
-            Windows that cannot be cut.
+            The windows cannot be cut.
         """
         return self._cut(_core.Penalty, windows)
 
@@ -86,7 +86,7 @@ class Problem:
         Raises
         ------
         InputError
-            Windows that cannot be cut.
+            The windows cannot be cut.
         """
         return self._cut(_core.PenaltyParts, windows, residual)
 
@@ -112,7 +112,7 @@ class Problem:
         Raises
         ------
         InputError
-            Windows that cannot be cut.
+            The windows cannot be cut.
         """
         # Without a first stage, "instruments" equals the torque's residual and needs no further sums.
         own = self.choice.residual

@@ -69,7 +69,7 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
         for joint, index in enumerate(range(first, last + 1), 1):
             if index in joints:
                 raise InputError(
-                    f"column {index} is also of the block {joints[index][0]}",
+                    f"column {index} is also in the block {joints[index][0]}",
                     argument=argument,
                     value=value,
                     place=table.header_place,

@@ -169,7 +169,7 @@ def missing(
     count = len(table.headers) if unnamed else 0
     if set(signals) == set(NEEDED) and count > _AT_MOST:
         return InputError(
-            f"{count} columns without names: the numbers do not show what each is",
+            f"{count} columns without names: their numbers do not show the signals",
             place=table.header_place,
             remedy=OF_BLOCKS,
         )

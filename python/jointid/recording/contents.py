@@ -257,7 +257,7 @@ class Contents:
 
 def _with_drop(error: InputError, signals: Mapping[str, FloatArray]) -> InputError:
     """Return the error of a value; if such rows are few, it advises to leave them out."""
-    advice: str | Action = DROP if few(sound_rows(signals)) else "look at the column and its unit"
+    advice: str | Action = DROP if few(sound_rows(signals)) else "check the column and its unit"
     return InputError(
         error.reason,
         argument=error.argument,

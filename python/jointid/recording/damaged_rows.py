@@ -49,6 +49,6 @@ def checked_rows(sound: npt.NDArray[np.bool_], source: str) -> npt.NDArray[np.in
             argument="drop_invalid",
             value=True,
             place=source,
-            remedy="look at the columns and their units",
+            remedy="check the columns and their units",
         )
     return np.flatnonzero(sound)

@@ -68,7 +68,7 @@ def check_extra_name(name: object, argument: str) -> None:
         )
     if name in SIGNALS:
         raise InputError(
-            "this is the name of a signal that a recording has anyway",
+            "this is the name of a fixed signal of recordings",
             argument=argument,
             value=name,
             remedy=f"call it {name}_extra",

@@ -67,7 +67,7 @@ PRODUCTS: dict[str, Documented] = {
     "iq_measured": Documented("current", "ODrive", (UNITS["A"],), whole=False),
     # CiA 402 (IEC 61800-7-201), objects 6064h, 606Ch, 6077h, 6078h
     "position_actual_value": Documented(
-        "position", _DRIVES, asked="in counts (6064h)", factor="2π over the counts of a turn"
+        "position", _DRIVES, asked="in counts (6064h)", factor="2π over the counts per revolution"
     ),
     "velocity_actual_value": Documented(
         "velocity", _DRIVES, asked="in the drive's own unit (606Ch)", factor="the unit in rad/s"

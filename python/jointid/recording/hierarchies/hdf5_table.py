@@ -50,7 +50,7 @@ class Hdf5Table:
             vectors, left_out = vectors_of(file, self._room)
         if len(vectors) > MOST_COLUMNS:
             raise InputError(
-                f"it has more than {MOST_COLUMNS} columns, the most that are looked through",
+                f"it has more than {MOST_COLUMNS} columns, the largest number that is read",
                 place=str(path),
             )
         if not vectors:

@@ -230,7 +230,7 @@ def table_of(
         ) from None
     if len(table.headers) > MOST_COLUMNS:
         raise InputError(
-            f"it has {len(table.headers)} columns; at most {MOST_COLUMNS} are looked through",
+            f"it has {len(table.headers)} columns; at most {MOST_COLUMNS} are read",
             place=str(file),
         )
     return table
