@@ -16,8 +16,8 @@ SCHEMA = 1
 """Version; increased if a reader of the old form would misread the new one."""
 
 _LARGE = 20.0  # errors above this multiple of the truth are not shown as a share
-_REMARKS = {"yes": "comes back", "no": "does not come back"}
-_HEAD = ("parameter", "truth", "identified", "error", "95 % interval", "unit", "comes back")
+_REMARKS = {"yes": "recovered", "no": "not recovered"}
+_HEAD = ("parameter", "truth", "identified", "error", "95 % interval", "unit", "recovered")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
