@@ -1,1 +1,1 @@
-"""Comparison of models by how well they predict held-out motion."""
+"""Comparison of models by their prediction of held-out motion."""

@@ -1,4 +1,4 @@
-"""`compare_models`: which friction model predicts held-out motion best."""
+"""`compare_models`: find the friction model that predicts held-out motion best."""
 
 from __future__ import annotations
 
@@ -69,28 +69,28 @@ def compare_models(
     callback: Callable[[ComparisonStep], object] | None = None,
     **options: Unpack[CompareOptions],
 ) -> Comparison | ServoComparison:
-    """Compare friction models by how well they predict held-out motion.
+    """Compare friction models by their prediction of held-out data.
 
-    One recording is cut into contiguous blocks; of several recordings, each is one block. Every model is
-    fitted to all blocks except one and predicts that block, for each block in turn. The chosen model has the
-    fewest parameters of those with a score within one standard error of the best score (the one-standard-error
-    rule of Breiman et al., 1984). A model that the data do not support cannot be chosen: its estimate from all
-    data has the warning `model_too_rich`, or a parameter at a bound.
+    One recording is cut into contiguous blocks. Several recordings are one block each. Every model is fitted to all
+    blocks except one and predicts that block. This is repeated for every block. The chosen model has the fewest
+    parameters and a score within one standard error of the best score (one-standard-error rule, Breiman et al., 1984).
+    A model that the data do not support cannot be chosen: its estimate from all data has the warning `model_too_rich`,
+    or a parameter at a bound.
 
-    All models have the same options of `identify`. Delays are estimated from all data. The default windows are
-    the shortest of the models' defaults.
+    The options of `identify` are the same for all models. Delays are identified from all data. The default of windows
+    is the shortest of the models' defaults.
 
     Parameters
     ----------
     recordings : Recording or sequence of Recording
     joint : Joint, optional
-        As in `identify`, except that its model's name and `asymmetric` are not used.
+        Known values, as in `identify`; its model's name and `asymmetric` are not used.
     score : str
-        "windows" (default): the balance of held-out windows. "rollout": the simulated closed loop of held-out runs,
-        for a servo without a torque signal; `models` is then the only option; see `compare`.
+        "windows" (default): the balance of held-out windows. "rollout": the simulated closed loop of held-out runs, for
+        a servo without a torque signal; `models` is then the only option, see `compare`.
     models : sequence of Model, str or mapping, optional
-        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()` with the gravity
-        that `identify` would choose. Models that these data do not allow are left out, and listed in
+        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, all with the gravity
+        that `identify` would choose. Models that cannot be used with these data are omitted and listed in
         `settings["left_out"]`.
     folds : int
         Number of blocks of one recording, or largest number of groups of several recordings. Default 5.
@@ -101,12 +101,12 @@ def compare_models(
     Returns
     -------
     Comparison
-        For rollouts a `ServoComparison`.
+        A `ServoComparison` with ``score="rollout"``.
 
     Raises
     ------
     InputError
-        Input that cannot be used: the error names the argument and the reason.
+        The input cannot be used. The error names the argument and the reason.
     KeyboardInterrupt
         Ctrl-C.
 
@@ -141,7 +141,7 @@ def compare_models(
         raise InputError("a whole number of 2 or more is expected", argument="folds", value=folds)
     parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
     if settings.residual is None and any(spec.load_friction for spec in specs):
-        # The one that all of them have: fits by different residuals are not comparable.
+        # The residual that all models have, because fits with different residuals are not comparable.
         settings = replace(settings, residual="torque")
     fitter = Fitter(
         joint=joint,
@@ -163,9 +163,9 @@ def compare_models(
                 cause if isinstance(cause, InputError) else error
             )
             fitter.total -= 1 + parts
-    # Delays come from the data, whatever the model: those of all data hold for their parts.
+    # Delays come from the data, not from the model: those of all data apply to every part.
     fitter.shift(next(iter(whole.values())).settings["shift"])
-    # Residuals over windows of different duration cannot be compared: all models get the shortest.
+    # Residuals over windows of different duration are not comparable, so all models get the shortest windows.
     duration = min(estimate.settings["windows"] for estimate in whole.values())
     cut = _core.WindowOptions(duration=duration, cumulative=_cumulative(windows))
     for spec, estimate in whole.items():
@@ -215,14 +215,14 @@ def _listed(models: Model | str | Sequence[Any] | None) -> Sequence[Any] | None:
 
 
 def _as_found(spec: Model, estimate: Estimate) -> Model:
-    """Return a model with the load that all data chose, so that every fold has the same terms."""
+    """Return a model with the load terms chosen from all data, so that every fold has the same terms."""
     if not spec.load_friction:
         return spec
     return spec.replace(load_friction=model_of(estimate.settings).load_friction)
 
 
 def _without_remedy(error: InputError) -> str:
-    """Return an error's sentence; the caller did not choose this model, and cannot act on it."""
+    """Return an error's sentence without its remedy, because the caller did not choose this model."""
     return str(
         InputError(error.reason, argument=error.argument, value=error.value, place=error.place)
     )
@@ -254,11 +254,11 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
     Returns
     -------
     rows : tuple of ComparedModel
-        Each with its reason.
+        The rows, each with its reason.
     winner : int
-        Its index.
+        Index of the chosen row.
     reason : str
-        Why it won, in a sentence.
+        Reason of the choice, in a sentence.
     """
     found = judged(
         [
@@ -288,7 +288,7 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
 
 
 def counted(estimate: Estimate) -> int:
-    """Return the number of parameters that the data determine; an offset that nothing divides is none."""
+    """Return the number of parameters that the data determine, without an inseparable offset."""
     free = [parameter.name for parameter in estimate.parameters.values() if parameter.vary]
     return len(free) - len(undivided(free))
 

@@ -1,4 +1,4 @@
-"""The models that a comparison is between: those of the call, or the usual ones with the gravity that the log shows."""
+"""Models of a comparison: those of the call, or the default ones with the gravity that the recordings show."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def compared_models(models: object) -> tuple[Model, ...]:
     Raises
     ------
     InputError
-        No model, something else, a model without a name, or the same model twice.
+        There is no model, an invalid object, a model without a name, or the same model twice.
     """
     alone = isinstance(models, str | Model | Mapping)
     if not alone and not isinstance(models, Iterable):
@@ -47,7 +47,7 @@ def compared_models(models: object) -> tuple[Model, ...]:
 def shown_gravity(
     runs: Sequence[Recording], joint: Joint | None, settings: Settings
 ) -> Gravity | None:
-    """Return the gravity that a model without a name gets from the recordings; None where it has none, or it is stated.
+    """Return the gravity that `identify` would choose from the recordings; None if there is none, or if it is stated.
 
     Parameters
     ----------
@@ -59,12 +59,12 @@ def shown_gravity(
         return None
     try:
         model = prepare(tuple(runs), joint, settings, choose=True).problem.choice.model
-    except InputError:  # each fit says what it cannot do
+    except InputError:  # each fit reports its own error
         return None
     found = model.resolved.gravity
     return None if found == "none" else found
 
 
 def text_of(spec: Model) -> str:
-    """Return a compared model's text; a symmetric one's does not say so."""
+    """Return a compared model's text; symmetry is not mentioned in it."""
     return str(spec if spec.asymmetric else spec.replace(asymmetric=None))

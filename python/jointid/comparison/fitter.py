@@ -1,4 +1,4 @@
-"""The fits of a comparison: each model to all data and to the parts that a fold leaves, with progress."""
+"""Fits of a comparison: each model to all data and to the training part of each fold, with progress."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from jointid.recording.recording import Recording
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparisonStep:
-    """One fit of a comparison, as the callback sees it.
+    """One fit of a comparison, as passed to the callback.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class ComparisonStep:
 
 
 def with_causes(estimate: Estimate) -> Estimate:
-    """Return an estimate of `Fitter.fit` with the causes of its residual, which take as long as the fit.
+    """Return an estimate of `Fitter.fit` with the causes of its residual; this takes as long as the fit.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def with_causes(estimate: Estimate) -> Estimate:
 
 
 class Fitter:
-    """Fits models to parts of the data, names the model in errors, and reports progress to the callback."""
+    """Fits models to parts of the data, adds the model to errors, and reports progress to the callback."""
 
     def __init__(
         self,
@@ -71,7 +71,7 @@ class Fitter:
         self._done = 0
 
     def shift(self, delays: Mapping[str, float]) -> None:
-        """Remove these delays from now on [s]."""
+        """Remove these delays in all further fits [s]."""
         self._settings = replace(self._settings, shift=delays)
 
     def fit(
@@ -87,14 +87,14 @@ class Fitter:
         Parameters
         ----------
         where : str
-            Which part of the data, for the error. Default: all.
+            Name of the part of the data, for errors. Default: all data.
         attribute : bool
-            Whether to search for the causes of its residual; see `with_causes`. Default False.
+            Whether the causes of its residual are searched; see `with_causes`. Default False.
 
         Raises
         ------
         InputError
-            As `identify` says it, with the model's name and `where`.
+            The error of `identify`, with the model's name and `where`.
         """
         try:
             settings = replace(self._settings, model=spec, windows=windows)
@@ -119,10 +119,10 @@ class Fitter:
         where: str,
         whole: Estimate,
     ) -> FittedModel:
-        """The values alone: a score needs neither intervals nor causes.
+        """Return the values without intervals and causes, which a score does not need.
 
-        What all data show of their signals holds for their parts: delays, and that a reading is not taken before the
-        torque steps. How much it lacks each part measures.
+        Properties of the signals found in all data apply to their parts: delays, and that a reading is not taken before
+        the torque steps. The amount of the latter is measured in each part.
         """
         search = self._search
         try:
@@ -149,19 +149,19 @@ class Fitter:
         ----------
         splits : sequence of Fold
         windows : WindowOptions
-            The same for all models.
+            Options of the windows, the same for all models.
         whole : Estimate
-            Of the model, from all data.
+            Estimate of the model from all data.
 
         Raises
         ------
         InputError
             A fold cannot be fitted or judged.
         """
-        # A drift that all data show is looked for in their parts, too.
+        # If all data show a drift, it is also searched in their parts.
         inferred = not spec.named or any(key.endswith("_removed") for key in whole.settings)
         found = []
-        predictor = TorquePredictor()  # of one recording's blocks, all in the same windows
+        predictor = TorquePredictor()  # for the blocks of one recording, with the same windows
         for number, split in enumerate(splits, start=1):
             where = f", fold {number} of {len(splits)}"
             fitted = (

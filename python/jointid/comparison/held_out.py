@@ -17,14 +17,14 @@ from jointid.recording.recording import Recording
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Block:
-    """A part of a recording, both edges included.
+    """A part of a recording, including both ends.
 
     Attributes
     ----------
     recording : Recording
-        The whole recording: windows, mask and velocities in the block are those of the whole.
+        The whole recording: windows, mask and velocities in the block are taken from it.
     start, stop : float
-        [s], on the recording's clock.
+        Ends of the block [s], on the recording's clock.
     """
 
     recording: Recording
@@ -40,17 +40,17 @@ class Fold:
     held_out: tuple[Block, ...]
 
     def residual(self, fitted: FittedModel, predictor: TorquePredictor) -> float:
-        """Return the relative residual of the held-out windows: norm of the torque's residuals over that of the torque.
+        """Return the relative residual of the held-out windows: norm of the torque's residuals over norm of the torque.
 
-        The torque is predicted from the motion, and from the reading where there is a sensor, whatever the residual
-        that was fitted: the same signal for every model.
+        The torque is predicted from the motion, and from the reading if there is a sensor. This does not depend on the
+        fitted residual, so it is the same signal for every model.
 
         Parameters
         ----------
         fitted : FittedModel
-            Of `training`.
+            Model fitted to `training`.
         predictor : TorquePredictor
-            Of several fits of one model.
+            Predictor for several fits of one model.
 
         Raises
         ------
@@ -73,21 +73,21 @@ class Fold:
 
 
 def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tuple[Fold, ...]:
-    """Cut one recording into contiguous blocks of equally many windows; each is held out once.
+    """Cut one recording into contiguous blocks with equal numbers of windows; each is held out once.
 
     The training recording has a gap in place of the block, and no window crosses a gap.
 
     Parameters
     ----------
     windows : WindowTable
-        Windows of the whole recording; none where the joint stands still.
+        Windows of the whole recording; there are none at standstill.
     count : int
         Number of blocks.
 
     Raises
     ------
     InputError
-        Too few windows for so many blocks.
+        There are too few windows for this number of blocks.
     """
     edges = [-np.inf, *block_starts(windows.start, count).tolist(), np.inf]
     return tuple(
@@ -113,6 +113,6 @@ def folds_by_recording(recordings: Sequence[Recording], count: int) -> tuple[Fol
 
 
 def _without(recording: Recording, start: float, stop: float) -> Recording:
-    """Return the recording without the samples from start up to, not including, stop."""
+    """Return the recording without the samples from start to stop; the sample at stop is kept."""
     kept = (recording.time < start) | (recording.time >= stop)
     return recording.with_signals(rows=kept)

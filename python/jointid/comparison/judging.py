@@ -1,4 +1,4 @@
-"""Which of the compared models is chosen, and the reason for each of them."""
+"""Choice among compared models, and the reason for each of them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Entrant:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judgement:
-    """The chosen candidate, the reason for each candidate, and one sentence about the choice."""
+    """The chosen candidate, the reason for each candidate, and the reason of the choice, in a sentence."""
 
     winner: int
     reasons: tuple[str, ...]
@@ -33,9 +33,10 @@ class Judgement:
 
 
 def judged(entrants: Sequence[Entrant], paired: bool = False) -> Judgement:
-    """Choose by the one-standard-error rule: the fewest parameters of those that are not clearly worse than the best.
+    """Choose by the one-standard-error rule: the fewest parameters among those not clearly worse than the best.
 
-    With `paired`, it is an error of the difference from the best, part by part; otherwise that of the best's score.
+    With `paired`, the error is that of the difference from the best, part by part. Otherwise it is that of the best
+    score.
     """
     able = [place for place, each in enumerate(entrants) if each.eligible]
     able = able or list(range(len(entrants)))

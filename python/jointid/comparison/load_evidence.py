@@ -1,10 +1,9 @@
-"""Whether a recording shows load friction, or another effect that its term absorbs.
+"""Check whether a recording shows load friction, or another effect that its term absorbs.
 
-Many model errors look like load friction: everything that grows with the torque and changes its sign with the
-velocity. A model with load friction may only be chosen if its coefficient hardly changes when other causes are in the
-model: drift, a torque over the angle, a delay, a wrong inertia, another law of slow motion, pre-sliding, a nonlinear
-sensor. The balance is linear about the estimate, so this is one more regression; leaving out parts of the recording in
-turn gives its error.
+Many errors of a model increase the coefficient of load friction: every torque that grows with the load and has the sign
+of the velocity. The term is accepted only if its coefficient remains with other causes in the fit: drift, a torque over
+the angle, a delay, a wrong inertia, another law of slow motion, pre-sliding, a nonlinear sensor. The balance is linear
+at the estimate, so this is one more regression. Its error comes from omitting stretches of the recording in turn.
 """
 
 from __future__ import annotations
@@ -27,13 +26,13 @@ _NAME = "load_friction"
 _NEAR_ONE = 0.9
 _BLOCKS = 10
 _SURE = 4.0  # standard errors
-_SMALLEST = 0.01  # below it noise of the reading, taken for the load, does the same
-_KEPT = 0.6  # of the coefficient, beside the other causes
+_SMALLEST = 0.01  # below it, noise of the reading has the same effect if the reading gives the load
+_KEPT = 0.6  # smallest share of the coefficient that remains with the other causes
 _RIDGE = 1e-11
-# What another cause adds is about this share of the torque, by a prior: where many columns that nearly cancel each
-# other could take the place of load friction, they would have to be far larger.
+# Prior: each other cause adds about this share of the torque. Without it, many columns that nearly cancel could
+# replace load friction with very large coefficients.
 _EXPECTED = 0.03
-# Decays of friction with the speed, and with the way since a reversal, as shares of peak speed and range.
+# Decays of friction with the speed and with the travel since a reversal, as shares of peak speed and range.
 _SPEEDS = (0.02, 0.1, 0.4)
 _WAYS = (0.003, 0.01, 0.03)
 
@@ -42,7 +41,7 @@ def load_refusal(estimate: Estimate) -> str | None:
     """Return why the data do not show load friction, or None if they do, or if the model has none."""
     found = estimate.parameters.get(_NAME)
     if found is None or not found.vary or found.at_bound is not None:
-        return None  # a bound is refused as such
+        return None  # a value at a bound is refused by another check
     if found.value > _NEAR_ONE:
         return f"{_NAME} is {found.value:.3g}: near 1 it explains any torque"
     if found.value < _SMALLEST:
@@ -100,7 +99,7 @@ def _beside_other_causes(estimate: Estimate, problem: Problem) -> tuple[float, f
 
 
 def _noise(products: Array, rows: int) -> float:
-    """Variance of what all columns leave of the last one."""
+    """Return the variance of the last column that no other column explains."""
     square, target = products[:-1, :-1], products[:-1, -1]
     found = np.linalg.solve(square + _RIDGE * np.eye(len(target)), target)
     left = products[-1, -1] - 2.0 * found @ target + found @ square @ found
@@ -108,7 +107,7 @@ def _noise(products: Array, rows: int) -> float:
 
 
 def _other_causes(problem: Problem, penalty: _core.Penalty) -> list[Array]:
-    """Return the window integrals of what else may be wrong with a model."""
+    """Return the window integrals of other possible errors of a model."""
     bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
     duration = np.asarray(penalty.usable_duration)
     columns: list[list[Array]] = []
@@ -129,7 +128,7 @@ def _other_causes(problem: Problem, penalty: _core.Penalty) -> list[Array]:
 
 
 def _signals(recording: Recording, sensor: bool) -> Iterator[Array]:
-    """Return the torques that other causes would add, but for their sizes."""
+    """Yield the torques of other causes, without their coefficients."""
     time, angle, velocity = recording.time, recording.position, recording.velocity
     sign = np.sign(velocity)
     late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
@@ -157,7 +156,7 @@ def _signals(recording: Recording, sensor: bool) -> Iterator[Array]:
 
 
 def _way_since_reversal(angle: Array, sign: Array) -> Array:
-    """Return how far the joint has moved since its velocity last changed its sign."""
+    """Return the travel of the joint since the last change of the velocity's sign."""
     turned = np.concatenate([[True], sign[1:] * sign[:-1] <= 0.0])
     last = np.maximum.accumulate(np.where(turned, np.arange(angle.size), 0))
     return np.abs(angle - angle[last])

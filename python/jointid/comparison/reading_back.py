@@ -1,4 +1,4 @@
-"""A comparison of models from its JSON."""
+"""Read a comparison of models from its JSON."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from jointid.joint.model import Model
 from jointid.problem.terms import RESIDUALS
 
 SCHEMA = 1
-"""Increased when a reader of the earlier format would misread the new one."""
+"""Version of the format. It increases if a reader of the earlier format would misread the new one."""
 KIND = "jointid comparison"
 
 _SHARE = Number(low=0.0, infinite=True, undefined=True)
 _ROW = Record(
     {
         "model": Text(),
-        "spec": TableOf(Plain()),  # the model has a reader of its own
+        "spec": TableOf(Plain()),  # the model has its own reader
         "parameters": Number(low=0, high=2**53, whole=True),
         **dict.fromkeys(("score", "stderr", "penalty"), _SHARE),
         "fold_scores": ListOf(_SHARE),
@@ -55,7 +55,7 @@ _COMPARISON = Record(
             },
             other=Plain(),
         ),
-        "estimate": Unchecked(),  # it has a reader of its own
+        "estimate": Unchecked(),  # it has its own reader
     }
 )
 

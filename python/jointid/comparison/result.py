@@ -1,4 +1,4 @@
-"""The result of a comparison of models: a row for each model, the chosen model, and the reason."""
+"""Result of a comparison of models: a row for each model, the chosen model, and the reason."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ if TYPE_CHECKING:
 _PLAIN = (
     *("model", "parameters", "score", "stderr", "fold_scores", "penalty", "eligible", "reason"),
 )
-_SHOWN = 6  # models in an answer
+_SHOWN = 6  # largest number of models in an answer
 HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", "remark")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Comparison(KeptResult):
-    """The result of `compare` for a joint.
+    """Comparison of friction models of a joint.
 
     Attributes
     ----------
     rows : tuple of ComparedModel
-        In the order of the call.
+        Compared models, in the order of the call.
     winner : str
         Text of the chosen model.
     reason : str
-        Why it was chosen, in a sentence.
+        Reason of the choice, in a sentence.
     estimate : Estimate
-        The chosen model fitted to all data.
+        Estimate of the chosen model from all data.
     settings : mapping
-        Folds, what each held out ("held_out"), windows, method, residual, and the models that were not
-        compared, each with its reason ("left_out").
+        Number of folds, the held-out part ("held_out"), windows, method, residual, and "left_out": the models that were
+        not compared, with the reason for each.
 
     Examples
     --------
@@ -64,7 +64,7 @@ class Comparison(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         from jointid.estimate.overview import made_by, settings_of
 
         left_out = self.settings["left_out"].items()
@@ -100,16 +100,16 @@ class Comparison(KeptResult):
     def report(
         self, action: Callable[[Action], str] = str, saved: str = "", *, verbose: bool = False
     ) -> str:
-        """Return the comparison as text: the chosen model, a line for each model, its verdict and findings.
+        """Return the comparison as text: the chosen model, a line for each model, then its verdict and findings.
 
         Parameters
         ----------
         action : callable
-            Returns the words of an action. Default: as at a Python prompt.
+            Gives the text of an action. Default: the text for a Python prompt.
         saved : str
-            The file with the chosen model's estimate. Default: no file.
+            File of the chosen model's estimate. Default: none.
         verbose : bool
-            Whether to add penalties, folds and the models that were not compared. Default False.
+            Whether to return everything: penalties, folds, models that were not compared. Default False.
         """
         if verbose:
             return self._whole()
@@ -148,7 +148,7 @@ class Comparison(KeptResult):
         return printable("\n".join([*lines, f"winner: {self.winner}", self.reason, *self._said()]))
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return a data frame with a row for each model, in the order of the call.
+        """Return a row for each model, in the order of the call, as a data frame. It needs pandas.
 
         Returns
         -------
@@ -169,7 +169,7 @@ class Comparison(KeptResult):
         return data_frame(rows, index="model")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; the chosen model's estimate as in `Estimate.to_dict`."""
+        """Return everything in JSON's types; the estimate has the format of `Estimate.to_dict`."""
         from jointid.comparison.reading_back import KIND, SCHEMA
 
         return {
@@ -188,24 +188,25 @@ class Comparison(KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the comparison from a JSON text; its estimate refuses methods that need the recordings.
+        """Return the comparison from a JSON text. Methods of its estimate that need the recordings raise an error.
 
         Parameters
         ----------
         text : str
-            From `to_json`.
+            JSON text from `to_json`.
 
         Raises
         ------
         InputError
-            Not JSON, not a comparison, another schema, or a value that cannot be used; the error names the place.
+            The text is not JSON or not a comparison, has another schema, or holds an invalid value. The message names
+            the place in the text.
         """
         from jointid.comparison.reading_back import comparison_fields
 
         return cls(**comparison_fields(require_text(text), Estimate))
 
     def _advice(self) -> str:
-        """Which model to use, in a sentence."""
+        """Return the advice which model to use, as a sentence."""
         blocking = [each for each in self.estimate.findings if each.severity == "blocking"]
         return (
             f"Use none: {blocking[0].cause}."
@@ -214,7 +215,7 @@ class Comparison(KeptResult):
         )
 
     def _said(self) -> list[str]:
-        """Lines about the chosen model's values: the verdict, and its warnings."""
+        """Return the usability of the chosen model's values and its warnings, one line each."""
         return [
             *self.estimate.verdict.lines(),
             *(
@@ -227,7 +228,7 @@ class Comparison(KeptResult):
         return self.estimate.joint.name or "joint"
 
     def setting(self) -> str:
-        """Return one sentence: what was held out, and what is compared."""
+        """Return the setting of the comparison, in a sentence: held-out parts and compared residual."""
         settings = self.settings
         unit = "block of the recording" if settings["held_out"] == "block" else "recording"
         if settings["held_out"] == "recordings":
@@ -238,7 +239,7 @@ class Comparison(KeptResult):
         )
 
     def cells(self) -> list[tuple[str, ...]]:
-        """Return the table of the models, a row for each, in the order of `HEAD`."""
+        """Return the table of the models, one row for each, in the order of `HEAD`."""
         return [
             (
                 row.model,
@@ -253,6 +254,6 @@ class Comparison(KeptResult):
 
 
 def _row(row: ComparedModel) -> dict[str, Any]:
-    """Return a row in JSON types; the model as its fields."""
+    """Return a row in JSON types, with the model as its fields."""
     document = {name: getattr(row, name) for name in _PLAIN} | {"spec": row.spec.stated()}
     return dict(json_types(document))

@@ -8,15 +8,15 @@ from jointid.joint.model import Model
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparedModel:
-    """One row of a comparison.
+    """One model of a comparison.
 
     Attributes
     ----------
     model : str
-        The model's text, e.g. "coulomb_viscous:asymmetric".
+        Text of the model, e.g. "coulomb_viscous:asymmetric".
     spec : Model
     parameters : int
-        Number of free parameters, shape parameters included.
+        Number of free parameters, including shape parameters.
     score : float
         Relative residual of held-out windows: mean over the folds.
     stderr : float
@@ -27,7 +27,7 @@ class ComparedModel:
     eligible : bool
         Whether the data support the model; otherwise it cannot be chosen.
     reason : str
-        Why it is chosen or not.
+        Reason why the model is chosen or not.
     """
 
     model: str

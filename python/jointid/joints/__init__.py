@@ -1,1 +1,1 @@
-"""Several joints identified from one recording, each for itself, and what each residual owes to the others."""
+"""Identification of several joints from one recording, each alone, and couplings between their residuals."""

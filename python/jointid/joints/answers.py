@@ -1,4 +1,4 @@
-"""Several joints' answer in a few lines: a line for each joint, the first finding, and what to do about it."""
+"""Several joints' answer in a few lines: a line for each joint, the first finding, and its advice."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.estimate.objections import acts_against_motion
 from jointid.estimate.verdict import LEVELS
 from jointid.joints.record import FAILED, JointEstimatesRecord, JointResult
 
-_SHOWN = 3  # values in a line
+_SHOWN = 3  # largest number of values in a line
 _FINDINGS = 1
 _SEVERITIES = ("blocking", "warning", "info")
 _ORDER = (*LEVELS, FAILED)
@@ -25,17 +25,17 @@ def answer(
     error: Callable[[InputError], str] = str,
     saved: str = "",
 ) -> str:
-    """Return the answer in at most 7 lines and one for each joint, the worst first where one is not usable.
+    """Return the answer: at most 7 lines plus one for each joint, with the worst joint first if it is not usable.
 
     Parameters
     ----------
     result : JointEstimates
     action : callable
-        Words an action for a joint, by its name. Default: as at a Python prompt.
+        Gives the text of an action for a joint, by the joint's name. Default: the text for a Python prompt.
     error : callable
-        Words why a joint failed. Default: as Python does.
+        Gives the text of the reason why a joint failed. Default: the text of the Python error.
     saved : str
-        The file that has the estimates. Default: there is none.
+        File of the estimates. Default: none.
     """
     joints = list(result.results.values())
     if _worst(result) not in LEVELS[:2]:
@@ -53,13 +53,13 @@ def answer(
         saved,
         clean=[] if failures else ["no warnings"],
     )
-    if first is not None and first.severity != "info":  # its joint's line says how severe it is
+    if first is not None and first.severity != "info":  # its joint's line shows the severity
         told[0] = cut(f"{joint_phrase(name)}: {first.title}")
     return printable("\n".join([*lines, *told]))
 
 
 def headline(result: JointEstimatesRecord) -> str:
-    """Return the level of the worst joint, in a line."""
+    """Return the level of the worst joint, as one line."""
     joints = result.results.values()
     at_motor = any(each.side == "motor" for each in joints)
     side = " (at the motor, as no gear ratio is known)" if at_motor else ""
@@ -67,7 +67,7 @@ def headline(result: JointEstimatesRecord) -> str:
 
 
 def worst_level(result: JointEstimatesRecord) -> str:
-    """Return the level of the worst joint; one that failed is not usable."""
+    """Return the level of the worst joint; a joint that failed is not usable."""
     worst = _worst(result)
     return LEVELS[-1] if worst == FAILED else worst
 
@@ -84,7 +84,7 @@ def _row(result: JointResult) -> list[str]:
     estimate = result.estimate
     if estimate is None:
         return [result.name, _level(result), *[""] * _SHOWN]
-    # Friction first: the others are of the links, too.
+    # Friction comes first, because inertia and gravity also depend on the links.
     values = [p for p in estimate.parameters.values() if p.vary]
     ordered = sorted(values, key=lambda p: not acts_against_motion(p.name))
     cells = [in_line(p) for p in ordered[:_SHOWN]]
@@ -92,7 +92,7 @@ def _row(result: JointResult) -> list[str]:
 
 
 def ordered_findings(result: JointEstimatesRecord) -> list[tuple[str, Finding]]:
-    """Return all findings with the joint's name, the most severe first, but for what the first line says of all."""
+    """Return all findings with the joint's name, the most severe first, without those in the headline."""
     found = [
         (name, each)
         for name, estimate in result.items()
@@ -103,7 +103,7 @@ def ordered_findings(result: JointEstimatesRecord) -> list[tuple[str, Finding]]:
 
 
 def _failures(result: JointEstimatesRecord, error: Callable[[InputError], str]) -> list[str]:
-    """Why the first joint failed, and which others did."""
+    """Return why the first joint failed, and which others failed."""
     failed = [each for each in result.results.values() if each.error is not None]
     if not failed or failed[0].error is None:
         return []
@@ -113,7 +113,7 @@ def _failures(result: JointEstimatesRecord, error: Callable[[InputError], str]) 
 
 
 def _coupled(result: JointEstimatesRecord) -> list[str]:
-    """The first thing that a joint explains of another, and how many there are."""
+    """Return the first coupling between joints, and the number of the others."""
     sentences = result.sentences()
     more = f", and {len(sentences) - 1} more" if len(sentences) > 1 else ""
     return [cut(f"{sentences[0]}{more}")] if sentences else []

@@ -1,4 +1,4 @@
-"""Findings about an unexplained residual, with what the other joints explain of it."""
+"""Findings about an unexplained residual, with the share that the other joints explain."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def cited(estimate: Estimate, shares: Sequence[Share]) -> Estimate:
     ----------
     estimate : Estimate
     shares : sequence of Share
-        What the other joints explain of its residual.
+        Shares of the residual that the other joints explain.
     """
     certain = [share for share in shares if share.certain]
     if not certain:

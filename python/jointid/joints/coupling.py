@@ -1,4 +1,4 @@
-"""How much of a joint's residual the other joints explain, out of sample, and by what."""
+"""Share of a joint's residual that the other joints explain, on held-out data, with the signal that explains it."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_MOST = 4  # groups of signals, one after the other
-_LEAST, _LEAST_OF_ALL = 0.1, 0.05  # of what is left of the residual, and of all of it
-# Of what is left, where the coupling is known from the other side: no block or shift has to agree, and of all of the
-# residual it may be less.
+_MOST = 4  # largest number of groups of signals, one after the other
+_LEAST, _LEAST_OF_ALL = 0.1, 0.05  # of the residual that is left, and of the whole residual
+# Of the residual that is left, if the coupling is known from the other joint. Then no block or shift has to agree,
+# and the share of the whole residual may be smaller.
 _LEAST_EXPECTED = 0.05
-_SURE = 2.0  # errors of the mean fall of the blocks' misfit
-_SHIFTS = 24  # of the other joints' motion in time: by chance, one of 25 is the best
-_ALIKE, _NEARLY = 0.9, 0.6  # of the best score: hardly worse, and not much
+_SURE = 2.0  # standard errors of the mean fall of the blocks' squared residuals
+_SHIFTS = 24  # number of time shifts of the other joints' motion: one of 25 is the best by chance
+_ALIKE, _NEARLY = 0.9, 0.6  # of the best score: nearly as good, and not much worse
 _WINDOWS = 20_000
 
 
@@ -44,17 +44,17 @@ class Share:
         "speed" (its rate and direction: friction), "acceleration" (its momentum: inertia), "position"
         (gravity) or "torque".
     share : float
-        Of the residual's sum of squares that neither the joint's own motion nor earlier shares explain, on held-out
-        data.
+        Explained share of the sum of squares that neither the joint's own motion nor earlier shares explain, on
+        held-out data.
     scale : float
-        Length of the sums of windows with the largest share [s].
+        Duration of the window sums with the largest share [s].
     alike : tuple of str
         Other joints that explain nearly as much, because they move alike.
     own_too : bool
         Whether the joint's own motion, beyond the model, explains much of it as well.
     certain : bool
-        Whether it is significant alone. Otherwise it is reported only because the other joint's residual has a certain
-        share of this joint: a coupling acts on both.
+        Whether it is significant alone. Otherwise it is reported only because this joint explains a certain share of
+        the other joint's residual: a coupling acts on both.
     """
 
     joint: str
@@ -72,26 +72,27 @@ def shares_of_others(
     recordings: Mapping[str, Recording],
     expected: Collection[str] = (),
 ) -> tuple[Share, ...]:
-    """Return what the other joints explain of an estimate's residual, the largest part first.
+    """Return the shares of an estimate's residual that the other joints explain, the largest first.
 
-    The residual and the derivatives by the joint's own parameters are those of the estimate's windows. To them
-    come functions of the joint's own motion, so that nothing that these explain is credited to another joint.
-    Then the group of another joint's signals that takes most from the misfit is added, and the next, as long as
-    held-out blocks of time say that it is no chance, and the same signals shifted in time explain less.
+    The residual and its derivatives by the joint's own parameters are those of the estimate's windows. Functions of the
+    joint's own motion are added, so that their effect is not attributed to another joint. Then the group of another
+    joint's signals is added that reduces the squared residual most. This is repeated while two conditions hold:
+    held-out blocks of time show that the reduction is not chance, and the same signals shifted in time explain less.
 
-    A shift breaks the timing of joints that start and stop together, which makes it too easy to explain more: of 135
-    simulated independent joints that move so, 10 were said to owe something to another one, 7 of them as certain.
+    The limit of this test: a shift breaks the timing of joints that start and stop together, and this favors the
+    unshifted signals. For 135 simulated independent joints with such motion, 10 couplings were reported, 7 of them as
+    certain.
 
     Parameters
     ----------
     estimate : Estimate
-        Just identified, not read from a file.
+        An estimate from `identify`, not one that was read from a file.
     name : str
-        The joint's.
+        Name of the joint.
     recordings : mapping of str to Recording
-        Of all joints, on one clock.
+        Recordings of all joints, on one clock.
     expected : collection of str
-        Joints whose residuals owe something to this one.
+        Joints with a residual that this joint explains in part.
     """
     fit = _fitted(estimate)
     if fit is None:
@@ -127,7 +128,7 @@ def shares_of_others(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Search:
-    """Groups of columns, taken one after the other by what they take from the misfit of held-out blocks."""
+    """Groups of columns, chosen one after the other by their reduction of the held-out blocks' squared residuals."""
 
     fit: Fitted
     matrix: Array
@@ -137,9 +138,9 @@ class _Search:
     others: dict[Group, list[int]]
 
     def shares(self, expected: Collection[str]) -> tuple[Share, ...]:
-        """Take the best group of all, as long as one is better than none.
+        """Return the shares of the best groups, one after the other, while a group is better than none.
 
-        A group of the own motion is preferred to another joint's that is hardly better.
+        A group of the joint's own motion is preferred if another joint's group is hardly better.
         """
         base, own, others = self.base, list(self.own), dict(self.others)
         whole = _misfits(self.scaled, base)
@@ -191,10 +192,10 @@ class _Search:
     def _is_certain(
         self, base: list[int], others: Mapping[Group, list[int]], best: Group, score: Score
     ) -> bool:
-        """Whether the misfit falls by enough, in most blocks, and more than it does by chance.
+        """Return whether the residual falls by enough, in most blocks, and by more than chance allows.
 
-        What happens by chance is seen when the other joints' signals are shifted in time: the group then has to
-        explain less at every shift, and the best of all groups at all shifts but one.
+        Shifts of the other joints' signals in time show the effect of chance. The group must be better than itself at
+        every shift, and better than the best of all groups at all shifts except one.
         """
         if score.share < _LEAST:
             return False
@@ -224,7 +225,7 @@ class _Search:
 
 
 def _best(scores: Mapping[Group, Score]) -> Group:
-    """The group with the highest score; a torque only if nothing else of its joint says nearly as much."""
+    """Return the group with the highest score; a torque only if no other group of its joint scores nearly as much."""
     best = max(scores, key=lambda group: scores[group].total)
     if best.by != TORQUE:
         return best

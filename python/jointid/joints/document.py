@@ -14,7 +14,7 @@ KIND = "jointid joints"
 
 
 def document_of(result: JointEstimatesRecord) -> dict[str, Any]:
-    """Return the result in JSON types; each joint's estimate is the document of its own file."""
+    """Return the result in JSON types; each joint's estimate has the format of its own file."""
     return {
         "schema": SCHEMA,
         "kind": KIND,

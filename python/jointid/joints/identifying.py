@@ -1,4 +1,4 @@
-"""`identify_joints`: every joint of a robot's recording, each for itself."""
+"""`identify_joints`: identify every joint of a robot's recording, each alone."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def identify_joints(
     joints : iterable of str or int, optional
         Names or numbers of the joints to identify. Default, and "all": all.
     joint : Joint or mapping of str to Joint, optional
-        Known values of the joints: one for all, or by name. A gear ratio other than 1 is used if the recording has
-        none. Default: nothing is known.
+        Known values of the joints: one for all, or by name. If the recording has no gear ratio, a
+        ratio other than 1 is taken from here. Default: nothing is known.
     couplings : bool
         Whether residuals are compared with the other joints' motion. Default True.
     callback : callable, optional
@@ -58,8 +58,8 @@ def identify_joints(
     Returns
     -------
     JointEstimates
-        One result per joint. If a recording cannot be used, its joint has the status "failed" and the reason; the
-        others stay.
+        One result per joint. If a joint's recording cannot be used, the joint has the status "failed" and the reason.
+        The other joints are still identified.
 
     Raises
     ------
@@ -104,7 +104,7 @@ _OF_EACH = {"gear_ratio", "torque_constant"}
 
 
 def _of_each(error: InputError, joints: int) -> InputError:
-    """Return an error whose advice asks for one gear ratio and torque constant a joint."""
+    """Return an error with advice to state one gear ratio and torque constant for each joint."""
     remedies = tuple(
         Action(
             "call",
@@ -126,7 +126,7 @@ def _of_each(error: InputError, joints: int) -> InputError:
 
 
 def _with_drive(error: InputError, recording: Recording) -> InputError:
-    """Return an error about a torque that is missing with what wanted positions can do instead."""
+    """Return the error of a missing torque, with the advice to use the recorded wanted positions instead."""
     if error.argument != "torque" or recording.reference is None:
         return error
     whole = Action(
@@ -147,7 +147,7 @@ def _with_drive(error: InputError, recording: Recording) -> InputError:
 def _with_couplings(
     results: dict[str, JointResult], recordings: Mapping[str, Recording]
 ) -> dict[str, JointResult]:
-    """Return the results with the other joints' shares; then once more for those that others owe something to."""
+    """Return the results with the other joints' shares; then again for joints that explain a part of others."""
     found = {
         name: shares_of_others(each.estimate, name, recordings) if each.estimate else ()
         for name, each in results.items()
@@ -195,7 +195,7 @@ def _known(joint: Joint | Mapping[str, Joint] | None, name: str) -> Joint | None
 
 
 def _with_ratios(robot: RobotRecording, known: Mapping[str, Joint | None]) -> RobotRecording:
-    """Return the recording with the joints' gear ratios, where it has none."""
+    """Return the recording with the joints' gear ratios, if it has none."""
     ratios = [1.0 if known[name] is None else known[name].gear_ratio for name in robot.names]  # type: ignore[union-attr]
     if robot.gear_ratio is None:
         stated = any(ratio != 1.0 for ratio in ratios)
@@ -214,12 +214,12 @@ def _with_ratios(robot: RobotRecording, known: Mapping[str, Joint | None]) -> Ro
 def _described(
     joint: Joint | None, name: str, robot: RobotRecording, recording: Recording
 ) -> Joint | None:
-    """Return what is known of a joint, with its name and the recording's gear ratio."""
+    """Return the known values of a joint, with its name and the recording's gear ratio."""
     if joint is None:
         if recording.sensor is not None:
-            return None  # the recording says that there is a sensor, and no joint contradicts it
+            return None  # the recording shows that there is a sensor, and no joint contradicts it
         if recording.torque is None:
-            return None  # no joint says what a torque of the motor is at the joint
+            return None  # no joint states the relation of motor torque to joint torque
         joint = Joint(kind=recording.kind)
     changes: dict[str, Any] = {} if joint.name else {"name": joint_phrase(name)}
     if robot.gear_ratio is not None and joint.gear_ratio == 1.0:

@@ -1,4 +1,4 @@
-"""One joint's estimate from a file, also from one of several joints."""
+"""Read one joint's estimate from a file, also from a file of several joints."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from jointid.recording.wide.joint_names import joint_named
 
 
 def load_estimate(path: Path, joint: str | None = None) -> Estimate:
-    """Return the estimate that a .json file holds, or that of one joint of a file of several.
+    """Return the estimate in a .json file, or that of one joint in a file of several.
 
     Parameters
     ----------
     path : Path
-        As `Estimate.save` or `JointEstimates.save` wrote it.
+        File from `Estimate.save` or `JointEstimates.save`.
     joint : str, optional
-        Name or number of the joint. Default: the only one.
+        Name or number of the joint. Default: the only one in the file.
 
     Raises
     ------
     InputError
-        No estimate, no such joint, several and none is named, or the joint failed.
+        The file holds no estimate or no such joint, or several joints and none is named, or the joint failed.
     """
     try:
         document = json.loads(read_text(path))
     except (ValueError, RecursionError):
-        return Estimate.load(path)  # says what is wrong
+        return Estimate.load(path)  # raises the right error
     joints = document.get("joints") if isinstance(document, dict) else None
     if not isinstance(joints, dict) or document.get("kind") != KIND:
         if joint is not None:
@@ -49,7 +49,7 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
         joint = next(iter(joints))
     try:
         name = joint_named(joint, list(joints), "", "joints", "load")
-    except InputError as error:  # about what was asked, not about a place in the file
+    except InputError as error:  # about the argument, not about a place in the file
         raise InputError(
             f"{error.reason} in {path}",
             argument=error.argument,

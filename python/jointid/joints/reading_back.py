@@ -1,4 +1,4 @@
-"""Several joints' estimates from their JSON."""
+"""Read several joints' estimates from their JSON."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _JOINT = Record(
         "error": OrNull(Text(longest=1_000_000)),
         "side": Text(known=("joint", "motor")),
         "others": ListOf(_SHARE),
-        "estimate": OrNull(Unchecked()),  # it has a reader of its own
+        "estimate": OrNull(Unchecked()),  # it has its own reader
     },
     # These follow from `others`.
     {"explained_by_others": Plain(), "sentences": Plain()},

@@ -1,4 +1,4 @@
-"""The fields of several joints' estimates: what became of each joint, and what its residual owes to the others."""
+"""Fields of several joints' estimates: the result of each joint, and the couplings between their residuals."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class JointResult:
     estimate : Estimate or None
         None if it failed.
     error : InputError or None
-        Why it failed.
+        Reason of the failure; None if it was identified.
     side : str
-        Side of the gear that the values are on: "joint", or "motor" without a known gear ratio.
+        Side of the gear for the values: "joint", or "motor" if no gear ratio is known.
     others : tuple of Share
-        Shares of its residual that other joints explain, in the order in which they were found.
+        Shares of its residual that other joints explain, in the order of their detection.
     """
 
     name: str
@@ -44,11 +44,11 @@ class JointResult:
 
     @property
     def explained(self) -> float:
-        """Share of the residual that other joints explain for certain, 0 to 1."""
+        """Share of the residual that other joints certainly explain, 0 to 1."""
         return min(1.0, float(sum(share.share for share in self.others if share.certain)))
 
     def sentences(self) -> tuple[str, ...]:
-        """What the other joints explain, in words.
+        """Return the effects of the other joints as sentences.
 
         Examples
         --------
@@ -76,7 +76,7 @@ def _sentence(name: str, share: Share) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointEstimatesRecord(Mapping[str, Estimate]):
-    """The fields of `JointEstimates`, which describes them, as a mapping from names to estimates."""
+    """Fields of `JointEstimates`, which documents them, as a mapping from names to estimates."""
 
     results: Mapping[str, JointResult]
     name: str = ""
@@ -84,11 +84,11 @@ class JointEstimatesRecord(Mapping[str, Estimate]):
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """Names of the joints whose recordings cannot be used."""
+        """Names of the joints with recordings that cannot be used."""
         return tuple(name for name, each in self.results.items() if each.status == FAILED)
 
     def sentences(self) -> tuple[str, ...]:
-        """What the joints explain of each other's residuals, in words."""
+        """Return the couplings between joints' residuals as sentences."""
         return tuple(text for each in self.results.values() for text in each.sentences())
 
     def __getitem__(self, joint: str | int) -> Estimate:

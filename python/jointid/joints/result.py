@@ -1,4 +1,4 @@
-"""The result of `identify_joints`: each joint's estimate, and what each residual owes to the others."""
+"""Result of `identify_joints`: each joint's estimate, and the couplings between their residuals."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 class JointEstimates(JointEstimatesRecord, KeptResult):
     """Several joints identified from one recording, each alone; a mapping from names to estimates.
 
-    A joint that failed is not in the mapping; `results` has it with its reason.
+    A joint that failed is not in the mapping. `results` contains it with the reason.
 
     Attributes
     ----------
     results : mapping of str to JointResult
-        By joint, in the recording's order.
+        Results by joint, in the recording's order.
     name : str
-        The recording's.
+        Name of the recording.
     seconds : float
-        Wall time.
+        Wall time [s].
 
     Examples
     --------
@@ -38,7 +38,7 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         from jointid.joints.overview import overview_of
 
         return overview_of(self)
@@ -57,7 +57,7 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
         return text_report(self) if verbose else answer(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result in JSON's types: each joint's estimate as `Estimate.to_dict` has it, and the couplings."""
+        """Return the result in JSON's types: each joint's estimate as in `Estimate.to_dict`, and the couplings."""
         from jointid.joints.document import document_of
 
         return document_of(self)
@@ -70,18 +70,18 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimates that a JSON text holds; what needs the recordings is refused by each of them.
+        """Return the estimates from a JSON text. Methods that need the recordings raise an error.
 
         Parameters
         ----------
         text : str
-            From `to_json`.
+            JSON text from `to_json`.
 
         Raises
         ------
         InputError
-            Not JSON, not the estimates of several joints, another schema, or a value that cannot be used; names the
-            place in it.
+            The text is not JSON or not the estimates of several joints, has another schema, or holds an invalid value.
+            The message names the place in the text.
         """
         from jointid.joints.reading_back import read_joints
 

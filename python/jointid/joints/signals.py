@@ -1,4 +1,4 @@
-"""What another joint may do to a joint's torque, as integrals over the joint's windows."""
+"""Possible effects of another joint on a joint's torque, as integrals over the joint's windows."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_SLOW = 4  # half waves over the recording
-# How each group of signals is called, and what it stands for.
+_SLOW = 4  # number of half waves over the recording
+# Names of the groups of signals, and their meaning.
 SPEED, RELATIVE, MOMENTUM = "speed", "relative speed", "acceleration"
 POSITION, POSE, TORQUE = "position", "pose", "torque"
 MEANING = {
@@ -47,10 +47,10 @@ class Group:
 
 
 def own_groups(fit: Fitted) -> list[Array]:
-    """Return what the joint's own motion may explain beyond its model, group by group.
+    """Return possible effects of the joint's own motion beyond its model, group by group.
 
-    Friction of any shape, gravity, and an inertia that varies with the angle: what these explain is not credited
-    to a joint that happens to move alike.
+    They are friction of any shape, gravity, and an inertia that varies with the angle. Their share of the residual is
+    not attributed to another joint that happens to move alike.
     """
     groups = [
         np.column_stack([fit.duration, fit.rise(lambda _, run: run.velocity)]),
@@ -80,18 +80,18 @@ def own_groups(fit: Fitted) -> list[Array]:
 
 
 def other_groups(fit: Fitted, other: Recording, name: str, rows: NDArray[np.intp]) -> list[Group]:
-    """Return what another joint's motion and torque may do to this one, group by group.
+    """Return possible effects of another joint's motion and torque on this joint, group by group.
 
     Parameters
     ----------
     fit : Fitted
-        Of this joint.
+        Fit of this joint.
     other : Recording
-        Of the other one.
+        Recording of the other joint.
     name : str
-        The other one's.
+        Name of the other joint.
     rows : ndarray of int
-        Sample of `other` for each sample of the fit's recording.
+        Sample number of `other` for each sample of the fit's recording.
     """
     position, velocity = other.position[rows], other.velocity[rows]
     turning = fit.problem.recordings[0].kind == other.kind == "revolute"
@@ -144,13 +144,13 @@ def _torque(other: Recording) -> Array | None:
 
 
 def _either_way(run: Recording) -> Array:
-    """Friction that differs between the directions, and grows with the square of the speed."""
+    """Return friction that differs between the directions, and friction that grows with the square of the speed."""
     v = run.velocity
     return np.column_stack([np.abs(v), v * np.abs(v)])
 
 
 def _slowly(run: Recording) -> Array:
-    """A torque that changes slowly, as the joint warms up or with what nobody measured."""
+    """Return a torque that changes slowly, for example while the joint warms up."""
     share = (run.time - run.time[0]) / run.duration
     return np.column_stack([np.cos(k * np.pi * share) for k in range(1, _SLOW + 1)])
 

@@ -15,12 +15,12 @@ from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import rounded, two_digits
 from jointid.joints.record import JointEstimatesRecord, JointResult
 
-_NOTHING = 1e-9  # of a free value without an error: what a bound at zero leaves
+_NOTHING = 1e-9  # of a free value without an error: remainder at a bound of zero
 _NO_COUPLING = "no joint's residual is explained by the others beyond chance"
 
 
 def shown_parameters(result: JointEstimatesRecord) -> list[str]:
-    """Names of the parameters that the table shows: friction and inertia, as far as a joint has them."""
+    """Return the names of the parameters in the table: friction and inertia, if any joint has them."""
     present = {name for estimate in result.values() for name in estimate.parameters}
     friction = [
         each for term in _core.terms() if term.friction for each in (term.name, *term.shapes)
@@ -29,7 +29,7 @@ def shown_parameters(result: JointEstimatesRecord) -> list[str]:
 
 
 def head(result: JointEstimatesRecord) -> list[str]:
-    """The table's head."""
+    """Return the table's head."""
     units = {
         name: parameter.unit
         for estimate in result.values()
@@ -40,7 +40,7 @@ def head(result: JointEstimatesRecord) -> list[str]:
 
 
 def rows(result: JointEstimatesRecord) -> list[list[str]]:
-    """One row a joint, in the order of the head."""
+    """Return one row for each joint, in the order of the head."""
     names = shown_parameters(result)
     return [_row(each, names) for each in result.results.values()]
 
@@ -57,12 +57,12 @@ def _row(result: JointResult, names: list[str]) -> list[str]:
 
 
 def model_of(estimate: Estimate) -> str:
-    """The model's name and what was added to it."""
+    """Return the model's name and its options."""
     return str(estimate.settings["model"])
 
 
 def value_with_error(parameter: ParameterEstimate | None) -> str:
-    """A value with its standard error, which decides the digits: ``7.74 ± 0.21``."""
+    """Return a value with its standard error, which sets the number of digits: ``7.74 ± 0.21``."""
     if parameter is None:
         return "–"
     bound = " (at bound)" if parameter.at_bound is not None else ""
@@ -74,7 +74,7 @@ def value_with_error(parameter: ParameterEstimate | None) -> str:
 
 
 def notes(result: JointEstimatesRecord) -> list[str]:
-    """What holds for the whole table."""
+    """Return remarks that apply to the whole table."""
     lines = []
     at_motor = [name for name, each in result.results.items() if each.side == "motor"]
     if at_motor:
@@ -86,7 +86,7 @@ def notes(result: JointEstimatesRecord) -> list[str]:
 
 
 def couplings(result: JointEstimatesRecord) -> list[str]:
-    """What the joints explain of each other's residuals, a sentence each."""
+    """Return the couplings between the joints' residuals, one sentence each."""
     if len(result.results) < 2 and not result.sentences():
         return []
     return list(result.sentences()) or [_NO_COUPLING]
@@ -97,15 +97,15 @@ def text_report(
     action: Callable[[Action, str], str] = lambda action, _: str(action),
     error: Callable[[InputError], str] = str,
 ) -> str:
-    """The result as text.
+    """Return the result as text.
 
     Parameters
     ----------
     result : JointEstimates
     action : callable
-        Words the advice of a finding of a joint, by its name. Default: as at a Python prompt.
+        Gives the text of a finding's advice for a joint, by the joint's name. Default: the text for a Python prompt.
     error : callable
-        Words why a joint failed. Default: as Python does.
+        Gives the text of the reason why a joint failed. Default: the text of the Python error.
     """
     lines = [f"jointid estimates — {result.name or 'robot'}", ""]
     lines += aligned([head(result), *rows(result)])
@@ -118,7 +118,7 @@ def text_report(
             lines += [
                 f"{joint_phrase(each.name)}, {found.severity} ({found.code}): {found.worded(worded)}"
                 for found in each.estimate.findings
-                if found.code != "motor_side"  # said once, of all
+                if found.code != "motor_side"  # stated once, for all joints
             ]
     return printable("\n".join(lines).rstrip())
 

@@ -1,4 +1,4 @@
-"""`compare_robot_models`: which inertia and friction predict torque best that they were not fitted to."""
+"""`compare_robot_models`: find the inertia and friction models that predict held-out torque best."""
 
 from __future__ import annotations
 
@@ -47,20 +47,22 @@ def compare_robot_models(
 ) -> RobotComparison:
     """Compare inertias and friction models of a robot by their prediction of held-out torque.
 
-    One recording is cut into contiguous blocks; several recordings are one block each. Every inertia with every
-    friction model is fitted to all blocks except one and predicts the torque of that block, for each block in turn. The
-    winner is the candidate with the fewest parameters that is at most one standard error worse than the best, by
-    their difference per block. With its inertia, each joint's model is chosen by the same rule from the joint's own
-    torque. Options are the same for all candidates; delays and zeros are identified from all recordings.
+    One recording is cut into contiguous blocks. Several recordings are one block each. Each inertia with each friction
+    model is fitted to all blocks except one, and predicts the torque of that block. This is repeated for every block.
+    The candidate with the fewest parameters is chosen that is at most one standard error worse than the best. The
+    standard error is that of their difference over the blocks. Each joint's model is then chosen by the same rule from
+    the joint's own torque, with the chosen inertia. Options are the same for all candidates. Delays and zeros are
+    identified from all recordings.
 
     Parameters
     ----------
     recordings : RobotRecording, or sequence of it
     robot : Robot
     models : sequence of Model or str
-        Friction of all joints: by default "coulomb_viscous" and "stribeck"; each also with ``:asymmetric``.
+        Friction models to compare, for all joints. Default: "coulomb_viscous" and "stribeck", with and without
+        ``:asymmetric``.
     inertia : sequence of str
-        Any of "urdf", "scaled" and "free" (all by default).
+        Inertias to compare: any of "urdf", "scaled" and "free". Default: all.
     folds : int
         Number of blocks of one recording, or largest number of groups of several. Default 5.
     **options
@@ -72,7 +74,7 @@ def compare_robot_models(
     Raises
     ------
     InputError
-        As `identify`, or invalid candidates or folds.
+        The errors of `identify`, or invalid candidates or folds.
 
     Examples
     --------
@@ -208,7 +210,7 @@ def _entrant(row: ComparedRobotModel) -> Entrant:
 
 
 def _model_of(name: str, rivals: Sequence[ComparedRobotModel], winner: ComparedRobotModel) -> str:
-    """The model of one joint, by its own torque."""
+    """Return the model of one joint, chosen by its own torque."""
     scores = np.array([row.joints[name] for row in rivals])
     scores = scores[:, ~np.isnan(scores).any(axis=0)]
     if not scores.shape[1]:

@@ -1,4 +1,4 @@
-"""From recordings to values with their findings: first what spoils everything, then the fit, then what it shows."""
+"""Identify a robot and collect findings: first the faults that spoil everything, then the fit, then its checks."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """What a call gives."""
+    """Arguments of a call."""
 
     recorded: Sequence[RobotRecording]
     given: Robot
@@ -50,27 +50,27 @@ class Case:
 
     @property
     def delay(self) -> Array | None:
-        """The delay of the torques that the call states [s]."""
+        """Delay of the torques that the call states [s]."""
         return requested_delay(self.shift, self.given)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Examined:
-    """Values, and what was found out about them."""
+    """Identified values and their findings."""
 
     attempt: Attempt
     estimate: RobotEstimate
-    request: Request  # with the velocities and the lag that were chosen
+    request: Request  # with the velocities and the filter that were chosen
     check: CrossCheck
     findings: tuple[Finding, ...]
 
 
 def examined(case: Case) -> Examined:
-    """Identify, and check the values and the facts."""
+    """Identify, then check the values and the facts."""
     runs, choice = all_on_even_clocks(case.recorded), None
     if case.given.drive is not None or case.given.gravity_free:
         choice = with_better_velocities(runs, case.given, case.request, case.shift)
-        # With the gains and the gravity that were found, without which nobody knows the torques.
+        # With the gains and the gravity that were found: the torques are unknown without them.
         found = choice.alignment.attempt.robot
         case = replace(case, given=replace(case.given, drive=found.drive, tree=found.tree))
     signals = _signals(
@@ -87,7 +87,7 @@ def examined(case: Case) -> Examined:
 def _blocked(
     case: Case, runs: Sequence[RobotRecording], choice: VelocityChoice | None, wrong: Finding
 ) -> Examined:
-    """The plain values: delays and facts are not tried, since all that they show would follow from this."""
+    """Return the plain values. Delays and facts are not examined, because a blocking fault distorts these, too."""
     delay = np.zeros(case.given.n) if case.delay is None else case.delay
     attempt = (
         attempted(runs, case.given, case.request, delay)
@@ -110,7 +110,7 @@ def _diagnosed(
     choice: VelocityChoice,
     signals: Sequence[PlainSignals],
 ) -> Examined:
-    """The values with the better velocities and delays, what contradicts them, and what the rest shows."""
+    """Return the values with the better velocities and delays, and findings from facts, cross-check and residuals."""
     attempt, request = choice.alignment.attempt, choice.alignment.request
     estimate = attempt.estimate
     if request.inertia == FREE:
@@ -126,7 +126,7 @@ def _diagnosed(
         *impossible_links(estimate),
     )
     plain = all(each.severity == "info" for each in findings) and check.agrees is not False
-    # With another finding, a difference of the directions may follow from that.
+    # Any other fault can cause a difference of the directions, too.
     rest = [*asymmetry_findings(attempt)] if plain else []
     if not rest:
         late = any(each.code == "signal_lag" for each in findings)  # a delay looks like friction
@@ -154,7 +154,7 @@ def _second_look(
     request: Request,
     signals: Sequence[PlainSignals],
 ) -> CrossCheck:
-    """The look at the stamps as recorded, at the samples' even clock where that is clearer, and at corrected facts."""
+    """Return the cross-check on recorded stamps, on the even clock if that is clearer, and with corrected facts."""
     check = cross_checked(signals, attempt, request, case.delay)
     if check.agrees is False and any(a is not b for a, b in zip(runs, case.recorded, strict=True)):
         even = cross_checked(_signals(runs, case.given, attempt), attempt, request, case.delay)
@@ -170,7 +170,7 @@ def _second_look(
 def _with_advised_models(
     diagnosis: Diagnosis, request: Request, findings: Sequence[Finding]
 ) -> Attempt | None:
-    """The identification with the facts corrected and the models that findings advise; None where they advise none."""
+    """Return the identification with corrected facts and the models that findings advise; None if they advise none."""
     richer, last = advised_models(findings), diagnosis.corrected
     if not richer:
         return None
@@ -182,7 +182,7 @@ def _with_advised_models(
 def _signals(
     recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt | None
 ) -> list[PlainSignals]:
-    """What is checked, as recorded; of a drive with the command's delay: without it, nobody knows the torques."""
+    """Return the recorded signals to check. With a drive, its delay is applied, because the torques depend on it."""
     if robot.drive is not None and attempt is not None:
         recordings = [without_delay(run, robot, attempt.delay) for run in recordings]
     return plain_signals(recordings, robot)

@@ -1,4 +1,4 @@
-"""`identify_robot`: the friction of all joints at once, with the inertia of all links."""
+"""`identify_robot`: identify the friction of all joints and the inertia of all links together."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def identify_robot(
     Parameters
     ----------
     recordings : RobotRecording, or sequence of it
-        With positions and torques, of the joints or of the motors.
+        Recordings with positions and torques, of the joints or of the motors.
     robot : Robot
     inertia : {"urdf", "scaled", "free"}
         Inertias of the links: the URDF's, the URDF's scaled link by link, or identified as base parameters, the
@@ -63,9 +63,9 @@ def identify_robot(
 
     Notes
     -----
-    The integral balance with the momentum of a tree of links: d/dt (M v) = M a + (C + Cᵀ) v, so that no acceleration
-    is needed; momentum regressors of that kind are discussed for Pinocchio (pull request 2411, 2024) and exist in
-    spatial_v2_extended.
+    The method is the integral balance with the momentum of a tree of links: d/dt (M v) = M a + (C + Cᵀ) v, so no
+    acceleration is needed. Momentum regressors of this kind are discussed for Pinocchio (pull request 2411, 2024) and
+    exist in spatial_v2_extended.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def identify_robot(
     }
     return replace(
         estimate,
-        robot=replace(estimate.robot, gravity_free=False),  # it was found
+        robot=replace(estimate.robot, gravity_free=False),  # gravity is known now
         findings=ranked(_possible(answer.findings, case)),
         cross_check=answer.check,
         settings=settings,
@@ -123,7 +123,7 @@ def identify_robot(
 
 
 def _possible(findings: Sequence[Finding], case: Case) -> list[Finding]:
-    """Findings without advice to identify the links, where these are the measure of free gains."""
+    """Return findings without advice to identify the links, if the links give the scale of free gains."""
     drive = case.given.drive
     if drive is None or not drive.free:
         return [*findings]

@@ -1,4 +1,4 @@
-"""What `identify` and `compare` take of a robot by keyword."""
+"""Keyword options of `identify` and `compare` for a robot."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated
@@ -10,7 +10,7 @@ from jointid.robot.motion.shifts import Shift
 
 
 class RobotFitOptions(MaskOptions, total=False):
-    """What all candidates of a comparison share."""
+    """Options that all candidates of a comparison share."""
 
     windows: Annotated[
         float | None,
@@ -43,7 +43,7 @@ class RobotFitOptions(MaskOptions, total=False):
 
 
 class RobotOptions(RobotFitOptions, total=False):
-    """What one identification takes."""
+    """Options of one identification."""
 
     model: Annotated[
         Model | str | Mapping[str, Model | str] | None,

@@ -1,4 +1,4 @@
-"""How much a robot's torques are of what its URDF's links weigh: the first thing that units and gears show."""
+"""Ratio of a robot's torques to the torques of its URDF's links, which first shows wrong units and gear ratios."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from jointid.robot.motion.plain_motion import plain_signals
 
 
 def weight_scales(recording: RobotRecording, robot: Robot) -> dict[str, float | None]:
-    """Return each joint's torque over what the URDF's links need; None where links do not explain it.
+    """Return the ratio of each joint's torque to the torque that the URDF's links need; None if they do not explain it.
 
-    Of a recording with currents only it is in A per N·m, whatever the robot's torque constants.
+    For a recording with currents only, the ratio is in A per N·m, regardless of the robot's torque constants.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Servos without a torque signal: identified from duty and position, and rolled out in closed loop."""
+"""Servos without a torque signal: identification from duty and position, and simulation in closed loop."""

@@ -1,4 +1,4 @@
-"""A servo's answer in a few lines: the verdict, its values, the first finding, and what to do about it."""
+"""A servo's answer in a few lines: the verdict, its values, the first finding, and its advice."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jointid.servo.record import ServoEstimateRecord
 from jointid.servo.verdict import judged_servo
 
 _FINDINGS = 1
-# What a simulator needs, before what it follows from.
+# Values that a simulator needs come first, then the values from which they are derived.
 _FIRST, _LAST = (*MOTOR, "inertia"), ("torque_per_voltage", "back_emf")
 
 
@@ -24,9 +24,10 @@ def answer(
     saved: str = "",
     rollout_error: float | None = None,
 ) -> str:
-    """Return the answer in at most 15 lines; `action` words an advice, `saved` is the file that has the estimate.
+    """Return the answer in at most 15 lines.
 
-    `rollout_error` is the median of the runs' rollouts, if there is one [rad].
+    `action` gives the text of an advice. `saved` is the file of the estimate. `rollout_error` is the median error of
+    the runs' simulations [rad], if there are any.
     """
     count = len(estimate.runs)
     verdict, runs = judged_servo(estimate), f"{count} run{'s' * (count != 1)}"

@@ -1,9 +1,9 @@
-"""The voltage between rows: a log has the duty at its rows, and the position loop says how it moves in between.
+"""Voltage between rows: a log has the duty at its rows, and the position loop gives its course between them.
 
-A command that moves evenly between rows makes the duty do so, too. One that is held until the next row makes it jump
-there, and is half a row late on average: the loop answers to where the command was. Which of the two a servo has, or
-what lies between (a command that is refreshed several times a row, or a log whose stamps are not the loop's), the
-torque balance tells, with the voltage as even + held · late.
+If a command is interpolated between rows, so is the duty. If a command is held until the next row, the duty jumps
+there. A held command is half a row late on average, because the loop responds to the previous command. A servo may also
+be between these cases: its command is refreshed several times per row, or the stamps of the log are not those of the
+loop. The torque balance decides between them, with the voltage as even + held · late.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from jointid.servo.signals import ServoSignals
 Array = NDArray[np.float64]
 
 UNSATURATED = 0.98
-"""A duty beyond this share of the saturation is limited: it does not tell the error of position."""
+"""A duty above this share of the saturation counts as limited. Then it does not show the position error."""
 
 
 def voltages(
     run: ServoSignals, drive: VoltageDrive | None, times: Array, lead: float
 ) -> tuple[Array, Array]:
-    """Return the voltage [V] of a command that moves evenly, and what a held one adds, at `times` [s].
+    """Return the voltage [V] of an interpolated command, and the addition for a held one, at `times` [s].
 
-    Without a drive that has a position loop, nothing is added. `lead` is how much older a row's position is than its
-    duty [s].
+    Without a drive that has a position loop, the addition is 0. `lead` is the time by which a row's position is older
+    than its duty [s].
     """
     # A row's duty was read after its position, so it belongs to a later time.
     stamps = run.time + lead
@@ -40,7 +40,7 @@ def voltages(
     wanted = np.interp(seen, run.time, run.reference)
     error = run.gain * (wanted - np.interp(seen, run.time, run.position))
     beyond = np.abs(run.duty) >= UNSATURATED * loop.saturation
-    # Where the duty is limited, the loop says by how much it is short of the limit's end.
+    # If the duty is limited, the loop gives its distance from the limit.
     command = np.where(
         beyond, np.sign(run.duty) * np.maximum(np.abs(error), np.abs(run.duty)), run.duty
     )

@@ -1,4 +1,4 @@
-"""`compare_servo_models`: friction models compared by the closed loops of runs that their fits did not see."""
+"""`compare_servo_models`: compare friction models by closed-loop simulations of held-out runs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from jointid.servo.rolling_out import rollout
 from jointid.servo.signals import signals_of
 
 MODELS = tuple(Model.parse(DEFAULT_MODEL).replace(load_friction=load) for load in (False, True))
-"""What is compared by default."""
+"""Models that are compared by default."""
 
 
 @takes(ServoFitOptions)
@@ -33,20 +33,20 @@ def compare_servo_models(
     threads: int = 0,
     **options: Unpack[ServoFitOptions],
 ) -> ServoComparison:
-    """Compare friction models of a servo by rollouts of held-out runs.
+    """Compare friction models of a servo by simulations of held-out runs.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        Several, as for `identify`.
+        Several runs, as for `identify`.
     joint : Joint
     models : sequence of Model or str, optional
-        Default: `MODELS`, with and without friction of the load.
+        Friction models to compare. Default: `MODELS`, with and without friction of the load.
     groups : sequence, optional
         A label per run; runs with the same label are held out together. Default: by the position loop's gain if there
         are several, otherwise each run alone.
     threads : int
-        Of the rollouts; 0 (default): all.
+        Number of threads for the simulations; 0 (default): all.
     **options
 
     Returns
@@ -56,7 +56,7 @@ def compare_servo_models(
     Raises
     ------
     InputError
-        Fewer than two groups, or as in `identify` and `simulate`.
+        There are fewer than two groups, or one of the errors of `identify` and `simulate` occurs.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A comparison of a servo's models from its JSON."""
+"""Read a comparison of a servo's models from its JSON."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _COMPARISON = Record(
         "groups": ListOf(Text(), 1, _MOST),
         "errors": ListOf(ListOf(Number(low=0.0, high=1e100))),
         "bistable": ListOf(ListOf(Flag())),
-        "estimate": Unchecked(),  # it has a reader of its own
+        "estimate": Unchecked(),  # it has its own reader
     },
     {"best": Plain()},  # it follows from the errors
 )
@@ -58,7 +58,7 @@ def comparison_fields(text: str, of_estimate: type[ServoEstimateRecord]) -> dict
 
 
 def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Places where fields, each right by itself, do not fit together."""
+    """Yield the places of fields that are valid alone but contradict each other."""
     runs = len(d["runs"])
     if len(d["groups"]) != runs:
         yield "groups", "one for each of the runs is expected"

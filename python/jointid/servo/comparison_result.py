@@ -1,4 +1,4 @@
-"""The result of a comparison of a servo's models: the errors of each model's rollouts on held-out runs."""
+"""Result of a comparison of a servo's models: errors of each model's simulations of held-out runs."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ServoComparison(KeptResult):
-    """Models and the errors of their rollouts on held-out runs.
+    """Friction models of a servo, and the errors of their simulations of held-out runs.
 
     Attributes
     ----------
     models : tuple of str
     errors : ndarray, shape (models, runs)
-        Mean absolute error of the position of each run, from the fit that did not see it [rad].
+        Mean absolute error of the position in each run, simulated with a fit to other runs [rad].
     bistable : ndarray of bool, shape (models, runs)
     runs : tuple of str
     groups : tuple of str
-        The group that each run was held out with.
+        Group of each run; runs of a group were held out together.
     estimate : ServoEstimate
-        Of the best model, from all runs.
+        Estimate with the best model, from all runs.
     """
 
     models: tuple[str, ...]
@@ -50,7 +50,7 @@ class ServoComparison(KeptResult):
 
     @property
     def medians(self) -> Array:
-        """Median of each model's errors [rad]: a bistable run does not decide it."""
+        """Median of each model's errors [rad]. A single bistable run hardly changes it."""
         return np.asarray(np.median(self.errors, axis=1))
 
     @property
@@ -60,7 +60,7 @@ class ServoComparison(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         return Overview(
             title=f"{self.estimate.joint.name or 'servo'}: {len(self.models)} models compared",
             answer=(
@@ -106,7 +106,7 @@ class ServoComparison(KeptResult):
         return "\n".join([*lines, "", self.estimate.report(verbose=True)] if verbose else lines)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; the best model's estimate as in `ServoEstimate.to_dict`."""
+        """Return everything in JSON's types; the estimate has the format of `ServoEstimate.to_dict`."""
         from jointid.servo.comparison_reading import KIND, SCHEMA
 
         return {
@@ -127,17 +127,18 @@ class ServoComparison(KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the comparison that a JSON text holds.
+        """Return the comparison from a JSON text.
 
         Parameters
         ----------
         text : str
-            From `to_json`.
+            JSON text from `to_json`.
 
         Raises
         ------
         InputError
-            Not JSON, not a servo's comparison, another schema, or a value that cannot be used; names the place in it.
+            The text is not JSON or not a servo's comparison, has another schema, or holds an invalid value. The message
+            names the place in the text.
         """
         from jointid.servo.comparison_reading import comparison_fields
 
@@ -149,7 +150,7 @@ class ServoComparison(KeptResult):
         Returns
         -------
         DataFrame
-            Indexed by model; median and worst error of the held-out runs [rad], and how many runs are bistable.
+            Indexed by model; median and worst error of the held-out runs [rad], and the number of bistable runs.
 
         Raises
         ------

@@ -1,9 +1,9 @@
-"""How much of what brakes in proportion to speed is back-EMF, where no recording says it.
+"""Share of back-EMF in the braking torque that is proportional to speed, if no recording shows it.
 
-While the motor is driven only the sum of back-EMF and viscous friction is seen; where it turns freely the sum's
-viscous part is all that matters. Nothing in the logs prefers a share, so it is chosen for what it does: the load is
-let go, and the share is taken whose swing is nearest to those of all other shares, at worst. It is not a half: a swing
-dies soon under any larger friction, so that it tells small frictions apart, not large ones.
+While the motor is driven, only the sum of back-EMF and viscous friction is visible. While it turns freely, only the
+viscous part acts. If the logs do not determine the share, it is chosen by its effect on a free swing of the load. The
+chosen share has the swing with the smallest largest difference from the swings of all other shares. It is not a half:
+a swing shows differences between small frictions, but it ends soon under any larger friction.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ _STEP = 5e-3  # s
 
 
 def share_of(joint: Joint, runs: Sequence[ServoSignals], layout: Layout, solution: Array) -> float:
-    """Return the share of back-EMF with the free swing nearest to those of all other shares; a half without gravity.
+    """Return the share of back-EMF with the free swing closest to those of all other shares; a half without gravity.
 
-    The load is let go where it pulls hardest in the runs, for as long as the longest run. Of the solution's back-EMF
-    and its friction in proportion to the speed only the sum is used.
+    The swing starts at the position with the largest gravity torque in the runs, and lasts as long as the longest run.
+    Only the sum of the solution's back-EMF and viscous friction is used.
     """
     if joint.link is None:
         return 0.5

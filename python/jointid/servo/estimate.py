@@ -1,4 +1,4 @@
-"""What `identify` returns of a servo."""
+"""Result of `identify` for a servo."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 class ServoEstimate(ServoEstimateRecord, KeptResult):
-    """A servo as identified.
+    """Motor, friction and inertia of a servo.
 
     Attributes
     ----------
-    joint : Joint
+    The joint that was passed to `identify`.
         As passed to `identify`.
     parameters : mapping of str to ParameterEstimate
         "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), the coefficients of the friction model ("viscous",
@@ -33,9 +33,9 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
     model : str
         Name of the friction model.
     values : ndarray, shape (n,)
-        The parameters up to the inertia; 0 for load friction if the model has none.
+        The parameters up to the inertia. Load friction is 0 if the model has none.
     draws : ndarray, shape (draws, n)
-        The same, of resampled runs.
+        The same for resampled runs.
     load_friction : bool
         Whether the model has friction of the load.
     separable : bool
@@ -50,17 +50,17 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
     windows : int
         Windows used.
     window, slowest : float
-        Duration [s], slowest motion [rad/s].
+        Duration of a window [s], and the slowest motion that is used [rad/s].
     runs : tuple of str
-        Names.
+        Names of the runs.
     moving : tuple of float
         Share of each run that is used.
     rms : float
         Root mean square of the residual, as a mean over a window [N·m].
     relative_residual : float
-        The same as a share of the load's torque.
+        The same, relative to the load's torque.
     seconds : float
-        Wall time.
+        Wall time [s].
     """
 
     __slots__ = ()
@@ -68,21 +68,21 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         from jointid.servo.overview import overview_of
 
         return overview_of(self)
 
     @property
     def verdict(self) -> Verdict:
-        """Whether the values may be used, for compensation, for simulation and for monitoring."""
+        """Verdict on the use of the values, for compensation, simulation and monitoring."""
         from jointid.servo.verdict import judged_servo
 
         return judged_servo(self)
 
     @property
     def identified(self) -> Joint:
-        """The joint with what was identified: motor, inertia and friction."""
+        """Return the joint with the identified motor, inertia and friction."""
         from jointid.servo.joint_from_estimate import identified_joint
 
         return identified_joint(self)
@@ -101,7 +101,7 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
         return text_report(self) if verbose else answer(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the estimate in JSON's types; all but `draws` is in it."""
+        """Return the estimate in JSON's types. It contains everything except `draws`."""
         from jointid.servo.document import document_of
 
         return document_of(self)
@@ -113,12 +113,12 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     def save(self, path: str | Path) -> Path:
-        """Write the estimate as JSON, or the joint as identified into a joint file (.toml); return its path.
+        """Write the estimate as JSON, or the identified joint as a joint file (.toml); return its path.
 
         Raises
         ------
         InputError
-            Another ending, or a folder that does not exist.
+            The file has another ending, or the folder does not exist.
         OSError
             The file cannot be written; an existing one is untouched.
 
@@ -143,12 +143,13 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimate that a JSON text holds; all but `draws` is in it.
+        """Return the estimate from a JSON text. It contains everything except `draws`.
 
         Raises
         ------
         InputError
-            Not JSON, not a servo's estimate, another schema, or a field that cannot be used; names the place in it.
+            The text is not JSON or not a servo's estimate, has another schema, or holds an invalid field. The message
+            names the place in the text.
         """
         from jointid.base.schema import read_json
         from jointid.servo.reading_back import servo_estimate_of

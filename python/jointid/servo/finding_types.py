@@ -1,4 +1,4 @@
-"""The table of a servo's findings: each code with its severity, its meaning, and what to do in general."""
+"""The table of a servo's findings: each code with its severity, meaning, and general advice."""
 
 from jointid.estimate.types_of_findings import FindingType
 

@@ -1,4 +1,4 @@
-"""What a servo's recordings and fit show."""
+"""Findings from a servo's recordings and fit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jointid.servo.finding_types import TYPES
 from jointid.servo.layout import LAYOUTS, MOTOR
 from jointid.servo.solving import Unknowns
 
-_VAGUE = 0.25  # half of an interval, of the value
+_VAGUE = 0.25  # half of an interval over the value
 _POOR = 0.35  # of the load's torque
 _OTHER_RUNS = Action("record", text="more runs, with other gains and motions")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
@@ -102,7 +102,7 @@ def _vague(estimate: ServoEstimate) -> Iterator[Finding]:
     for name, p in estimate.parameters.items():
         if p.stderr is None or np.isinf(p.stderr) or p.interval is None:
             continue
-        # The interval has what chance does not make: other windows, another lead, a held command.
+        # The interval also contains systematic effects: other windows, another lead, a held command.
         size = 0.5 * (p.interval[1] - p.interval[0])
         if size <= _VAGUE * abs(p.value):
             continue

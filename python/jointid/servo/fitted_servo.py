@@ -1,4 +1,4 @@
-"""A servo's balance as the attribution of causes sees it: windows side by side, of all that its windows overlap."""
+"""A servo's balance as input of the search for causes, on windows that do not overlap."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from jointid.servo.windows import ServoGrid
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-_STEP = 1e-3  # of a parameter; the weights are of the second degree
+_STEP = 1e-3  # relative step of a parameter; exact, because the weights are of second degree
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +35,7 @@ class FittedServo(FittedBalance):
     unknowns: Unknowns
     joint: Joint
     signals: Sequence[ServoSignals]
-    kept: Whole  # windows of the grid
+    kept: Whole  # numbers of the windows in the grid
     every: Array  # (windows, parameters), derivatives of the residual
 
     @classmethod
@@ -73,7 +73,7 @@ class FittedServo(FittedBalance):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Those of the layout, and how far the command is held."""
+        """Names of the layout's parameters, and the share of a held command."""
         names = self.unknowns.layout.names
         if not self.unknowns.loaded:
             names = tuple("" if name == LOAD_FRICTION.name else name for name in names)
@@ -81,34 +81,34 @@ class FittedServo(FittedBalance):
 
     @property
     def terms(self) -> Sequence[_core.Term | None]:
-        """Of friction."""
+        """Terms of friction."""
         own = {term.name: term for term in (*self.unknowns.layout.friction, LOAD_FRICTION)}
         return [own.get(name) for name in self.names]
 
     @property
     def columns(self) -> Array:
-        """What each parameter gives to the torque that is measured."""
+        """Torque per parameter, with the sign of the measured torque."""
         return -self.every
 
     @functools.cached_property
     def duration(self) -> Array:
-        """Of the windows."""
+        """Durations of the windows."""
         return np.asarray(self.grid.integrals(np.ones(len(self.grid.velocity)))[self.kept, 0])
 
     @property
     def run(self) -> Whole:
-        """Of the windows."""
+        """Run of each window."""
         return self.grid.run[self.kept]
 
     @property
     def spans(self) -> Array:
-        """Of the windows."""
+        """Spans of the windows."""
         first = self.grid.time[self.kept]
         return np.column_stack([first, first + self.duration])
 
     @property
     def window_duration(self) -> float:
-        """The usual one."""
+        """Usual duration of a window."""
         return float(np.median(self.duration))
 
     @functools.cached_property
@@ -136,7 +136,7 @@ class FittedServo(FittedBalance):
 
     @property
     def gear_ratio(self) -> float:
-        """That of the joint."""
+        """Gear ratio of the joint."""
         return abs(self.joint.gear_ratio)
 
     @property
@@ -146,27 +146,27 @@ class FittedServo(FittedBalance):
 
     @property
     def has_torque(self) -> bool:
-        """The load gives the scale: what resembles it over the angle takes its place."""
+        """True, because the load gives the scale of the torque."""
         return False
 
     @property
     def load(self) -> Array:
-        """Its size, with the sign of the velocity."""
+        """Size of the gear's torque, with the sign of the velocity."""
         return -self.every[:, BY_LOAD]
 
     @property
     def model_name(self) -> str:
-        """That of the layout."""
+        """Name of the layout's friction model."""
         return self.unknowns.layout.model
 
     def integral_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """By the trapezoidal rule on the grid."""
+        """Return integrals by the trapezoidal rule on the grid."""
         values = self._on_grid(signal)
         found = self.grid.integrals(*np.atleast_2d(values.T))[self.kept]
         return found[:, 0] if values.ndim == 1 else found
 
     def rise_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """From the first instant to the last."""
+        """Return differences between the first and last instant of each window."""
         values = self._on_grid(signal)
         return np.asarray(values[self.grid.end[self.kept]] - values[self.grid.start[self.kept]])
 
@@ -179,15 +179,15 @@ class FittedServo(FittedBalance):
         )
 
     def identified_with(self, **_: Any) -> tuple[Action, ...]:
-        """None: a servo's model has no such term."""
+        """Return advice to inspect the servo: its model has no such term."""
         return (Action("inspect", text="how the servo turns: its model has no such term"),)
 
     def with_offset(self) -> tuple[Action, ...]:
-        """A look: the load's gravity is the servo's only known torque, and a wrong zero of it looks like an offset."""
+        """Return advice to inspect the zero: gravity is the only known torque, so a wrong zero looks like an offset."""
         return (Action("inspect", text="the zero of the position, and the link's angle and mass"),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `compare`, where a servo can have such a model."""
+        """Return a call of `compare`, if a servo supports such a model."""
         known: dict[str, Any] = {
             "name": self.model_name,
             LOAD_FRICTION.option: self.unknowns.load_friction,
@@ -200,20 +200,20 @@ class FittedServo(FittedBalance):
 
 
 def _side_by_side(grid: ServoGrid) -> Whole:
-    """Windows of which none overlaps another."""
+    """Return the numbers of windows that do not overlap."""
     first = grid.start[np.searchsorted(grid.run, grid.run)]
     return np.flatnonzero((grid.start - first) % (grid.end - grid.start) == 0)
 
 
 def _slope(values: Array, place: int) -> Array:
-    """Derivative of the table's weights by a parameter."""
+    """Return the derivative of the table's weights by a parameter."""
     step = np.zeros(len(values))
     step[place] = _STEP * max(abs(float(values[place])), 1.0)
     return np.asarray((weights(values + step) - weights(values - step)) / (2.0 * step[place]))
 
 
 def _identified(unknowns: Unknowns) -> list[int]:
-    """Places of the parameters that the balance tells by themselves; how the command is held stays as it is."""
+    """Return the places of the parameters that the balance determines; the share of a held command is fixed."""
     known = set(unknowns.fixed)
     if not unknowns.load_friction:
         known.add(LOAD_FRICTION.name)

@@ -1,4 +1,4 @@
-"""`identify_servo`: a servo without a torque signal, from many runs, in milliseconds."""
+"""`identify_servo`: identify a servo without a torque signal, from many runs, in milliseconds."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from jointid.servo.windows import ServoGrid, grid_of
 
 Array = NDArray[np.float64]
 
-_FEWEST = 20  # windows
+_FEWEST = 20  # smallest number of windows
 _LEAD_ERROR = 2e-4  # s
-_DECIDING, _DOUBT = 200, 0.025  # draws, and the share of them that may say otherwise
-_DIVISIONS = 3  # the share of back-EMF hardly depends on what follows from it
+_DECIDING, _DOUBT = 200, 0.025  # number of draws, and the share of them that may disagree
+_DIVISIONS = 3  # rounds: the share of back-EMF hardly depends on the values that follow from it
 
 
 @takes(ServoOptions)
@@ -47,17 +47,18 @@ def identify_servo(
 ) -> ServoEstimate:
     """Identify a servo that logs a duty instead of a torque: motor, friction and inertia, from all runs at once.
 
-    The torque balance is integrated over windows, so no acceleration is needed. Velocity is the slope of the position,
-    because the logged velocity of a servo lags. The balance is linear in k_t/R, k_t²/R, inertia and friction.
+    The torque balance is integrated over windows, so no acceleration is needed. Velocity is the derivative of the
+    position, because the logged velocity of a servo has a delay. The balance is linear in k_t/R, k_t²/R, inertia and
+    friction.
 
     Parameters
     ----------
     recordings : Recording or sequence of Recording
-        With a signal "duty" in `extra`, or a `reference` and a known position loop; see `VoltageDrive`. Back-EMF and
-        viscous friction are separated by motion in which the motor turns freely: a signal "driven" with zeros.
+        Runs with a signal "duty" in `extra`, or a `reference` and a known position loop; see `VoltageDrive`. Motion
+        with a freely turning motor separates back-EMF and viscous friction: a signal "driven" with zeros.
     joint : Joint
-        With `voltage`, and with the known load as its `link`. If `inertia`, `torque_constant`, resistance or parameters
-        with ``vary=False`` are set, they are facts and are not identified.
+        The joint with its `voltage` drive, and with the known load as its `link`. Known values of `inertia`,
+        `torque_constant`, resistance and parameters with ``vary=False`` are not identified.
     **options
 
     Returns
@@ -67,7 +68,7 @@ def identify_servo(
     Raises
     ------
     InputError
-        A signal that is missing, a model that a servo cannot have, or too little motion.
+        A signal is missing, the model is not possible for a servo, or there is too little motion.
 
     Examples
     --------
@@ -109,7 +110,7 @@ def identify_servo(
     each = _products_of_units(grid, filled)
     others = drawn(each, unknowns, values, draws, seed) if draws else np.empty((0, len(values)))
     if draws:
-        # What runs drawn anew cannot show, because all of them have it: the windows' length, and the rows' lead.
+        # Resampled runs do not show effects that all of them share: the windows' length, and the rows' lead.
         moved["windows"] = _fitted(grid_with(2.0 * window), unknowns, values)
         moved["lag"] = _fitted(grid.with_lead(runs, joint, shift + _LEAD_ERROR), unknowns, values)
     durations = grid.integrals(np.ones(len(grid.velocity)))[:, 0]
@@ -139,7 +140,7 @@ def identify_servo(
         seconds=0.0,
     )
     causes = None
-    if draws:  # without errors nothing says what a cause does to the values
+    if draws:  # without errors, the effect of a cause on the values is unknown
         fit = FittedServo.of(joint, runs, grid, filled, unknowns, values)
         causes = causes_of_servo(fit, estimate)
     found = findings_of(estimate, unknowns, causes)
@@ -159,7 +160,7 @@ def _usable(grid: ServoGrid, window: float, slowest: float) -> ServoGrid:
 
 
 def _fitted(grid: ServoGrid, unknowns: Unknowns, start: Array | None = None) -> Array:
-    """Return the parameters, shape (size,), from a solution of nearly the same if there is one."""
+    """Return the parameters, shape (size,); `start` is a solution of nearly the same problem, if available."""
 
     def products_of(side: Array | None) -> Array:
         filled = grid.columns if side is None else grid.with_load(side)
@@ -171,7 +172,7 @@ def _fitted(grid: ServoGrid, unknowns: Unknowns, start: Array | None = None) -> 
 def _divided(
     joint: Joint, runs: Sequence[ServoSignals], grid: ServoGrid, unknowns: Unknowns, values: Array
 ) -> tuple[Unknowns, Array]:
-    """Return the unknowns with the share of back-EMF, and the parameters with it."""
+    """Return the unknowns with the share of back-EMF, and the parameters with this share."""
     for _ in range(_DIVISIONS):
         share = share_of(joint, runs, unknowns.layout, values)
         if share == unknowns.share:
@@ -182,7 +183,7 @@ def _divided(
 
 
 def _shown(products: Array, unknowns: Unknowns, values: Array, seed: int) -> bool:
-    """Return whether runs drawn anew agree that the command is held between rows; otherwise it is not assumed."""
+    """Return whether resampled runs agree that the command is held between rows; otherwise this is not assumed."""
     held = drawn(products, unknowns, values, _DECIDING, seed)[:, HELD]
     return bool(np.quantile(held, _DOUBT) > 0.0)
 
@@ -197,7 +198,7 @@ def _products_of_units(grid: ServoGrid, filled: Array) -> Array:
 
 
 def _row(runs: Sequence[ServoSignals]) -> float:
-    """Return how far rows are apart, in the middle [s]."""
+    """Return the median time between rows [s]."""
     return float(np.median([np.median(np.diff(run.time)) for run in runs]))
 
 
@@ -224,7 +225,7 @@ def _unknowns(joint: Joint, grid: ServoGrid, layout: Layout, *, load_friction: b
 
 
 def _terms(model: Model) -> tuple[Layout, bool]:
-    """Return the layout, and whether friction grows with the gear's torque; refuse what a servo cannot have."""
+    """Return the layout, and whether friction grows with the gear's torque; refuse models that a servo cannot have."""
     stated = dict(model.stated())
     name = stated.pop("name", AUTO)
     name = DEFAULT_MODEL if name == AUTO else name
@@ -249,7 +250,7 @@ def _terms(model: Model) -> tuple[Layout, bool]:
 
 
 def _moving(grid: ServoGrid, runs: Sequence[ServoSignals]) -> tuple[float, ...]:
-    """Return the share of each run that lies in some window."""
+    """Return the share of each run that is in any window."""
     shares = []
     for number, run in enumerate(runs):
         starts, ends = grid.start[grid.run == number], grid.end[grid.run == number]

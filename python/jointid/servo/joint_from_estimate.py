@@ -1,4 +1,4 @@
-"""A joint with what was identified of its servo."""
+"""The joint with the identified values of its servo."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid.servo.record import ServoEstimateRecord
 
 
 def identified_joint(estimate: ServoEstimateRecord) -> Joint:
-    """Return the joint with motor, inertia and friction as identified."""
+    """Return the joint with the identified motor, inertia and friction."""
     joint = estimate.joint
     names = [t.name for t in (*LAYOUTS[estimate.model].friction, LOAD_FRICTION)]
     values = {name: estimate[name] for name in names if name in estimate.parameters}

@@ -1,4 +1,4 @@
-"""The order of a servo's parameters and of its balance's columns: friction comes from the core's table of terms."""
+"""Order of a servo's parameters and of its balance's columns; friction comes from the core's table of terms."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ Array = NDArray[np.float64]
 
 _SPEED_TERMS = [t for t in _core.terms() if t.friction and not (t.needs_load or t.shapes or t.side)]
 SPEED_FRICTION = tuple(sorted(_SPEED_TERMS, key=lambda term: term.basis != "linear"))
-"""Friction of the speed alone, without shapes; first the one in proportion to the speed, which brakes as back-EMF."""
+"""Friction terms of the speed without shapes. The first is viscous friction, which brakes like back-EMF."""
 
 LOAD_FRICTION = next(term for term in _core.terms() if term.needs_load and not term.behind_gear)
 TERMS = (*SPEED_FRICTION, LOAD_FRICTION, _core.term("inertia"))
 """All terms that a servo can have."""
 
 MOTOR = ("torque_constant", "resistance")
-"""What follows from a solution."""
+"""Values derived from a solution."""
 
-# Columns of the table, with those of the friction of the speed from LINEAR_COLUMN on.
+# Columns of the table; columns of speed-dependent friction start at LINEAR_COLUMN.
 VOLTAGE, LATE, DRIVEN, LINEAR_COLUMN = range(4)
 CHANGE, KNOWN, LOAD, LOAD_VOLTAGE, LOAD_LATE, LOAD_DRIVEN = range(-6, 0)
 
-# Entries of a solution, with the friction of the speed from LINEAR on. HELD: how far the command is held from row to
-# row, from 0 (it moves evenly) to 1.
+# Entries of a solution; speed-dependent friction starts at LINEAR. HELD: share of a held command between rows,
+# from 0 (interpolated linearly) to 1.
 TORQUE, BACK_EMF, LINEAR = range(3)
 BY_LOAD, INERTIA, HELD = range(-3, 0)
 
@@ -36,11 +36,11 @@ class Layout:
     """The parameters of a servo with one friction model."""
 
     model: str
-    friction: tuple[_core.Term, ...]  # of the speed, in the order of `SPEED_FRICTION`
+    friction: tuple[_core.Term, ...]  # terms of the speed, in the order of `SPEED_FRICTION`
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the parameters, in the order of a solution, which has `HELD` behind them."""
+        """Names of the parameters, in the order of a solution; `HELD` comes after them in the solution."""
         friction = (term.name for term in (*self.friction, LOAD_FRICTION))
         return ("torque_per_voltage", "back_emf", *friction, "inertia")
 
@@ -50,7 +50,7 @@ class Layout:
 
     @property
     def linear(self) -> str:
-        """Name of the friction in proportion to the speed, which is the first; "" without one."""
+        """Name of viscous friction, which is the first; "" without it."""
         return next((term.name for term in self.friction if term.basis == "linear"), "")
 
 
@@ -61,13 +61,13 @@ LAYOUTS = {
     for model in _core.models()
     if not any(_core.term(key).shapes for key in model.terms)
 }
-"""Of each friction model that a servo can have, by its name."""
+"""Layout of each friction model that a servo can have, by name."""
 
 DEFAULT_MODEL = next(iter(LAYOUTS))
 
 
 def balance(last: Array) -> tuple[Array, Array]:
-    """Return the balance as linear in the parameters: columns (m, columns, size), and what they give (m, columns).
+    """Return the linearized balance: columns (m, columns, size), and the torques that they give (m, columns).
 
     Columns that are products of parameters are formed with the last solutions, (m, size).
     """

@@ -1,4 +1,4 @@
-"""A servo's motion from its position alone: the velocity that a servo logs lags by tens of milliseconds."""
+"""A servo's motion from its position alone, because the logged velocity is late by tens of milliseconds."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_ENOUGH = 4  # samples of a span; three different instants fix a parabola
+_ENOUGH = 4  # smallest number of samples of a span; three different instants determine a parabola
 
 
 def local_quadratic(time: Array, values: Array, at: Array, half: float) -> tuple[Array, Array]:
-    """Return value and slope at each instant of a parabola through the samples within `half` [s] of it."""
+    """Return value and slope at each instant, from a parabola through the samples within `half` [s] of it."""
     first = np.searchsorted(time, at - half - 1e-9)
     last = np.searchsorted(time, at + half + 1e-9)
     widest = int((last - first).max())
@@ -36,16 +36,16 @@ def local_quadratic(time: Array, values: Array, at: Array, half: float) -> tuple
         scale = 1.0 / (count * a + one * b + two * c)
         value = scale * (a * right[0] + b * right[1] + c * right[2])
         slope = scale * (b * right[0] + d * right[1] + e * right[2])
-    # Where a gap leaves too few, the span has no slope.
+    # If a gap leaves too few samples, the span has no slope.
     poor = (count < _ENOUGH) | ~np.isfinite(value) | ~np.isfinite(slope)
     value[poor] = slope[poor] = 0.0
     return value, slope / half
 
 
 def smoothed(values: Array, reach: int) -> Array:
-    """Return an even signal as the mean over the span that the slope of a parabola takes of a velocity.
+    """Return an even signal as the mean with the weights that a parabola's slope gives to the velocity.
 
-    The slope over a half span h weighs the velocity at a distance x by 1 - (x / h)². `reach` is h in grid steps; the
+    The slope over a half span h weights the velocity at a distance x by 1 - (x / h)². `reach` is h in grid steps. The
     first and last values are continued.
     """
     x = np.arange(-reach, reach + 1) / reach

@@ -1,4 +1,4 @@
-"""What `identify` and `compare` take of a servo by keyword."""
+"""Keyword options of `identify` and `compare` for a servo."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, TypedDict
@@ -9,7 +9,7 @@ from jointid.servo.windows import SLOWEST, WINDOW
 
 
 class ServoFitOptions(TypedDict, total=False):
-    """What all models of a comparison share."""
+    """Options that all models of a comparison share."""
 
     window: Annotated[
         float,
@@ -34,7 +34,7 @@ class ServoFitOptions(TypedDict, total=False):
 
 
 class ServoOptions(ServoFitOptions, total=False):
-    """What one identification takes."""
+    """Options of one identification."""
 
     model: Annotated[
         Model | ModelName | Mapping[str, Any] | None,

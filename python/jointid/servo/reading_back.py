@@ -1,4 +1,4 @@
-"""A servo's estimate from its JSON."""
+"""Read a servo's estimate from its JSON."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ _ESTIMATE = Record(
     {
         "schema": Number(low=SCHEMA, high=SCHEMA, whole=True),
         "kind": Text(),
-        "joint": TableOf(Plain()),  # the joint has a reader of its own
+        "joint": TableOf(Plain()),  # the joint has its own reader
         "parameters": TableOf(_PARAMETER),
         "findings": ListOf(FINDING),
         "rms": _SIZE,
@@ -74,7 +74,7 @@ _ESTIMATE = Record(
     {
         "verdict": Plain(),
         "rollout": Plain(),
-    },  # the second is what `jointid identify --rollout --json` adds
+    },  # `jointid identify --rollout --json` adds the second one
 )
 
 
@@ -108,7 +108,7 @@ def servo_estimate_of(document: Any, cls: type[Saved]) -> Saved:
 
 
 def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Places where fields, each right by itself, do not fit together."""
+    """Yield the places of fields that are valid alone but contradict each other."""
     names = d["parameters"]
     needed = {*LAYOUTS[d["settings"]["model"]].names, *MOTOR} - ({LOAD_FRICTION.name} - set(names))
     if set(names) != needed:

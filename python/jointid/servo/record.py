@@ -1,4 +1,4 @@
-"""The fields of a servo's estimate, for whatever shows, judges, saves or uses them."""
+"""Fields of a servo's estimate, without its methods."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ServoEstimateRecord:
-    """The fields of a `ServoEstimate`, which describes them."""
+    """Fields of a `ServoEstimate`, which documents them."""
 
     joint: Joint
     parameters: Mapping[str, ParameterEstimate]
@@ -44,7 +44,7 @@ class ServoEstimateRecord:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """The findings that may bias values or make them unusable."""
+        """Findings that may bias values or make them unusable."""
         return tuple(each for each in self.findings if each.severity != "info")
 
     def __getitem__(self, name: str) -> float:
@@ -53,7 +53,7 @@ class ServoEstimateRecord:
         Raises
         ------
         InputError
-            No such parameter.
+            There is no such parameter.
         """
         if name not in self.parameters:
             raise InputError(

@@ -1,4 +1,4 @@
-"""Errors by drawing runs anew: what one run has in common does not average out within it."""
+"""Errors by resampling runs, because errors that a whole run has in common do not average out within it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from jointid.servo.windows import ServoGrid
 
 Array = NDArray[np.float64]
 
-_ENOUGH = 8  # runs, to draw whole ones
+_ENOUGH = 8  # smallest number of runs to resample whole runs
 _SOME = 1e-9
-_STRETCH = 1.0  # s; of a run, where runs are few
+_STRETCH = 1.0  # [s], stretch of a run that is resampled if there are few runs
 
 
 def units_of(grid: ServoGrid) -> NDArray[np.int64]:
-    """Return the unit of resampling of each window: its run, or a stretch of it where there are few runs."""
+    """Return the unit of resampling of each window: its run, or a stretch of it if there are few runs."""
     runs = np.unique(grid.run)
     if len(runs) >= _ENOUGH:
         return np.searchsorted(runs, grid.run).astype(np.int64)
@@ -28,13 +28,13 @@ def units_of(grid: ServoGrid) -> NDArray[np.int64]:
 
 
 def drawn(products: Array, unknowns: Unknowns, values: Array, draws: int, seed: int) -> Array:
-    """Return the parameters of sets of units that are drawn with replacement, shape (at most draws, size).
+    """Return the parameters of sets of units drawn with replacement, shape (at most draws, size).
 
-    `products` is (units, columns, columns); each set starts from `values`, the solution of all units.
+    `products` is (units, columns, columns). Each set starts from `values`, the solution of all units.
     """
     times = drawn_units(len(products), draws, seed)
     if unknowns.separable and unknowns.layout.linear and not unknowns.motor_known:
-        # Without a unit that turns freely, or without one that is driven, a set divides nothing.
+        # A set must have a unit that turns freely and one that is driven, to separate back-EMF from friction.
         driven, turned = (products[:, each, each] for each in (DRIVEN, LINEAR_COLUMN))
         free = turned - driven > _SOME * turned
         times = times[

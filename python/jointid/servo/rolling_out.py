@@ -1,4 +1,4 @@
-"""`rollout`: a servo's closed loop simulated from the logged initial state, and how far it ends from the log."""
+"""`rollout`: simulate a servo's closed loop from the logged initial state, and compare it with the log."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from jointid.servo.signals import ServoSignals, signals_of
 Array = NDArray[np.float64]
 
 STEP = 1e-3
-"""Longest integration step by default [s]."""
+"""Default of the longest integration step [s]."""
 
-_NUDGE = 0.01  # of the motor's torque, to both sides
-_START = 0.03  # s, of the log, for the initial velocity
+_NUDGE = 0.01  # of the motor's torque, in both directions
+_START = 0.03  # [s] of the log, for the initial velocity
 
 
 def rollout(
@@ -43,11 +43,11 @@ def rollout(
     estimate : ServoEstimate or Joint
         A joint needs values of torque constant, resistance, inertia and friction.
     recordings : Recording or sequence of Recording
-        As for `identify`.
+        Runs, as for `identify`.
     step : float
         Longest integration step [s]. Default 1 ms.
     threads : int
-        0 (default): all. Results do not depend on it.
+        Number of threads; 0 (default): all. Results do not depend on it.
 
     Returns
     -------
@@ -85,9 +85,9 @@ def rollout(
 
 
 def servo_loop(joint: Joint, run: ServoSignals) -> _core.ServoLoop:
-    """Return a servo at the beginning of a run, as the core simulates it, or name the value that the joint lacks."""
+    """Return the core's model of a servo at the beginning of a run, or name the value that the joint lacks."""
     voltage = joint.voltage
-    assert voltage is not None  # `signals_of` refuses others
+    assert voltage is not None  # `signals_of` refuses joints without it
     k_t = abs(_needed(joint, "torque_constant", joint.torque_constant) * joint.gear_ratio)
     resistance = _needed(joint, "resistance", voltage.resistance)
     inertia = _needed(joint, "inertia", joint.reflected_inertia)
@@ -110,7 +110,7 @@ def servo_loop(joint: Joint, run: ServoSignals) -> _core.ServoLoop:
 
 
 def servo_plant(joint: Joint, inertia: float, values: Mapping[str, float]) -> _core.SimulatedJoint:
-    """Return drive and link with the friction of the speed; `inertia` is the drive's, at the output [kg·m²].
+    """Return drive and link with speed-dependent friction; `inertia` is that of the drive, at the output [kg·m²].
 
     Friction that has no coefficient in `values` is left out.
     """
@@ -127,9 +127,9 @@ def servo_plant(joint: Joint, inertia: float, values: Mapping[str, float]) -> _c
 
 
 def initial_state(run: ServoSignals) -> tuple[float, float]:
-    """Return position and velocity at a log's beginning, by a line through its first samples.
+    """Return position and velocity at the beginning of a log, by a line through its first samples.
 
-    A log that begins within its position's resolution begins at rest.
+    If the first samples stay within the position's resolution, the velocity is 0.
     """
     count = max(5, int(np.searchsorted(run.time, run.time[0] + _START)))
     time, position = run.time[:count] - run.time[0], run.position[:count]

@@ -1,4 +1,4 @@
-"""Rows whose values were read one after the other: how much older the position is than the duty of its row."""
+"""Rows with values that were read one after the other: find the age of the position relative to the duty."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from jointid.joint.joint import Joint
 from jointid.servo.signals import ServoSignals
 
 _FARTHEST, _STEP = 0.012, 1e-3  # [s]
-_UNSATURATED = 0.98  # of the saturation
-_EVERY = 4  # samples: neighbours say the same
+_UNSATURATED = 0.98  # of the saturation: largest duty that is used
+_EVERY = 4  # samples: neighbours carry the same information
 
 
 def lead_of(runs: Sequence[ServoSignals], joint: Joint) -> float | None:
-    """Return the lead [s] at which the position loop gives the logged duty best; None where that cannot be said.
+    """Return the lead [s] with which the position loop fits the logged duty best; None if it is not determined.
 
     A positive lead means that the position is older than the duty.
     """
@@ -37,7 +37,7 @@ def lead_of(runs: Sequence[ServoSignals], joint: Joint) -> float | None:
         at, reference = run.time[inner][::_EVERY], run.reference[inner][::_EVERY]
         for k, lead in enumerate(leads):
             position = np.interp(at + lead - loop.delay, run.time, run.position)
-            # The duty's own unit would give the stiffest runs all the weight.
+            # The duty's own unit would give nearly all weight to the stiffest runs.
             misfit[k] += float(np.mean(np.abs(reference - position - wanted)))
     best = int(np.argmin(misfit))
     if not 0 < best < len(leads) - 1:
@@ -46,7 +46,7 @@ def lead_of(runs: Sequence[ServoSignals], joint: Joint) -> float | None:
 
 
 def _vertex(three: NDArray[np.float64]) -> float:
-    """Where a valley with straight sides has its bottom, in steps from the middle."""
+    """Return the minimum of a valley with straight sides, in steps from the middle."""
     left, middle, right = three
     rise = max(left, right) - middle
     return 0.0 if rise <= 0.0 else float(0.5 * (left - right) / rise)

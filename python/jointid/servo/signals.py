@@ -1,4 +1,4 @@
-"""What a servo's recording tells: position, duty, supply, and when the motor is driven."""
+"""Signals of a servo's recording: position, duty, supply, and times with a driven motor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 _LARGEST = 1.05
-"""Duty that rounding, or the last step of a counter, makes of 1."""
+"""Largest duty that counts as 1, because of rounding or the last step of a counter."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -28,25 +28,25 @@ class ServoSignals:
     name: str
     time: Array  # [s]
     position: Array  # [rad]
-    duty: Array  # as logged, times its scale; of the position loop where none is logged
+    duty: Array  # logged duty times its scale; computed from the position loop if no duty is logged
     supply: Array  # [V]
-    driven: Array  # 1 where the motor is on its voltage, 0 where it turns freely
+    driven: Array  # 1 if the motor is connected to its voltage, 0 if it turns freely
     reference: Array | None  # wanted position [rad]
-    gain: float  # duty per error of the position loop [1/rad]; 0 where there is none
+    gain: float  # duty per error of the position loop [1/rad]; 0 without a position loop
     logged: bool  # whether the duty was logged
 
     @property
     def closed(self) -> bool:
-        """Whether the position loop is known, so that a rollout can close it."""
+        """Whether the position loop is known, so that a simulation can close it."""
         return self.reference is not None and self.gain != 0.0
 
     def driven_at(self, times: Array) -> Array:
-        """Return 1 where the motor is on its voltage, 0 where it turns freely."""
+        """Return 1 where the motor is connected to its voltage, 0 where it turns freely."""
         return np.asarray(self.driven[np.searchsorted(self.time, times, side="right") - 1])
 
 
 def signals_of(recordings: Recording | Sequence[Recording], joint: Joint) -> list[ServoSignals]:
-    """Return the runs of a servo from recordings, with defaults of the joint's voltage drive for what they lack.
+    """Return the runs of a servo from recordings; missing signals get the defaults of the joint's voltage drive.
 
     The extra signals are "duty" (or a `reference` and a known position loop), "supply" (unless the joint has it),
     "driven" (default: always driven) and "gain".
@@ -63,7 +63,7 @@ def signals_of(recordings: Recording | Sequence[Recording], joint: Joint) -> lis
 
 
 def voltage_drive(joint: Joint) -> VoltageDrive:
-    """Return a joint's voltage drive; a joint with a torque as its input is an error."""
+    """Return a joint's voltage drive; raise an error if the joint's input is a torque."""
     if joint.voltage is None:
         raise InputError(
             "the joint's input is not a voltage",
@@ -115,7 +115,7 @@ def _run(recording: Recording, drive: VoltageDrive, number: int) -> ServoSignals
 
 
 def _of_full_voltage(duty: Array, place: str) -> Array:
-    """Return a duty; refuse one in another unit, for then every value has its factor and the fit is as good."""
+    """Return a duty; refuse another unit, because all values would have a wrong factor and the fit would hide it."""
     top = float(np.abs(duty).max())
     if top > _LARGEST:
         raise InputError(
@@ -128,7 +128,7 @@ def _of_full_voltage(duty: Array, place: str) -> Array:
 
 
 def _supply(recording: Recording, drive: VoltageDrive, place: str) -> Array:
-    """Return the supply: what the joint states, otherwise what was logged."""
+    """Return the supply voltage that the joint states, otherwise the logged one."""
     if drive.supply is not None:
         return np.full(len(recording.time), drive.supply)
     if "supply" not in recording.extra:

@@ -1,4 +1,4 @@
-"""The servo's parameters from the products of its table's columns: many sets of products at once."""
+"""Parameters of a servo from the products of its table's columns, for many sets of products at once."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ _SETTLED = 1e-9  # relative change
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unknowns:
-    """The parameters that are identified, and what is known of them."""
+    """The parameters to identify, and known values."""
 
     layout: Layout
-    # whether some windows are driven and some are not: divides back-EMF from friction in proportion to speed
+    # True if some windows are driven and some are not; this separates back-EMF from viscous friction
     separable: bool
-    load_friction: bool  # whether friction grows with the gear's torque
-    held: bool  # whether it is identified how the command moves between rows; otherwise it moves evenly
+    load_friction: bool  # True if friction grows with the gear's torque
+    held: bool  # True if the command's course between rows is identified; otherwise it is interpolated linearly
     torque_constant: float | None  # k_t at the output [N·m/A]
     resistance: float | None  # [Ω]
     fixed: Mapping[str, float]  # known values of parameters
-    # of the back-EMF in what brakes in proportion to speed, where nothing divides the two
+    # share of back-EMF in the sum of back-EMF and viscous friction, if the data do not separate the two
     share: float = 0.5
 
     @property
     def divided(self) -> bool:
-        """Whether anything divides back-EMF from friction in proportion to speed."""
+        """Whether the data or known values separate back-EMF from viscous friction."""
         linear = self.layout.linear
         fixed = linear in self.fixed or "back_emf" in self.fixed
         return not linear or self.separable or self.motor_known or fixed
@@ -54,7 +54,8 @@ class Unknowns:
 def solved(products: Array, unknowns: Unknowns, start: Array) -> Array:
     """Return the parameters that minimise the squared residual, shape (m, size); `products` is (m, columns, columns).
 
-    The signs of the gear's torque are held. Columns that are products of parameters are formed with `start`, (m, size).
+    The signs of the gear's torque are fixed. Columns that are products of parameters are formed with `start`, (m,
+    size).
     """
     found = start
     for _ in range(_PASSES if _turns(unknowns) else 1):
@@ -72,7 +73,7 @@ def fixed_point(
 ) -> Array:
     """Return the parameters, once the signs of the gear's torque have settled, shape (size,).
 
-    `products_of` gives the products of the columns for a side; for None, those without columns of the load's friction.
+    `products_of` gives the products of the columns for a side; for None, the products without the load's friction.
     Without `start`, the iteration begins at the solution without friction of the load.
     """
     if start is None:
@@ -91,25 +92,25 @@ def fixed_point(
 
 
 def _without_load(products: Array, unknowns: Unknowns) -> Array:
-    """Return the parameters without friction of the load, whose column needs the motor's torque."""
+    """Return the parameters without friction of the load; its column needs the motor's torque."""
     fixed = {name: value for name, value in unknowns.fixed.items() if name != LOAD_FRICTION.name}
     plain = replace(unknowns, load_friction=False, held=False, fixed=fixed)
     return np.asarray(solved(products, plain, np.zeros((1, len(unknowns.layout.names) + 1)))[0])
 
 
 def weights(values: Array) -> Array:
-    """Return the factors by which a table's columns make up the balance, (columns,): what is left is their sum."""
+    """Return the factors of a table's columns in the balance, (columns,); the residual is the weighted sum."""
     columns, target = balance(values[None])
     return np.asarray(columns[0] @ values - target[0])
 
 
 def _turns(unknowns: Unknowns) -> bool:
-    """Whether a column depends on unknowns."""
+    """Return whether a column depends on unknowns."""
     return unknowns.loaded or unknowns.held or unknowns.resistance is not None
 
 
 def _linear(products: Array, unknowns: Unknowns, last: Array) -> Array:
-    """One solution of each, with the columns that depend on the parameters formed with the last ones."""
+    """Return one solution of each problem; columns that depend on parameters are formed with the last values."""
     names, found = unknowns.layout.names, np.zeros(last.shape)
     columns, target = balance(last)
     fixed = dict(unknowns.fixed)
@@ -119,7 +120,7 @@ def _linear(products: Array, unknowns: Unknowns, last: Array) -> Array:
     if k_t is not None and resistance is not None:
         fixed |= {"torque_per_voltage": k_t / resistance, "back_emf": k_t * k_t / resistance}
     free = [index for index, name in enumerate(names) if name not in fixed]
-    tied = None  # back-EMF per k_t / R
+    tied = None  # back-EMF over k_t / R
     if resistance is not None and k_t is None:
         tied = last[:, TORQUE] * resistance
     elif k_t is not None and resistance is None:
@@ -128,7 +129,7 @@ def _linear(products: Array, unknowns: Unknowns, last: Array) -> Array:
         columns[:, :, TORQUE] += tied[:, None] * columns[:, :, BACK_EMF]
         free.remove(BACK_EMF)
     elif not unknowns.divided:
-        free.remove(BACK_EMF)  # one column for both; divided below
+        free.remove(BACK_EMF)  # one column for both; separated below
     for name, value in fixed.items():
         target -= value * columns[:, :, names.index(name)]
     if unknowns.held:
@@ -155,7 +156,7 @@ def _linear(products: Array, unknowns: Unknowns, last: Array) -> Array:
 
 
 def _chosen(products: Array, columns: Array, target: Array) -> Array:
-    """Least squares with some of the columns."""
+    """Return the least-squares solution with some of the columns."""
     turned = columns.transpose(0, 2, 1) @ products
     right = (turned @ target[:, :, None])[:, :, 0]
     return bounded_minima(turned @ columns, -right, 0.0, np.inf)

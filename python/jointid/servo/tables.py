@@ -1,4 +1,4 @@
-"""A servo's parameters with their errors, and its estimate as text."""
+"""Tables of a servo's parameters with their errors, and its estimate as text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from jointid.servo.verdict import judged_servo
 
 Array = NDArray[np.float64]
 
-_LABEL = 8  # letters of a label
+_LABEL = 8  # characters of a label
 _MEANING = {
     "torque_per_voltage": ("torque of the motor per voltage, k_t / R", "N·m/V"),
     "back_emf": ("braking by back-EMF while driven, k_t² / R", "N·m·s/rad"),
@@ -39,9 +39,9 @@ def parameters_of(
     units: int,
     moved: Mapping[str, Array],
 ) -> dict[str, ParameterEstimate]:
-    """Return the parameters of a solution with the errors of `draws`, (draws, size), of so many units of resampling.
+    """Return the parameters of a solution, with the errors from `draws`, (draws, size), of resampled units.
 
-    `moved` has the parameters by other windows and another lead.
+    `moved` contains the parameters with other windows and another lead.
     """
     facts = zip(MOTOR, (unknowns.torque_constant, unknowns.resistance), strict=True)
     given = {name: fact for name, fact in facts if fact is not None}
@@ -49,7 +49,7 @@ def parameters_of(
     if len(given) == len(MOTOR):
         known |= {"torque_per_voltage", "back_emf"}
     undivided = () if unknowns.divided else ("back_emf", unknowns.layout.linear, *MOTOR)
-    # Few units: the spread of the draws is short by this, and the quantile is Student's.
+    # With few units the spread of the draws is too small by this factor, and the quantile is Student's.
     short = math.sqrt(units / max(units - 1.0, 1.0))
     quantile = float(_core.student_quantile(0.975, float(max(units - 1, 1))))
     own, sets = _with_motor(values[None])[0], _with_motor(draws)
@@ -111,12 +111,12 @@ def _parameter(
 
 
 def head() -> list[str]:
-    """The table's head."""
+    """Return the table's head."""
     return ["parameter", "value", "± std. error", "95 % interval", "unit", "meaning"]
 
 
 def rows(estimate: ServoEstimateRecord) -> list[list[str]]:
-    """One row a parameter."""
+    """Return one row for each parameter."""
     return [
         [p.name, f"{p.value:.4g}", _error(p), _interval(p), p.unit or "1", p.meaning]
         for p in estimate.parameters.values()
@@ -140,7 +140,7 @@ def _interval(p: ParameterEstimate) -> str:
 
 
 def text_report(estimate: ServoEstimateRecord, action: Callable[[Action], str] = str) -> str:
-    """Return the report that `ServoEstimate.report` shows; `action` words an advice."""
+    """Return the report of `ServoEstimate.report`; `action` gives the text of an advice."""
     name = estimate.joint.name or "servo"
     lines = [
         f"{name}: {', '.join(text for _, text in recorded(estimate))}",
@@ -158,7 +158,7 @@ def text_report(estimate: ServoEstimateRecord, action: Callable[[Action], str] =
 
 
 def recorded(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
-    """What the estimate was made from, as label and text."""
+    """Return the inputs of the estimate, as pairs of label and text."""
     runs, used = len(estimate.runs), float(np.mean(estimate.moving))
     return [
         ("runs", f"{runs} run{'s' * (runs != 1)}"),
@@ -168,7 +168,7 @@ def recorded(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
 
 
 def quality(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
-    """How good the fit is and what it rests on, as label and text."""
+    """Return the quality of the fit and its inputs, as pairs of label and text."""
     left = (
         f"residual {1e3 * estimate.rms:.3g} mN·m, "
         f"{100.0 * estimate.relative_residual:.1f} % of the load's torque"

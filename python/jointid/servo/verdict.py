@@ -1,4 +1,4 @@
-"""Whether the numbers of a servo's estimate may be used, and for what."""
+"""Verdict on the use of a servo's estimate, for each purpose."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ _COMPENSATED = {"torque_per_voltage", *(term.name for term in (*SPEED_FRICTION, 
 def judged_servo(estimate: ServoEstimateRecord) -> Verdict:
     """Judge a servo's estimate by its findings.
 
-    Not usable: a blocking finding, less than 90 % of the load's squared torque explained, or, for what needs it, a
-    value on its bound that `at_bound` warns of. Usable with care: a warning, or no errors (``draws=0``). Otherwise
-    usable. Compensation needs friction and what turns a torque into a duty, simulation all values.
+    Not usable: a blocking finding, or less than 90 % of the load's squared torque explained. Also a value at its bound
+    with a warning of `at_bound`, for purposes that need this value. Usable with care: a warning, or no errors
+    (``draws=0``). Otherwise usable. Compensation needs friction and the parameters that convert a torque into a duty.
+    Simulation needs all values.
     """
     objections = [*_objections(estimate)]
     names = tuple(estimate.parameters)

@@ -1,14 +1,14 @@
-"""The torque balance of a servo over windows, with every column linear in what is unknown.
+"""Torque balance of a servo over windows, with every column linear in the unknowns.
 
-Over a window, with the load's inertia and gravity known, without any acceleration:
+The balance over a window, without any acceleration; the load's inertia and gravity are known:
 
     J_load dω + ∫ gravity = (k_t/R) ∫ u - (k_t²/R) ∫ ω_driven
                             - Σ friction_i ∫ sgn ω h_i(|ω|) - load ∫ sgn ω |gear| - J dω
 
-where h_i is the basis of a term in the core's table, u is the voltage, and gear = gravity + motor torque is what
-presses the teeth: motor and load pull from the two sides. With the sign of gear held, its integral is linear in k_t/R
-and k_t²/R, too. How the command moves between rows is not logged: u = even + held · late, where late is what a command
-that is held until the next row adds.
+Here h_i is the basis of a term in the core's table, and u is the voltage. gear = gravity + motor torque is the load of
+the teeth, because motor and load push from opposite sides. If the sign of gear is fixed, its integral is also linear in
+k_t/R and k_t²/R. The log does not show the command between rows, so u = even + held · late. Here late is the addition
+for a command that is held until the next row.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 WINDOW = 0.05
-"""Duration of a window by default [s]."""
+"""Default duration of a window [s]."""
 
 SLOWEST = 0.1
-"""Slower motion is left out: friction is not at its dry level there [rad/s]."""
+"""Slower motion is left out, because friction has not reached its dry level there [rad/s]."""
 
-_PIECES = 10  # grid steps of a window
+_PIECES = 10  # grid steps in a window
 _STRIDE = 2  # grid steps from a window to the next
-_SPAN = 0.6  # of a window: over which the position's slope is taken
-_FEWEST = 5  # samples in that span, at least
+_SPAN = 0.6  # share of a window that gives the position's slope
+_FEWEST = 5  # smallest number of samples in that span
 
 _REACH = int(0.5 * _SPAN * _PIECES)  # grid steps in half of that span
 
@@ -51,16 +51,16 @@ class ServoGrid:
     position: Array  # (n,) [rad]
     velocity: Array  # (n,) [rad/s]
     voltage: Array  # (n,) [V]
-    late: Array  # (n,) [V], what a held command adds
+    late: Array  # (n,) [V], addition for a held command
     gravity: Array  # (n,) [N·m]
     driven: Array  # (n,), 0 or 1
-    sign: Array  # (n,), of the velocity
-    friction: Array  # (terms, n), of the speed, for a coefficient of 1
-    instants: tuple[Array, ...]  # of each run [s]
-    step: Array  # (n,), of each instant's run [s]
+    sign: Array  # (n,), sign of the velocity
+    friction: Array  # (terms, n), friction of the speed with a coefficient of 1
+    instants: tuple[Array, ...]  # instants of each run [s]
+    step: Array  # (n,), grid step of each instant's run [s]
     start: Counts  # (windows,), first instant
     end: Counts  # (windows,), last instant
-    run: Counts  # (windows,)
+    run: Counts  # (windows,), number of the run
     time: Array  # (windows,), start in the window's run [s]
     load_inertia: float  # [kg·m²]
     columns: Array  # (windows, columns), with zeros for the load's friction
@@ -71,7 +71,7 @@ class ServoGrid:
         return _core.window_integrals(np.column_stack(signals), self.step[1:], windows)
 
     def with_columns(self) -> ServoGrid:
-        """Return the grid with its table as its signals give it."""
+        """Return the grid with its table computed from its signals."""
         driven = self.velocity * self.driven
         found = self.integrals(self.voltage, self.late, driven, *self.friction, self.gravity)
         columns = np.zeros((len(self.start), found.shape[1] + 5))
@@ -81,13 +81,13 @@ class ServoGrid:
         return replace(self, columns=columns)
 
     def side(self, values: Array) -> Array:
-        """Return on which side of the motion the gear's torque is, for a solution: -1, 0 or 1."""
+        """Return the sign of the gear's torque relative to the motion, for a solution: -1, 0 or 1."""
         volts = self.voltage + values[HELD] * self.late
         motor = values[TORQUE] * volts - values[BACK_EMF] * self.velocity * self.driven
         return np.asarray(self.sign * np.sign(self.gravity + motor))
 
     def with_load(self, side: Array) -> Array:
-        """Return the table with the load's friction, for a gear's torque on these sides."""
+        """Return the table with the load's friction, for these signs of the gear's torque."""
         filled = self.columns.copy()
         signals = (self.gravity, self.voltage, self.late, self.velocity * self.driven)
         filled[:, LOAD:] = self.integrals(*(side * each for each in signals))
@@ -113,9 +113,9 @@ def grid_of(
 ) -> ServoGrid:
     """Return runs on even grids, with the windows that can be used.
 
-    A window is used where the motor is driven throughout or not at all, and the velocity neither changes its sign nor
-    falls below `slowest` [rad/s]. `window` is its duration [s], longer where samples are rare; `lead` is how much older
-    a row's position is than its duty [s].
+    A window is used if the motor is driven in all of it or in none of it, and if the velocity neither changes its sign
+    nor falls below `slowest` [rad/s]. `window` is its duration [s]; it is longer if samples are rare. `lead` is the
+    time by which a row's position is older than its duty [s].
     """
     parts, instants, offset = [], [], 0
     for number, run in enumerate(runs):
@@ -152,7 +152,7 @@ def _part(
         weight = joint.gravity_coefficients
         gravity = weight.cos * np.cos(position) + weight.sin * np.sin(position)
     start = np.arange(_REACH, max(_REACH, count - _PIECES - _REACH), _STRIDE)
-    # What a window must not have, counted up to each instant: slow motion, a change of side, switching.
+    # Counts of what a window must not contain, up to each instant: slow motion, a reversal, switching.
     sign = np.sign(velocity)
     slow = _upto(np.abs(velocity) < slowest)
     turns, switches = _upto(sign[1:] != sign[:-1]), _upto(driven[1:] != driven[:-1])
@@ -163,7 +163,7 @@ def _part(
         & (switches[end + _REACH] == switches[start - _REACH])
     )
     start = start[usable]
-    # No integral crosses from one run to the next: the first piece of a run has no length.
+    # No integral crosses from one run to the next, because the first piece of a run has no length.
     steps = np.full(count, step)
     steps[0] = 0.0
     return times, {
@@ -171,7 +171,7 @@ def _part(
         "velocity": velocity,
         "voltage": voltage,
         "late": late,
-        # The slope of a span is a weighted mean of the velocity; gravity is taken as the same mean.
+        # The slope of a span is a weighted mean of the velocity; gravity is averaged with the same weights.
         "gravity": smoothed(gravity, _REACH),
         "driven": driven,
         "sign": sign,
@@ -188,5 +188,5 @@ def _voltages(run: ServoSignals, joint: Joint, times: Array, lead: float) -> tup
 
 
 def _upto(marks: NDArray[np.bool_]) -> Counts:
-    """Return how many marks there are before each instant, and at the end of all."""
+    """Return the number of marks before each instant, and in total."""
     return np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(marks)))

@@ -1,1 +1,1 @@
-"""One verb an act: what it does depends on its subject, a joint, a servo, several joints or a robot."""
+"""Public functions with one name per action. The subject selects the method: joint, servo, several joints, robot."""

@@ -1,4 +1,4 @@
-"""`compare`: which model predicts best what it was not fitted to, of a joint, a servo or a robot."""
+"""`compare`: find the model that predicts held-out data best, for a joint, a servo or a robot."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from jointid.servo.comparison_result import ServoComparison
 
 
-# A type checker cannot tell a servo from another joint: a call without options of servos is of a joint to it.
+# A type checker cannot distinguish a servo from another joint: without servo options it assumes a joint.
 @overload
 def compare(
     recordings: Recording | Sequence[Recording],
@@ -83,26 +83,26 @@ def compare(
     """Compare friction models by their prediction of held-out data.
 
     One recording is cut into contiguous blocks; several recordings are one block each. Every model is fitted to all
-    blocks except one and predicts that block, for each block in turn. The winner is the model with the fewest
+    blocks except one and predicts that block. This is repeated for every block. The chosen model has the fewest
     parameters and a score within one standard error of the best (one-standard-error rule, Breiman et al., 1984).
 
-    - Joint: the residual of held-out windows decides. A model that the data do not support cannot win: its estimate
-      from all data has the warning `model_too_rich`, or a parameter on a bound.
-    - Servo: the simulated closed loop of held-out runs decides; the smallest median error wins. `identify` defines
-      which joints are servos.
+    - Joint: the residual of held-out windows decides. A model that the data do not support cannot be chosen: its
+      estimate from all data has the warning `model_too_rich`, or a parameter at a bound.
+    - Servo: the simulated closed loop of held-out runs decides. The model with the smallest median error is chosen.
+      `identify` defines which joints are servos.
     - Robot: the held-out torque of all joints decides. Candidates are all inertias of the links with each model.
 
-    Options are the same for all models. Delays are chosen from all data. The default of windows is the shortest of
+    Options are the same for all models. Delays are identified from all data. The default of windows is the shortest of
     the models' defaults.
 
     Parameters
     ----------
     recordings : Recording, RobotRecording, or sequence of these
     subject : Joint or Robot, optional
-        As in `identify`, except that the model's name and `asymmetric` are not used.
+        Known values, as in `identify`; the model's name and `asymmetric` are not used.
     score : {"windows", "rollout"}, optional
-        For a joint with `voltage`: "windows" compares by its torque, "rollout" by its closed loop. Default: the torque
-        if `identify` uses it.
+        Only for a joint with `voltage`: "windows" compares by its torque, "rollout" by its closed loop. Default: the
+        torque if `identify` uses it.
     models : sequence of Model, str or mapping, optional
         Models or their texts, such as "coulomb_viscous:asymmetric". Default for a joint: all that these data allow,
         with the gravity that `identify` would choose; `settings["left_out"]` lists the others. For a servo: with and
@@ -132,7 +132,7 @@ def compare(
     Raises
     ------
     InputError
-        Input that cannot be used, or an option that this subject does not have; the error gives the reason.
+        The input cannot be used, or the subject does not have an option. The error gives the reason.
     KeyboardInterrupt
         Ctrl-C.
 
@@ -186,7 +186,7 @@ def compare(
 
 
 def _scored(score: str, kind: Subject) -> Subject:
-    """The subject that a score is of."""
+    """Return the subject that a score belongs to."""
     if kind == "robot":
         raise InputError("compare of a robot has no such option", argument="score", value=score)
     if score not in ("windows", "rollout"):

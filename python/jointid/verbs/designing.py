@@ -1,4 +1,4 @@
-"""`design`: the motion from which a joint is identified best, from what is believed or from an estimate."""
+"""`design`: find the motion that identifies a joint best, from prior knowledge or from an estimate."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def design(
     duration: float = 12.0,
     **options: Any,
 ) -> Design:
-    """Return the motion from which a joint is identified best, within limits.
+    """Return the motion within limits that identifies a joint best.
 
     Motions are sums of sines that start and end at rest. A genetic algorithm searches them. The score of a motion is
-    the information in a noise-free simulation with the controller that will drive it, for several joints within the
-    prior. The best motions are simulated with noise, and identified.
+    its information about the parameters. It comes from a noise-free simulation with the controller that will drive the
+    joint, for several joints within the prior. The best motions are then simulated with noise and identified.
 
     After an estimate, the motion is the one that adds most information to its recordings. Joints are drawn from its
     intervals, and the controller uses its values. Then identify both recordings together:
@@ -40,29 +40,29 @@ def design(
     limits : MotionLimits or mapping, optional
         Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
         the sensor [N·m]; every joint of the prior keeps them. Default: the joint's.
-    duration : float
+    Duration of the motion [s]. Default 12.
         [s]. Default 12.
     controller : controller, optional
         The controller that will drive the joint. Default: an adaptive-robust law with the values of the nominal
         joint and without feedback of the torque sensor.
     sensors : Sensors, optional
-        Default: noise of 0.3 % of the torque limit at the torque sensor; without one, an encoder of 8000
-        counts per motor revolution. After an estimate: with the noise of its residuals.
+        Sensors of the simulation. Default: noise of 0.3 % of the torque limit at the torque sensor; without one, an
+        encoder of 8000 counts per motor revolution. After an estimate: with the noise of its residuals.
     parameters : sequence of str, optional
         Parameters to design for. Default: all free parameters.
     criterion : {"worst", "determinant"}
         Minimize the largest relative error, or the product of all. Default "worst". A value near 0 counts as a
         tenth of its range.
     prior : mapping of str to (low, high), or sequence of mappings, optional
-        Ranges of the free parameters, or values of joints of which the first is the nominal one.
-        Default: the joint's bounds; 30 % around a value without bounds. After an estimate: drawn from its intervals.
+        Ranges of the free parameters, or values of several joints; the first one is the nominal joint. Default: the
+        joint's bounds; 30 % around a value without bounds. After an estimate: drawn from its intervals.
     search : DesignSearch, optional
     control_period : float
-        Of the controller [s]. Default 0.001.
+        Period of the controller [s]. Default 0.001.
     known : Known, optional
         Joint: information about parameters from existing recordings.
     callback : callable, optional
-        Called with a `DesignProgress` now and then; True ends the search early.
+        Called with a `DesignProgress` at intervals; if it returns True, the search ends early.
 
     Other Parameters
     ----------------
@@ -78,8 +78,8 @@ def design(
     Raises
     ------
     InputError
-        An argument that cannot be used, a parameter without a range, limits that leave no motion, a loop that is not
-        stable for some joint of the prior, or another subject than a joint.
+        An argument cannot be used, a parameter has no range, the limits allow no motion, the loop is unstable for a
+        joint of the prior, or the subject is not a joint.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
 
@@ -107,7 +107,7 @@ def design(
 
 
 def _refuse(subject: object) -> None:
-    """Refuse what no motion is designed for."""
+    """Refuse subjects without a design of motion."""
     kind = other_kind(subject)
     if kind:
         raise InputError(

@@ -1,4 +1,4 @@
-"""`identify`: from recordings to an estimate of a joint, a servo, several joints or a robot."""
+"""`identify`: estimate a joint, a servo, several joints or a robot from recordings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jointid.servo.estimate import ServoEstimate
 
 
-# A type checker cannot tell a servo from another joint: a call without options of servos is of a joint to it.
+# A type checker cannot distinguish a servo from another joint: without servo options it assumes a joint.
 @overload
 def identify(
     recordings: Recording | Sequence[Recording],
@@ -71,15 +71,16 @@ def identify(
 def identify(recordings: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     """Identify friction, inertia and torque sensor of a joint, a servo, several joints or a robot from ordinary motion.
 
-    The torque balance is integrated over windows, so no acceleration is needed (thesis 4-21 to 4-24). What is
-    identified depends on the subject:
+    The torque balance is integrated over windows, so no acceleration is needed (thesis 4-21 to 4-24). The subject
+    determines the method:
 
-    - A joint, from one recording or several.
-    - A servo, a joint with `voltage`, from runs without a torque. If each recording has a torque, a motor torque, or a
-      current with the joint's `torque_constant`, it is identified as any other joint;
-      ``jid.load(..., columns={"torque": None})`` leaves such a signal out.
-    - Several joints, from one recording: each alone; then its residual is compared with the motion of the others.
-    - A robot, from one or several recordings of all joints: all together, with the inertia of the links.
+    - A joint: from one recording or several.
+    - A servo, which is a joint with `voltage`: from runs without a torque signal. A servo is identified as any other
+      joint if each recording has a torque, a motor torque, or a current with the joint's `torque_constant`.
+      ``jid.load(..., columns={"torque": None})`` omits such a signal.
+    - Several joints: from one recording, each alone. Then each residual is compared with the motion of the others.
+    - A robot: from one or several recordings of all joints. All joints and the inertia of the links are identified
+      together.
 
     Parameters
     ----------
@@ -111,7 +112,7 @@ def identify(recordings: Any, subject: Any = None, **of_other_subjects: Any) -> 
     Raises
     ------
     InputError
-        Input that cannot be used, or an option that this subject does not have; the error gives the reason.
+        The input cannot be used, or the subject does not have an option. The error gives the reason.
     KeyboardInterrupt
         Ctrl-C; it is raised within 0.1 s.
 

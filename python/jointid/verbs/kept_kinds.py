@@ -1,4 +1,4 @@
-"""Which kind of result a file or a JSON text holds."""
+"""Kind of result in a file or a JSON text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.base.result import KINDS, KeptResult
 from jointid.base.schema import read_json, read_text
 from jointid.base.toml_file import read_toml
 
-# Where the class of each kind is defined; its module is imported when a file holds one.
+# Module and class of each kind; the module is imported when a file holds this kind.
 _HOMES = {
     "estimate": "jointid.estimate.estimate:Estimate",
     "joints": "jointid.joints.result:JointEstimates",
@@ -30,12 +30,12 @@ _REMEDY = "save one with its method save"
 
 
 def class_of_kind(source: Path | str) -> type[KeptResult]:
-    """Return the class of the result that a file (a Path) or a JSON text (a str) holds.
+    """Return the class of the result in a file (a Path) or a JSON text (a str).
 
     Raises
     ------
     InputError
-        No such file, not JSON, or no result that is kept in files; names the file.
+        There is no such file, it is not JSON, or it holds no result of a known kind. The error names the file.
     """
     if isinstance(source, str):
         return _class_of(_kind_of(read_json(source)))
@@ -59,7 +59,7 @@ def _kind_of_file(path: Path) -> str:
 
 
 def _kind_of(document: Any) -> str:
-    """Return the kind that a document names; of designs and studies, which do not, by their keys."""
+    """Return the kind that a document names; designs and studies name none, and are recognized by their keys."""
     if not isinstance(document, Mapping):
         raise InputError("this is no result of jointid", remedy=_REMEDY)
     kind = document.get("kind")

@@ -1,4 +1,4 @@
-"""`load`: what files hold, of a joint, a servo, several joints or a robot."""
+"""`load`: read the recordings in files, of a joint, a servo, several joints or a robot."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class LoadOptions(TypedDict, total=False):
-    """How any file is read."""
+    """Options for any file."""
 
     columns: Mapping[str, str | int | None] | None
     units: Mapping[str, str] | None
@@ -45,14 +45,14 @@ class LoadOptions(TypedDict, total=False):
 
 
 class RunOptions(LoadOptions, total=False):
-    """How a file of one joint is read."""
+    """Options for a file of one joint."""
 
     joint: str | int | None
     gear_ratio: float | None
 
 
 class OneRunOptions(RunOptions, total=False):
-    """How a file of one run is read."""
+    """Options for a file of one run."""
 
     where: Mapping[str, float | str] | None
     drop_copies: bool
@@ -60,7 +60,7 @@ class OneRunOptions(RunOptions, total=False):
 
 
 class RobotFileOptions(LoadOptions, total=False):
-    """How a file of several joints is read."""
+    """Options for a file of several joints."""
 
     gear_ratio: Sequence[float] | FloatArray | float | None
     where: Mapping[str, float | str] | None
@@ -119,90 +119,87 @@ def load(
 def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     """Return the recording in a file: of one joint, of several joints, or several runs.
 
-    Headers are a signal's name with its unit, in upper or lower case: ``position_rad``,
-    ``velocity [deg/s]``, ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q),
-    velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
-    sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
-    goal_position), link_position, temperature, motor_torque and current (motor_current), also with words around
-    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. A
-    command is never read as a measurement. A signal without a unit is assumed to be in SI units and
-    listed in ``metadata["assumed_units"]``; stamps whose size or steps show another unit are read in it
-    (``metadata["recognised_units"]``). A column that has a signal's name and is not needed, but cannot be read,
-    is left out: ``metadata["left_out"]`` says why. `docs/logs.md` has the rules.
+    Headers are a signal's name with its unit, in upper or lower case: ``position_rad``, ``velocity [deg/s]``,
+    ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q), velocity (vel, speed), torque (tau,
+    force, motor_force, motor_torque_output, output_torque), sensor (sensor_raw, torque_sensor), reference
+    (position_ref, position_reference, goal_position), link_position, temperature, motor_torque and current
+    (motor_current). Other words around a name are allowed, as controllers write them: ``timestamp``, ``actual_q_0``,
+    ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. A command is never read as a measurement. A signal without a unit is
+    assumed to be in SI units and listed in ``metadata["assumed_units"]``. If the size or the steps of time stamps show
+    another unit, they are read in it (``metadata["recognised_units"]``). An unreadable column of an optional signal is
+    omitted; ``metadata["left_out"]`` gives the reason. `docs/logs.md` has the rules.
 
     Parameters
     ----------
     path : path-like, open file, or list of these
-        A file's name, or a file or buffer that is open for reading (``io.StringIO``, ``io.BytesIO``), whose first
-        bytes then show the format if it has no name.
-        A text file (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or a ``.npz`` file, from any
-        program or from `Recording.save`; a
-        MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
-        ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
-        (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``; a ``.json``
-        file with a list of records, or of WPILib's SysId, and a ``.wpilog`` (the extra ``wpilib``); the folder of a
-        LeRobot dataset, version 2 or 3, or one of its ``.parquet`` files (needs pyarrow).
-        The cells of a text are separated by commas, semicolons, tabs or blanks; where commas do not separate,
-        decimal commas are read as well. Exports of TwinCAT Scope are read, too. Several files, and a folder of them,
-        are several runs.
+        Name of a file, or a file or buffer that is open for reading (``io.StringIO``, ``io.BytesIO``). If a buffer has
+        no name, its first bytes show the format.
+
+        Formats: text (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or ``.npz``, from any program or
+        from `Recording.save`; MATLAB ``.mat`` (vectors, also in a struct, by their names; version 7.3 needs h5py);
+        ``.parquet`` (needs pyarrow); HDF5, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages (the extra
+        ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``; ``.json`` with a list of
+        records, or of WPILib's SysId, and ``.wpilog`` (the extra ``wpilib``); the folder of a LeRobot dataset, version
+        2 or 3, or one of its ``.parquet`` files (needs pyarrow).
+
+        Commas, semicolons, tabs or blanks separate the cells of a text. If commas do not separate, decimal commas are
+        also read. Exports of TwinCAT Scope are also read. Several files, or a folder of them, are several runs.
     subject : Joint or Robot, optional
-        The joint or robot of the recording. A joint's gear ratio converts columns of the motor; for a servo, the
-        columns that its `voltage` names are kept as `extra`; for a robot, all joints are read. Default: not known.
+        The joint or robot of the recording. The gear ratio of a joint converts columns of the motor. For a servo, the
+        columns that its `voltage` names are kept as `extra`. For a robot, all joints are read. Default: not known.
     joint : str or int, optional
         The joint to read from a file with several, by its number or name in the headers:
         ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,
-        ``elbow_position``. Columns without a joint, such as time, belong to all. `docs/several_joints.md` has the
-        rules. Default: the only one.
+        ``elbow_position``. Columns without a joint, such as time, belong to all joints. `docs/several_joints.md` has
+        the rules. Default: the only joint.
     joints : sequence of str or int, or "all", optional
         The joints to read from a file with several, on one clock: a `RobotRecording`. Default: one joint.
     by : str or int, optional
         Header or 0-based number of the column that numbers the runs of a file: rows with the same value are one run,
         named ``"NAME BY=VALUE"``. Default: the file holds one run.
     columns : mapping of str to str, int or None, optional
-        Signal → header or 0-based number of its column; None leaves the signal out (a velocity
-        left out is derived from position). ``{joint}`` in a header stands for the joint:
-        ``{"position": "enc_{joint}_rad"}``. ``{"position": "1:6"}`` are the columns of six joints, the first and the
-        last by their 0-based numbers. Default: by the headers, also for signals not mapped.
+        Signal → header or 0-based number of its column. None omits the signal; an omitted velocity is derived from
+        position. ``{joint}`` in a header is replaced by the joint: ``{"position": "enc_{joint}_rad"}``.
+        ``{"position": "1:6"}`` means the columns of six joints: the 0-based numbers of the first and the last. Default:
+        by the headers, also for signals that are not mapped.
     units : mapping of str to str, optional
-        Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
-        Default: the header's.
+        Signal → unit, e.g. ``{"position": "deg"}``. It overrides the header. Default: the header's unit.
     scale : mapping of str to float, optional
-        Signal → factor from file units to SI, whatever the header says: for encoder counts
-        (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
-        Saved in ``metadata["scale"]``. Default: the factor of the unit.
+        Signal → factor from file units to SI units. It overrides the header. Use it for encoder counts
+        (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, or a sign. Saved in
+        ``metadata["scale"]``. Default: the factor of the unit.
     extra : collection of str or mapping of str to str or int, optional
-        Columns to keep as `Recording.extra`: their headers, which are then the names, or name →
-        header or 0-based number. A known unit at the header's end (``_rad_s``, ``[kNm]``, ``_kgm2``)
-        is converted to SI; without one, values stay as they are. Every cell must be a finite
-        number. Default: none, but those of a saved recording.
+        Columns to keep as `Recording.extra`: their headers, which become the names, or name → header or 0-based number.
+        A known unit at the end of a header (``_rad_s``, ``[kNm]``, ``_kgm2``) is converted to SI; values without a unit
+        do not change. Every cell must be a finite number. Default: none; for a saved recording, the columns that it
+        has.
     gear_ratio : float, or sequence of float, optional
         Motor angle per joint angle, negative if they turn in opposite directions. Columns of the motor
         (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. For several joints, one
-        per joint. Default: that of the subject; without one, columns of the motor are not converted, and
+        value per joint. Default: that of the subject. Without a gear ratio, columns of the motor are not converted, and
         ``metadata["side"]`` is "motor".
     side : mapping of str to str, optional
-        Signal → "motor" or "joint", if a position, velocity, reference or torque is on the other side of the gear
-        than its header says: ``{"velocity": "motor"}`` with the joint's position and `gear_ratio`.
-        Default: by the headers of a file that names its joints, otherwise the joint's.
+        Signal → "motor" or "joint". Use it if a position, velocity, reference or torque is on the other side of the
+        gear than its header shows: ``{"velocity": "motor"}`` with the joint's position and `gear_ratio`. Default: by
+        the headers of a file that names its joints, otherwise the joint's.
     sample_period : float, optional
-        Time between rows [s], for a constant rate; the time stamps of the file are then ignored.
-        Default: by the file's time column.
+        Time between rows [s], if the rate is constant; time stamps in the file are then ignored. Default: by the time
+        column.
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
-        Default: from the units: ``"prismatic"`` for metres or newtons, otherwise ``"revolute"``.
+        Kind of the joint. Default: from the units: ``"prismatic"`` for metres or newtons, otherwise ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
-        How the torque varies between samples: held (zero-order hold) or linearly.
-        Default: as saved, otherwise not known.
+        Course of the torque between samples: held (zero-order hold) or linear. Default: as saved, otherwise not known.
     drop_copies : bool
-        Whether to leave out rows that repeat all measured signals of the previous row. A logger that is faster than
-        the drive's bus makes such rows. A standstill of more than ten rows stays. Default False.
+        Whether to omit rows that repeat all measured signals of the previous row. A logger that is faster than the bus
+        of the drive writes such rows. A standstill of more than ten rows is kept. Default False.
     drop_invalid : bool
-        Whether to leave out single damaged rows, at most a tenth of all: a value is missing, not a number, not finite
-        or above 1e15. ``metadata["dropped_rows"]`` has their number; longer stretches become gaps. For several joints,
-        a row that is damaged in one is left out in all. Default False.
+        Whether to omit single damaged rows, at most a tenth of all. A row is damaged if a value is missing, not a
+        number, not finite or above 1e15. ``metadata["dropped_rows"]`` contains their number. Longer stretches become
+        gaps. For several joints, a row that is damaged in one joint is omitted in all. Default False.
     name : str, optional
-        Default: as saved, otherwise the file's name without its ending.
+        Name of the recording. Default: as saved, otherwise the file's name without its ending.
     topic : str, optional
         File of messages: the topic of the recording. Default: the only one with joints.
     group : str, optional
@@ -221,8 +218,8 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
     Raises
     ------
     InputError
-        The file cannot be read, or its columns are not a recording. The error names the file, the
-        line or the header, and what is expected. Or an option does not belong to what is read.
+        The file cannot be read, its columns are not a recording, or an option does not apply. The error names the file,
+        the line or the header, and the expected content.
 
     Examples
     --------
@@ -249,7 +246,7 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
 
 
 def _reader(subject: object, options: dict[str, Any]) -> Callable[[Any], Any]:
-    """Return what reads one file of a subject."""
+    """Return the reader for a file of this subject."""
     joints = options.pop("joints", None)
     if is_robot(subject) or joints is not None:
         if isinstance(subject, Joint):
@@ -280,7 +277,7 @@ def _reader(subject: object, options: dict[str, Any]) -> Callable[[Any], Any]:
 def _of_joint(
     path: Any, function: Callable[..., Any], joint: Joint, options: dict[str, Any]
 ) -> Any:
-    """Read what a joint's file holds: a servo's own columns, too, and columns of the motor with the gear ratio."""
+    """Read a joint's file, including the columns of a servo, and convert columns of the motor with the gear ratio."""
     if joint.voltage is not None:
         parts = {name: options.get(name) for name in ("topic", "group", "unpacked")}
         stated = named_extra(options.get("extra"))
@@ -299,7 +296,7 @@ def _of_joint(
 
 
 def _said(function: Callable[..., Any], source: object, *arguments: Any, **options: Any) -> Any:
-    """Call what reads a source; a file of ours that is no recording is named."""
+    """Call the reader of a source; name the type of a jointid file that is not a recording."""
     try:
         return function(*arguments, **options)
     except InputError:
@@ -314,7 +311,7 @@ def _said(function: Callable[..., Any], source: object, *arguments: Any, **optio
 
 
 def _of_ours(path: Path) -> str:
-    """What a file holds that jointid wrote and that is no recording; empty for any other file."""
+    """Return the content of a jointid file that is not a recording; empty for any other file."""
     try:
         return f"a result ({class_of_kind(path)._KIND})"
     except InputError:

@@ -1,4 +1,4 @@
-"""Which columns of a log are the extra signals of a servo."""
+"""Columns of a log with the extra signals of a servo."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from jointid.joint.voltage_drive import SIGNALS, VoltageDrive
 def servo_columns(
     path: Path, drive: VoltageDrive, stated: Mapping[str, str | int], **parts: Any
 ) -> dict[str, str | int]:
-    """Return the column of each extra signal: as stated, as the joint has it, or of its own name.
+    """Return the column of each extra signal: from the call, from the joint, or with the signal's name.
 
     Parameters
     ----------
     **parts
-        `topic`, `group` and `unpacked` of `load`.
+        Options `topic`, `group` and `unpacked` of `load`.
     """
     from jointid.recording.headers import parsed
     from jointid.recording.readers.loading import table_of

@@ -1,4 +1,4 @@
-"""What a verb shows to a reader: the options of all subjects, in signature and docstring."""
+"""Signatures and docstrings of verbs with the options of all subjects."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ Verb = TypeVar("Verb", bound=Callable[..., Any])
 def shows(
     function: Callable[..., Any], /, *, others: Mapping[str, object], **records: type
 ) -> Callable[[Verb], Verb]:
-    """Decorate a verb: its signature has the keywords of all subjects, its docstring the options of records.
+    """Decorate a verb: its signature gets the keywords of all subjects, its docstring the options of records.
 
     Parameters
     ----------
     function : callable
-        What the verb does for a joint: its keywords stand first.
+        Function of the verb for a joint. Its keywords come first.
     others : mapping of str to object
         Further keywords of other subjects, with their defaults.
     **records : type
-        Records of options; each stands in the place of the docstring's line ``**NAME``.
+        Records of options; each replaces the line ``**NAME`` in the docstring.
     """
 
     def decorate(verb: Verb) -> Verb:
@@ -54,6 +54,6 @@ def shows(
 
 
 def _plain(parameter: inspect.Parameter) -> inspect.Parameter:
-    """A parameter without an annotation that says nothing: the types of each subject are in the overloads."""
+    """Return a parameter without a meaningless annotation; the overloads have the types of each subject."""
     plain = parameter.annotation in (Any, "Any")
     return parameter.replace(annotation=parameter.empty) if plain else parameter

@@ -78,8 +78,8 @@ def simulate(
 ) -> Any:
     """Simulate a joint that a controller moves along a trajectory, or a servo or a robot along its logs.
 
-    Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command
-    is held over each control period. The same arguments give the same bits.
+    Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command is held over each
+    control period. The same arguments give bit-identical results.
 
     With `recordings`, the closed loop of a servo is simulated from their initial states and compared with their
     positions. Only the reference, the supply and the signal "driven" are taken from the log; without a known position
@@ -90,35 +90,35 @@ def simulate(
     Parameters
     ----------
     subject : Joint, Estimate, ServoEstimate or RobotEstimate
-        With a value for each parameter of its model: see `Joint.with_parameters`. Its link, if it
-        has a sensor and ``gravity="none"``, hangs behind the sensor; a link without inertia is a
-        point mass. A servo has values of torque constant, resistance, inertia and friction.
+        The subject needs a value for each parameter of its model: see `Joint.with_parameters`. If it has a sensor and
+        ``gravity="none"``, its link is behind the sensor. A link without inertia is a point mass. A servo has values of
+        torque constant, resistance, inertia and friction.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
-        Not for a servo along its logs; the same holds for all parameters below except `step` and `threads`.
+        Not used for a servo along its logs; this also applies to all parameters below except `step` and `threads`.
     trajectory : Trajectory
-        For `OpenLoop`, the torque.
+        Trajectory of the position; for `OpenLoop`, of the torque.
     duration : float, optional
-        [s]. Default: the trajectory's.
+        Duration [s]. Default: the trajectory's.
     control_period : float
-        Between commands [s]. Default 0.001.
+        Time between commands [s]. Default 0.001.
     sample_period : float, optional
-        Between recorded samples [s], a whole number of control periods. Default: one. The recorded
-        torque is then the mean of the commands until the next sample.
+        Time between recorded samples [s], a whole number of control periods. Default: one. The recorded torque is then
+        the mean of the commands until the next sample.
     integration_step : float, optional
-        [s]; a whole number of them is a control period. Default: half of it.
+        Integration step [s]; the control period is a whole number of steps. Default: half of the control period.
     sensors : Sensors, optional
-        Default: exact signals.
+        Sensors of the joint. Default: exact signals.
     payload : Link or float
         A payload on the joint in addition to its own link, behind the sensor; a number is a constant
         torque [N·m] against positive motion. Default 0.
     bristle : Bristle, optional
-        Makes friction dynamic (Dahl, LuGre). Default: static.
+        Bristle that makes friction dynamic (Dahl, LuGre). Default: static friction.
     position, velocity : float, optional
-        At the start [rad], [rad/s]. Default: the trajectory's position, at rest.
+        Initial state [rad], [rad/s]. Default: the trajectory's position, at rest.
     seed : int
-        Of the sensors' noise. Default 0.
+        Seed of the sensors' noise. Default 0.
     name : str
-        Of the recording. Default ``""``.
+        Name of the recording. Default ``""``.
 
     Other Parameters
     ----------------
@@ -135,17 +135,17 @@ def simulate(
     Returns
     -------
     SimulatedRecording or Rollout
-        Signals as the sensors measured them, the held torque, the reference; `truth` has the true
-        parameters, `truth.signals` the true signals. Unless the sensors show an exact velocity,
-        it is derived from the position, and the velocity that the controller used is in
-        ``truth.signals["control_velocity"]``. ``metadata["saturations"]`` counts the control
-        periods in which the torque limit cut the command. A `Rollout` is of a servo or a robot along its logs.
+        Signals as measured by the sensors, the held torque, and the reference. `truth` has the true parameters, and
+        `truth.signals` the true signals. If the sensors do not measure an exact velocity, it is derived from the
+        position; the velocity that the controller used is in ``truth.signals["control_velocity"]``.
+        ``metadata["saturations"]`` counts the control periods in which the torque limit cut the command. A `Rollout` is
+        the result for a servo or a robot along its logs.
 
     Raises
     ------
     InputError
-        An argument that cannot be used, a term of the model that a simulation does not have, a loop
-        that is not stable, a signal that is missing, or another subject than a joint or a servo.
+        An argument cannot be used, the simulation does not support a term of the model, the loop is unstable, a signal
+        is missing, or the subject is not supported.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
 

@@ -1,4 +1,4 @@
-"""Which subject an act has, and what it refuses of it."""
+"""Subject of a verb's call, and refusal of arguments that do not fit it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SEVERAL = 'jid.load(path, joints="all") reads one'
 
 
 def subject_of(verb: str, recordings: object, subject: object) -> Subject:
-    """Return the kind of subject that recordings are of; refuse what does not belong together."""
+    """Return the kind of subject of recordings; refuse combinations that do not fit."""
     if is_robot(subject):
         if not _wide(recordings):
             raise InputError(
@@ -56,7 +56,7 @@ def subject_of(verb: str, recordings: object, subject: object) -> Subject:
 
 
 def is_robot(subject: object) -> bool:
-    """Return whether it is a robot; the room of robots is loaded for what may be one."""
+    """Return whether the subject is a robot; the robot modules are imported only if it may be one."""
     if subject is None or isinstance(subject, Joint):
         return False
     from jointid.robot.links.robot import Robot
@@ -68,7 +68,7 @@ OtherKind = Literal["robot", "robot estimate", "servo estimate", "joint estimate
 
 
 def other_kind(subject: object) -> OtherKind | None:
-    """Return which of what is of no single joint it is; their rooms are loaded for what is no joint."""
+    """Return the kind of a subject that is not a single joint; other modules are imported only for these."""
     if isinstance(subject, Joint):
         return None
     from jointid.joints.result import JointEstimates
@@ -86,7 +86,7 @@ def other_kind(subject: object) -> OtherKind | None:
 
 
 def refuse_result(verb: str, subject: object) -> None:
-    """Refuse a result in the place of what it is of."""
+    """Refuse a result as an argument in place of its joint or robot."""
     if not isinstance(subject, Result):
         return
     remedies = [f"give its .{part}" for part in ("joint", "robot") if hasattr(subject, part)]
@@ -104,7 +104,7 @@ def listed(recordings: Any) -> Any:
 
 
 def second(subject: Any, options: dict[str, Any], *names: str) -> Any:
-    """Return the subject, also under a name that it had before; that name is then no option."""
+    """Return the subject, also from a former keyword; that keyword is then removed from the options."""
     for name in names:
         if name in options:
             if subject is not None:
@@ -114,13 +114,13 @@ def second(subject: Any, options: dict[str, Any], *names: str) -> Any:
 
 
 def ask(verb: str, word: str, function: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
-    """Call a function of a subject; refuse an option that it does not have, in the verb's words."""
+    """Call a function for a subject; refuse an option that it does not have, with the verb's name in the message."""
     check_options(verb, word, options, keywords(function)[len(arguments) :])
     return function(*arguments, **options)
 
 
 def keywords(function: Callable[..., Any]) -> list[str]:
-    """Return the names of what a function takes, in order."""
+    """Return the names of a function's keywords, in order."""
     import inspect
 
     parameters = inspect.signature(function).parameters.values()
@@ -145,13 +145,13 @@ def _no_option(verb: str, word: str, name: str, value: object, known: Sequence[s
 
 
 def _wide(recordings: object) -> bool:
-    """Whether they are of several joints on one clock."""
+    """Return whether recordings contain several joints on one clock."""
     several = recordings if isinstance(recordings, list | tuple) else (recordings,)
     return any(isinstance(each, RobotRecording) for each in several)
 
 
 def _torque_is_known(recordings: object, joint: Joint) -> bool:
-    """Whether all recordings have the drive's torque, or the current of a motor with a known constant."""
+    """Return whether all recordings have the drive's torque, or the current of a motor with a known constant."""
     runs = recordings if isinstance(recordings, list | tuple) else (recordings,)
     return all(
         isinstance(run, Recording)

@@ -1,1 +1,1 @@
-"""Checks of data and fit, each in a file of its own; `registry.py` lists them."""
+"""Checks of data and fit, one file for each; `registry.py` lists them."""

@@ -1,4 +1,4 @@
-"""Signals whose unit no header states."""
+"""Signals without a unit in their header."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -18,7 +18,7 @@ ASSUMED_UNITS = FindingType(
     meaning="a column has no unit, so SI is assumed",
     advice="state the unit when loading, or in the header (as in `position_rad`, `torque_Nm`)",
 )
-_AGREES = 0.01  # of a velocity and the position's rate
+_AGREES = 0.01  # relative difference of a velocity and the position's rate
 
 
 _IN_HEADER = Action(
@@ -54,14 +54,14 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
 
 
 def _shows_seconds(inspected: Inspected, assumed: Sequence[str]) -> bool:
-    """Whether position and velocity in stated units agree: then the time between them is in seconds."""
+    """Return whether position and velocity with stated units agree. If so, the time is in seconds."""
     found = inspected.found.agreement
     stated = not {"position", "velocity"} & set(assumed)
     return stated and found is not None and abs(found.scale - 1.0) < _AGREES
 
 
 def _sizes(recording: Recording, signals: Sequence[str]) -> list[str]:
-    """How large the torque or current is then: a reader sees whether that can be."""
+    """Return the largest torque or current in the assumed unit, so that a reader sees whether it is possible."""
     return [
         f"{name} is then up to {float(np.abs(getattr(recording, name)).max()):.4g} {recording.unit(name)}"
         for name in DRIVE
@@ -70,7 +70,7 @@ def _sizes(recording: Recording, signals: Sequence[str]) -> list[str]:
 
 
 def _all_of(names: Sequence[str]) -> str:
-    """Names that a title has no room for."""
+    """Return the names that do not fit into a title."""
     return "" if listed(names, _ROOM) == ", ".join(names) else f"in all: {', '.join(names)}"
 
 

@@ -1,4 +1,4 @@
-"""Values that ended on a bound."""
+"""Values that ended at a bound."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AT_BOUND = FindingType(
     advice="widen the bound, or check units, signs and gear ratio",
 )
 
-_EXPLAINED = 0.95  # where the model is poor, a wider bound lets it go further astray
+_EXPLAINED = 0.95  # in a poor model, a wider bound would only make the value worse
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -30,7 +30,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if not ended:
         return
     rich = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
-    reported = (*rich, *without_friction(evidence))  # a friction of 0 is then a value
+    # these have their own finding; a friction of 0 is then a value
+    reported = (*rich, *without_friction(evidence))
     for p in ended:
         may_be = distance_from_bound(p)
         torques, share = evidence.torques, None
@@ -56,7 +57,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         advice = [Action("inspect", text="units, signs and gear ratio")]
         explained = evidence.residuals.r_squared >= _EXPLAINED
         if p.name not in evidence.bounds_from_data and limit != 0.0 and explained:
-            # NOTE: None takes the bound away, and a wide one comes from the data.
+            # NOTE: None removes the bound; a wide one then comes from the data.
             wider = {p.name: {p.at_bound: None}}
             advice.insert(0, Action("call", {"parameters": wider}, text="a bound from the data"))
         yield AT_BOUND.finding(

@@ -1,4 +1,4 @@
-"""Causes of a misfit by name: what the model lacks, how much it explains, and what it moves."""
+"""Named causes of a residual: the missing effect, its share of the residual, and the values that it changes."""
 
 from __future__ import annotations
 
@@ -13,11 +13,10 @@ from jointid.identification.warnings.ripple import RIPPLE
 from jointid.identification.warnings.torque_balance import GROSS, WRONG_SCALE, scaled_with_torque
 from jointid.identification.warnings.undetermined import listed, wide, with_partners
 
-_LITTLE = 0.1  # of the squares
-_APART = 0.1  # of a value that one recording moves: it holds for none of them
-_NOTED = (
-    0.3  # share of the misfit that a harmless cause explains; of less `estimate.causes()` speaks
-)
+_LITTLE = 0.1  # of the sum of squares
+# relative change of a value by a single recording: the value then applies to no recording
+_APART = 0.1
+_NOTED = 0.3  # share of the residual that a harmless cause explains; causes with less are only in `estimate.causes()`
 
 _OWN = {each.code: each for each in (RIPPLE, WRONG_SCALE)}
 TYPES = {family.name: family.finding_type for family in FAMILIES} | _OWN
@@ -26,11 +25,11 @@ TYPES = {family.name: family.finding_type for family in FAMILIES} | _OWN
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.causes is None:
         return
-    # Its own check says more.
+    # This cause has its own check with more detail.
     causes = [each for each in evidence.causes.found if not _is_known_delay(each, evidence)]
     uncertain = wide(evidence)
     for number, cause in enumerate(causes):
-        # The misfit makes values uncertain beside those that a shift of first order shows.
+        # The residual also makes values uncertain that the first-order shift does not show.
         names = (*cause.relative, *(uncertain if number == 0 else ()))
         if cause.name == "wrong_scale":
             names = (*names, *scaled_with_torque(evidence))
@@ -46,7 +45,7 @@ def _is_known_delay(cause: Cause, evidence: Evidence) -> bool:
 
 
 def _missed(evidence: Evidence) -> bool:
-    """Whether the mean of what was measured explains more of it than the model does, by far."""
+    """Return whether the model explains far less than the mean of the measurement."""
     left = evidence.residuals
     return left.r_squared < 0.0 and left.relative**2 > _LITTLE
 
@@ -70,7 +69,7 @@ def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Findi
 
 
 def _is_gross(cause: Cause, missed: bool) -> bool:
-    """Whether a scale is so wrong that every value is, or the values are those of no recording."""
+    """Return whether a scale is so wrong that every value is wrong, or the values apply to no recording."""
     if cause.name == "other_run":
         return max(map(abs, cause.relative.values()), default=0.0) > _APART
     if cause.name != "wrong_scale":
@@ -80,7 +79,7 @@ def _is_gross(cause: Cause, missed: bool) -> bool:
 
 
 def _note(cause: Cause) -> Finding:
-    """Of a cause that is there and does no harm."""
+    """Return the finding of a cause that is harmless."""
     return TYPES[cause.name].finding(
         cause.title,
         details=cause.details,

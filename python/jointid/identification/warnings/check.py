@@ -1,4 +1,4 @@
-"""What a check is: a function that yields findings of its types."""
+"""Description of a check: a function that yields findings of its types."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Check:
     Attributes
     ----------
     find : callable
-        Takes the `Evidence`, yields findings; yields nothing when all is well.
+        Takes the `Evidence` and yields findings; none if there is no fault.
     types : tuple of FindingType
-        What it can yield.
+        Types of its findings.
     in_recording : callable
-        Takes the `Evidence` and one of its recordings as `Inspected`, yields findings about that one.
+        Takes the `Evidence` and one of its recordings as `Inspected`, and yields findings about this recording.
     """
 
     find: Callable[[Evidence], Iterator[Finding]] | None
@@ -32,7 +32,7 @@ class Check:
     in_recording: Callable[[Evidence, Inspected], Iterator[Finding]] | None = None
 
     def findings(self, evidence: Evidence) -> list[Finding]:
-        """Return all that it finds; what it says of several recordings alike is one finding."""
+        """Return all findings of the check; the same finding in several recordings is returned once."""
         found: list[Finding] = []
         if self.in_recording is not None:
             single = [

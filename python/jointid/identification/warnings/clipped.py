@@ -1,4 +1,4 @@
-"""A torque or a sensor that rests on its largest value."""
+"""A torque or sensor that stays at its largest value."""
 
 from __future__ import annotations
 
@@ -26,44 +26,44 @@ SENSOR_CLIPPED = FindingType(
     meaning="the sensor is at its limit in more than 1 % of the samples, and reaches it more than once",
     advice=f"widen the sensor's range, or load the link less{DESIGNED}",
 )
-_CLIPPED = 0.01  # share of the samples on a limit
+_CLIPPED = 0.01  # share of the samples at a limit
 _MUCH, _MISSED = (
     0.05,
     0.03,
-)  # of the samples, and of the torque: the record was clipped, not the torque
+)  # of the samples, and of the torque: above both, only the log was clipped, not the torque
 _INSIDE = 0.9  # of the sensor's range
-_FEWEST = 3  # samples: the largest of a short log is one in a hundred
-_PASSAGES = 2  # in all recordings together
-_LASTING = 1.5  # samples a passage: equal peaks of a motion that repeats itself are single samples
-_HEAPED = 0.3  # of the samples near a limit lie on it; a smooth peak has but one there
-_STEP = 0.9  # of the samples: so long rests what is commanded, not what is cut off
+_FEWEST = 3  # samples: in a short log the largest sample alone exceeds one percent
+_PASSAGES = 2  # number in all recordings together
+_LASTING = 1.5  # samples per passage: equal peaks of a repeated motion are single samples
+_HEAPED = 0.3  # share of the samples near a limit that are at the limit; a smooth peak has only one
+_STEP = 0.9  # of the samples: with more at the limit, the signal is a command and not clipped
 _SAME = 1e-6  # of the value
-_BEYOND = 1e-3  # of the value: another recording goes further, so it is no limit
+_BEYOND = 1e-3  # of the value: if another recording exceeds it by this, it is no limit
 
 
 def _on_a_limit(evidence: Evidence, inspected: Inspected, name: str) -> float:
-    """Share of the samples that lie on a limit which cuts the signal off."""
+    """Return the share of the samples at a limit that clips the signal."""
     counts, samples = inspected.counts(name), len(inspected.recording)
     if counts.lowest == counts.highest:
         return 0.0
     share = 0.0
     for limit, value in ((counts.upper, counts.highest), (counts.lower, counts.lowest)):
-        # At rest a clean signal stays where it is, and that may be its largest value.
+        # At rest a clean signal is constant, and this may be its largest value.
         rests = (
             limit.there > _HEAPED * limit.near
             if counts.fine
             else limit.moving > 3 * (limit.near - limit.there)
         )
-        # The magnitude of a torque that has lost its sign rests on 0 where it changes.
+        # The magnitude of a torque stays at 0 where its sign changes.
         if rests and value and limit.moving >= _FEWEST:
             share += limit.moving / samples if _is_reached_again(evidence, name, value) else 0.0
-    # A signal of few levels (a square wave) rests on its limits by nature, as a step does.
+    # A signal with few levels (a square wave) stays at its limits, like a step.
     changing = counts.changes > 0.3 * (1.0 - share) * (samples - 1)
     return share if changing and share < _STEP else 0.0
 
 
 def _is_reached_again(evidence: Evidence, name: str, value: float) -> bool:
-    """Whether a signal comes back to an extreme value in one recording or another, and goes beyond it in none."""
+    """Return whether a signal returns to an extreme value in any recording, and exceeds it in none."""
     passages = samples = 0
     for inspected in evidence.inspections:
         if name not in inspected.channels:
@@ -79,7 +79,7 @@ def _is_reached_again(evidence: Evidence, name: str, value: float) -> bool:
 
 
 def _sensed(evidence: Evidence, counts: _core.SignalFacts) -> float | None:
-    """The torque at the sensor just inside its range [N·m]; None without a gain."""
+    """Return the torque at the sensor just inside its range [N·m]; None without a gain."""
     found = evidence.parameters
     if "sensor_gain" not in found:
         return None
@@ -100,7 +100,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         if name == "sensor":
             yield SENSOR_CLIPPED.finding(
                 f"the sensor is at its limit in {percent(share)} of the samples",
-                # A design cannot always keep the sensor's range, so it does not stand first.
+                # This advice is not the first, because a design cannot always keep the sensor's range.
                 Action("inspect", text="the sensor's range: widen it, or load the link less"),
                 other_motion(
                     evidence,

@@ -1,4 +1,4 @@
-"""A sensor or torque that never changes, or freezes for a while as the joint moves."""
+"""A sensor or torque that never changes, or is constant for a while during motion."""
 
 from __future__ import annotations
 

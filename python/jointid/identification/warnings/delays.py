@@ -1,4 +1,4 @@
-"""Signals that are late against the position."""
+"""Signals with a delay against the position."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ DELAY_REMOVED = FindingType(
     "shift moved the named parameters by more than 5 % or two standard errors",
     advice="nothing; a shift of 0 keeps the signal unchanged",
 )
-# A torque does not come before its motion.
+# Explanation of an early torque; a torque does not come before its motion.
 _EARLY = "the position is late or coarse, the torque early, or the gear elastic"
 _WHERE = "the position's filter and resolution, both clocks, and the backlash"
 _FILTERS = "the filters and clocks of position, velocity and torque"
@@ -32,8 +32,8 @@ _UNSHIFTED = Action("inspect", text="the stated shift, and remove it")
 _COARSE = 0.005  # of a delay: a smaller error is not shown
 _NORMAL = 1.96  # standard errors of a 95 % interval
 _SHARP = 3e-4  # [s]
-_NONE = 3.0  # standard errors, below which there is no delay to shift by
-_HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
+_NONE = 3.0  # standard errors: a smaller delay is not shifted
+_HALF = 0.2  # of a sample period: a torque early by half a period, within this, is probably held
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -47,7 +47,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
-    """What was not taken away, and why; a note where it does no harm."""
+    """Yield the finding of a delay that was not removed, with the reason; an info if it is harmless."""
     described, measured = _described(delay, evidence), _measured(delay, evidence)
     concerned = _concerned(delay, evidence)
     early = delay.signal == "torque" and _size(delay) < 0.0
@@ -59,7 +59,7 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
         if cause.harmful:
             concerned = tuple(dict.fromkeys((*concerned, *cause.relative)))
     if not delay.fits:
-        # A delay of one signal alone would make the balance worse: others are as late.
+        # Without the delay of this signal alone the balance would be worse, because others have the same delay.
         alike = "other signals may have the same delay or filter"
         yield SIGNAL_LAG.finding(
             described,
@@ -101,7 +101,7 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
 
 
 def _removed(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
-    """What was taken away, and what it would have done."""
+    """Yield the finding of a delay that was removed, with its effect on the values."""
     cause = evidence.cause_of("delay", delay.signal, 0.0, delay.applied, removed=True)
     measured, concerned = _measured(delay, evidence), _concerned(delay, evidence)
     did = ""
@@ -137,7 +137,7 @@ def _clauses(*texts: str) -> str:
 
 
 def _interval(delay: Delay) -> str:
-    """Where the number is not sharp, what it may be."""
+    """Return the 95 % interval if the delay is uncertain."""
     reach = _NORMAL * delay.stderr
     if reach < _SHARP:
         return ""
@@ -146,12 +146,12 @@ def _interval(delay: Delay) -> str:
 
 
 def _size(delay: Delay) -> float:
-    """What is left of a delay, or what was taken away where nothing is [s]."""
+    """Return the delay that is left, or the removed delay if none is left [s]."""
     return delay.left or delay.value
 
 
 def _instead(delay: Delay, evidence: Evidence) -> tuple[Action, ...]:
-    """A torque that seems half a sample early is a command that is held."""
+    """Return advice for a torque that seems half a sample early: it is probably a held command."""
     early = -delay.value / _period(evidence)
     held = evidence.problem.hold(0) == "zoh"
     if delay.signal != "torque" or held or abs(early - 0.5) > _HALF:

@@ -1,4 +1,4 @@
-"""All findings about an estimate: the results of all checks, without those that another finding explains."""
+"""All findings about an estimate: the results of all checks, without consequences of other findings."""
 
 from dataclasses import replace
 
@@ -12,16 +12,16 @@ _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
 
 
 def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
-    """All findings, the most severe first; those of one severity in the order of the checks."""
+    """Return all findings, the most severe first; those of one severity in the order of the checks."""
     kept = []
     for check in registry.CHECKS:
         raised = check.findings(evidence)
         kept += raised
         if any(found.severity == "blocking" for found in raised):
-            # A signal that cannot be right explains the misfit; what else does is no cause.
+            # An impossible signal explains the residual, so other causes are not reported.
             evidence = replace(evidence, causes=None)
     units = [found for found in kept if found.code == "implausible_units"]
-    # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
+    # If degrees are read as radians, the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     other = _another_cause(evidence)
     spurious = [found for found in kept if found.code == "ripple" and (units or other)]
     again = [each for place, each in enumerate(units) if _again_of(each, units[:place])]
@@ -29,7 +29,7 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     left = [found for place, found in enumerate(left) if not _again(found, left[:place])]
     if any(
         found.code == "hardly_moves" for found in left
-    ):  # no motion, no answer: what concerns the values follows from it
+    ):  # without motion, findings about values are only consequences
         left = [found for found in left if found.code in _OF_THE_FILE]
     if any(found.severity == "blocking" for found in left):
         asked = {
@@ -40,31 +40,31 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
 
 
 def _another_cause(evidence: Evidence) -> bool:
-    """Whether most of the misfit has another cause: events have all multiples of the motor's angle."""
+    """Return whether most of the residual has another cause: events contain all multiples of the motor's angle."""
     causes = evidence.causes.found if evidence.causes is not None else ()
     return bool(causes) and causes[0].share > 0.5 and all(each.name != "ripple" for each in causes)
 
 
 def _again(found: Finding, before: list[Finding]) -> bool:
-    """Whether a check of its own has already raised what the attribution names, too."""
+    """Return whether a separate check has already found a cause that the attribution also names."""
     return "share" in found.evidence and found.code in {each.code for each in before}
 
 
 def _again_of(found: Finding, before: list[Finding]) -> bool:
-    """Whether other findings are about all of its recordings, or all recordings, already."""
+    """Return whether other findings already cover all recordings of this finding, or all recordings."""
     named = {name for each in before for name in each.recordings}
     return bool(before) and set(found.recordings) <= named
 
 
 def _units_in(found: Finding) -> set[str]:
-    """The signals for which a finding proposes a unit."""
+    """Return the signals with a unit that a finding proposes."""
     return {name for each in found.advice for name in each.arguments.get("units", ())}
 
 
 def _without_other_fits(found: Finding, asked: set[str]) -> Finding:
-    """The finding without advice that rests on values that cannot be used; a blocking one keeps it.
+    """Return the finding without advice based on unusable values; a blocking finding keeps its advice.
 
-    Such are other fits, the limits of a motion, and units where a blocking finding proposes others (`asked`).
+    Such advice is: other fits, limits of a motion, and units if a blocking finding proposes others (`asked`).
     """
     if found.severity == "blocking":
         return found

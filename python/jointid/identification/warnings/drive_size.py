@@ -1,4 +1,4 @@
-"""A current or torque that no joint's drive has: probably in thousandths of the unit that is taken."""
+"""A current or torque too large for a joint's drive: it is probably in thousandths of the assumed unit."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS
 from jointid.recording.plausible_units import unlikely_sizes
 from jointid.recording.signals import header_unit
 
-_STATED = 10.0  # times as much is asked although the call states the unit
+_STATED = 10.0  # factor on the limit if the call states the unit
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Regressor:
-    """The window integrals of all terms, then of the torque, as the triangle of a QR decomposition.
+    """Window integrals of all terms, then of the torque, as the triangular factor of a QR decomposition.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Regressor:
     triangle: Triangle
 
     def norm(self, name: str) -> float:
-        """Norm of a term's integrals."""
+        """Return the norm of a term's integrals."""
         return size(self.triangle.matrix[:, self.names.index(name)])
 
     @property
@@ -59,49 +59,49 @@ def _no_cause(*_: object) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evidence:
-    """Inputs shared by all warning checks: a fit, and what it was made from.
+    """Inputs shared by all warning checks: a fit and its data.
 
     Attributes
     ----------
     problem : Problem
         Recordings, joint and terms.
     penalty : Penalty
-        Over the windows used.
+        Penalty over the windows that are used.
     best : ndarray
         The parameters found, in the order of `penalty.names`.
     residual : ndarray
-        The penalty's window residuals there.
+        Window residuals of the penalty at these parameters.
     chance : mapping of str to float
-        The part of each standard error that chance explains.
+        Part of each standard error that comes from random noise alone.
     torque_level : float
         Root mean square of the drive's torque [N·m or N].
     guessed_sign : bool
-        Whether the gain's sign is one of two that fit alike.
+        Whether two signs of the gain fit almost equally well.
     inspections : tuple of Inspected
         Properties of the signals of each recording.
     at_best : Regressor
-        At the estimated shape parameters.
+        Integrals at the estimated shape parameters.
     velocity_effect : VelocityEffect or None
-        What the velocity's noise does to the parameters; None where it is harmless.
+        Effect of the velocity's noise on the parameters; None if it is harmless.
     own_noise : OwnNoise or None
-        What the noise of the extra signals of own terms does to them; None where it is harmless.
+        Effect of noise in the extra signals of own terms on the parameters; None if it is harmless.
     correlations : mapping
         Correlation of each pair of free parameters, offsets centered.
     delays : mapping of str to Delay
         Delays of the signals against the position.
     slow_motion : SlowMotion or None
-        How slow windows disagree with faster ones.
+        Disagreement of slow windows with faster ones.
     white : bool
-        Whether the residuals are noise as far as enough windows can tell.
+        Whether the residuals are noise; this is tested on enough windows only.
     causes : Causes or None
-        Why the model does not fit; None where the residuals are noise.
+        Causes of the residual; None if it is noise.
     cross_check : CrossCheck
-        The cross-check.
+        Cross-check of the values.
     torques : Torques
-        How large the torque of each coefficient is.
+        Size of the torque of each coefficient.
     cause_of : callable
-        Returns what a cause does to the values, from its name, which of its kind it is, the share of a misfit
-        that it explains, and its size where that is known.
+        Returns the effect of a cause on the values. Arguments: its name, its number in its kind, its share of the
+        residual, and its size if that is known.
     """
 
     problem: Problem
@@ -137,7 +137,7 @@ class Evidence:
 
     @property
     def joint(self) -> Joint | None:
-        """The joint before the identification."""
+        """Joint before the identification."""
         return self.problem.joint
 
     @property
@@ -147,7 +147,7 @@ class Evidence:
 
     @property
     def undivided(self) -> tuple[Undivided, ...]:
-        """Directions along which nothing tells an offset from the difference of Coulomb frictions."""
+        """Combinations of an offset and the difference of Coulomb frictions that the data do not separate."""
         return undivided(
             [p.name for p in self.parameters.values() if p.vary and p.at_bound is None]
         )
@@ -159,7 +159,7 @@ class Evidence:
         return tuple(name for name in names if name in self.parameters)
 
     def regressor(self, best: Array | None = None) -> Regressor:
-        """Window integrals of every term and of the target, at the estimated shape parameters or others [unit · s]."""
+        """Return window integrals of all terms and of the target, at the estimated shapes or others [unit · s]."""
         if best is None:
             return self.at_best
         columns = self.penalty.linear_columns(best)
@@ -167,6 +167,6 @@ class Evidence:
 
 
 def regressor(penalty: _core.Penalty, columns: Array, threads: int) -> Regressor:
-    """The triangle of the penalty's columns and target."""
+    """Return the triangular factor of the penalty's columns and target."""
     triangle = Triangle(np.column_stack([columns, penalty.target]), threads)
     return Regressor(names=tuple(penalty.names[: penalty.coefficients]), triangle=triangle)

@@ -1,4 +1,4 @@
-"""What a recording lacks for a parameter: speeds, reversals, loads, accelerations, travel; with its figures."""
+"""Deficits of a recording for a parameter: speeds, reversals, loads, accelerations, travel; with figures."""
 
 from __future__ import annotations
 
@@ -19,37 +19,37 @@ from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
 
-# What is enough, of each quantity.
-_SPEEDS = 3.0  # fast over slow
-_FRICTION = 0.1  # of the torque, what a speed's range changes
-_SLOW = 0.03  # of the windows, slower than twice the Stribeck velocity
+# Sufficient amount of each quantity.
+_SPEEDS = 3.0  # ratio of fast to slow
+_FRICTION = 0.1  # of the torque: change of friction over the range of speeds
+_SLOW = 0.03  # of the windows: share slower than twice the Stribeck velocity
 _REVERSALS = 4
 _DIRECTION = 0.15  # of the time, in the rarer direction
 _LOAD = 0.03  # spread of the sensed torque over the torque of the drive
 _ACCELERATION = 0.1  # of the torque
-_TRAVEL = 0.75  # of a period of a torque over the angle
+_TRAVEL = 0.75  # of a period of a torque that depends on the angle
 _GRAVITY = 1.0  # [rad]
-_LONGEST = 10.0  # times the recording: nobody records longer for one parameter
+_LONGEST = 10.0  # times the recording: longer recordings are not advised for one parameter
 
 
 @dataclass(frozen=True, slots=True)
 class Lack:
-    """A quantity that a recording has too little of.
+    """A quantity that a recording contains too little of.
 
     Attributes
     ----------
     quantity : str
-        Its name: what is missing is the same for parameters with the same one.
+        Name of the quantity; parameters with the same name lack the same.
     short : str
-        What is missing, in a few words.
+        Deficit in a few words.
     text : str
-        What there is, in figures, and what is needed.
+        Present and required amount, in figures.
     motion : str
-        What to record.
+        Motion to record.
     measured : mapping of str to Measured
-        The figures of the text.
+        Figures of the text.
     wanted : float
-        How much of it would do.
+        Required amount.
     """
 
     quantity: str
@@ -62,7 +62,7 @@ class Lack:
 
 @dataclass(frozen=True)
 class Excitation:
-    """What the windows of an estimate contain."""
+    """Excitation in the windows of an estimate."""
 
     evidence: Evidence
 
@@ -72,13 +72,13 @@ class Excitation:
 
     @functools.cached_property
     def speeds(self) -> tuple[float, float]:
-        """Slow and fast: 10 % of the windows are slower, 5 % faster."""
+        """Slow and fast speed: 10 % of the windows are slower, 5 % faster."""
         slow, fast = quantile(self._speed, 0.1), quantile(self._speed, 0.95)
         return float(slow), float(fast)
 
     @functools.cached_property
     def reversals(self) -> int:
-        """Changes of direction."""
+        """Number of changes of direction."""
         table = self.evidence.table
         moving = np.abs(table.velocity) > 0.02 * self.speeds[1]
         turned = np.sign(table.velocity[moving])
@@ -106,7 +106,7 @@ class Excitation:
 
     @functools.cached_property
     def _few(self) -> Lack | None:
-        """Hardly more windows than parameters."""
+        """Lack of windows if there are hardly more than parameters."""
         windows, free = self.evidence.residuals.windows, len(self.evidence.chance)
         if windows > 3 * free:
             return None
@@ -120,7 +120,7 @@ class Excitation:
         )
 
     def lack(self, p: ParameterEstimate) -> Lack | None:
-        """Return what the recordings lack for a parameter; None if they have enough of all it needs."""
+        """Return the deficit of the recordings for a parameter; None if they contain enough."""
         if self._few is not None:
             return self._few
         name = p.name.partition("[")[0]
@@ -144,7 +144,7 @@ class Excitation:
         return None
 
     def longer(self, name: str, error: float, wanted: float) -> Lack:
-        """What is missing where only noise limits: time."""
+        """Return the lack of time, if only noise limits the accuracy."""
         duration = float(self.evidence.table.duration.sum())
         needed = duration * min((error / wanted) ** 2, 1e6)
         text = f"with this noise about {_two(needed)} s of motion are needed, the log has {_two(duration)} s"
@@ -161,7 +161,7 @@ class Excitation:
         return Lack("duration", short, text, motion, measured, needed)
 
     def noise(self) -> Lack:
-        """What is missing where the velocity's noise hides the inertia: resolution."""
+        """Return the lack of resolution, if the velocity's noise hides the inertia."""
         share = self.evidence.residuals.noise_share
         text = f"noise is {percent(share)} of the velocity's change over a window"
         motion = "the position with a finer resolution"
@@ -275,14 +275,14 @@ class Excitation:
         if "sensor_gain" not in evidence.parameters:
             return None
         sensed = [run.sensor for run in evidence.recordings if run.sensor is not None]
-        # White noise of the reading is no load: it is what neighbouring samples differ by.
+        # White noise of the reading is no load. It is the difference between neighbouring samples.
         noise = float(np.mean([0.5 * np.mean(np.diff(each) ** 2) for each in sensed]))
         level = float(np.concatenate(sensed).var())
         spread = abs(evidence.parameters["sensor_gain"].value) * math.sqrt(max(level - noise, 0.0))
         share = spread / max(evidence.torque_level, 1e-300)
         weak = (
             evidence.problem.choice.residual_reason == WEAK_READING
-        )  # the gain, too, is then a guess
+        )  # the gain is uncertain then, too
         if share >= _LOAD and not weak:
             return None
         unit = self._torque()
@@ -330,7 +330,7 @@ class Excitation:
 
 
 def _below(value: float, needed: float) -> str:
-    """A value that is too small, with as many digits as show that."""
+    """Return a value that is too small, with enough digits to show that it is below the need."""
     shown = (f"{float(f'{value:.{digits}g}'):g}" for digits in range(2, 7))
     return next((text for text in shown if float(text) < float(_two(needed))), f"{value!r}")
 

@@ -1,4 +1,4 @@
-"""Too few windows to know the standard errors."""
+"""Too few windows for reliable standard errors."""
 
 from collections.abc import Iterator
 
@@ -13,8 +13,8 @@ FEW_WINDOWS = FindingType(
     meaning="fewer than eight windows per free parameter make the standard errors uncertain",
     advice=f"record longer, or use shorter windows{DESIGNED}",
 )
-_FEW = 8  # windows for each free parameter
-_ADVISED = 12  # some of those asked for are left out
+_FEW = 8  # windows per free parameter
+_ADVISED = 12  # windows per free parameter in the advice; more, because some are then left out
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""Properties of the signals of one recording: computed by the core once, for all checks."""
+"""Properties of the signals of one recording, computed once by the core for all checks."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class Inspected:
     ----------
     recording : Recording
     found : Inspection
-        What the signals show.
+        Properties of the signals.
     channels : tuple of str
-        The signals looked at, in the order of `found.facts` and `found.spikes`.
+        Inspected signals, in the order of `found.facts` and `found.spikes`.
     threads : int
-        For a further look; 0: all.
+        Number of threads for further inspections; 0: all.
     mends : tuple of Mend
-        What was put right in it.
+        Corrections of the recording.
     """
 
     recording: Recording
@@ -40,15 +40,15 @@ class Inspected:
     mends: tuple[Mend, ...] = ()
 
     def counts(self, name: str) -> _core.SignalFacts:
-        """Counts of one signal."""
+        """Return the counts of one signal."""
         return self.found.facts[self.channels.index(name)]
 
     def spike(self, name: str) -> _core.Spike:
-        """The largest spike of one signal."""
+        """Return the largest spike of one signal."""
         return self.found.spikes[self.channels.index(name)]
 
     def stale_share(self, name: str) -> float:
-        """Share of the moving samples at which a finely resolved signal does not change."""
+        """Return the share of the moving samples in which a finely resolved signal does not change."""
         counts = self.counts(name)
         return counts.stale / counts.moving if counts.fine and counts.moving else 0.0
 
@@ -80,7 +80,7 @@ def inspect(recording: Recording, threads: int = 0, mends: tuple[Mend, ...] = ()
 
 
 def spike_of(recording: Recording, sensor: Array, threads: int) -> _core.Spike:
-    """The largest spike of a reading in place of the recorded one."""
+    """Return the largest spike of a reading in place of the recorded one."""
     found = _core.inspect(
         time=recording.time,
         position=recording.position,

@@ -1,4 +1,4 @@
-"""Columns of the file that a header assigns to a signal and that were not read."""
+"""Columns of the file with a signal's name that were not read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Load friction of the drive's torque where no known value fixes the scale of the balance."""
+"""Load friction of the drive's torque, without a known value that fixes the scale of the balance."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ LOAD_SCALE = FindingType(
 
 
 def scale_is_free(parameters: Mapping[str, ParameterEstimate], terms: tuple[str, ...]) -> bool:
-    """Whether load friction may scale all other values.
+    """Return whether load friction may scale all other values.
 
-    With the load as the drive's torque, the balance of a joint that is driven is (1 - load_friction) times the torque:
-    any value of it fits, unless another coefficient is known.
+    If the load is the drive's torque, the balance of a driven joint is (1 - load_friction) times the torque. Any value
+    fits, unless another coefficient is known.
 
     Parameters
     ----------
     terms : tuple of str
-        Keys of the terms, of which load_friction is the one whose load is the drive's torque.
+        Keys of the terms; the load of load_friction is the drive's torque.
     """
     load = parameters.get("load_friction")
     if "load_friction" not in terms or load is None or not load.vary:

@@ -13,7 +13,7 @@ LONG_SHIFT = FindingType(
     advice="state shifts in seconds: 1 ms is 0.001",
 )
 _LONG = 0.1  # [s]
-_PERIODS = 20.0  # of a slow log, 0.1 s is a few samples
+_PERIODS = 20.0  # sample periods: in a slow log, 0.1 s is only a few samples
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""What was put right in the recordings before they were used."""
+"""Corrections of the recordings before they were used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Findings about single recordings: those that say the same become one, which names its recordings."""
+"""Merge equal findings about single recordings into one that names its recordings."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from dataclasses import replace
 from jointid.estimate.findings import TITLE, Finding, Measured
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
-_NAMED = 5  # recordings in the details; the finding has all
+_NAMED = 5  # recordings in the details; the finding contains all
 
 
 def merged(found: Iterable[tuple[int, Finding]], names: Sequence[str]) -> list[Finding]:
-    """Return findings about single recordings, equal ones as one.
+    """Return findings about single recordings; equal ones are merged.
 
     Parameters
     ----------
     found : iterable of tuple
-        Number of the recording, and what is found about it.
+        Number of the recording, and a finding about it.
     names : sequence of str
         Names of all recordings; a single recording is not named.
     """
@@ -56,7 +56,7 @@ def _as_one(group: Sequence[tuple[int, Finding]], names: Sequence[str]) -> Findi
 
 
 def _with_ranges(causes: Sequence[str]) -> str:
-    """Sentences that differ in their numbers alone as one, with "4–6 %" in place of a number that differs."""
+    """Return sentences that differ only in numbers as one, with "4–6 %" in place of a number that differs."""
     columns = zip(*(_NUMBER.findall(cause) for cause in causes), strict=True)
     ranges = iter([_range(column) for column in columns])
     return _NUMBER.sub(lambda _: next(ranges), causes[0])
@@ -70,7 +70,7 @@ def _range(numbers: Sequence[str]) -> str:
 
 
 def _largest(findings: Sequence[Finding]) -> dict[str, Measured]:
-    """Of each number the largest; findings that say the same have the same numbers."""
+    """Return the largest of each number; equal findings have the same names of numbers."""
     largest: dict[str, Measured] = {}
     for each in findings:
         for name, number in each.evidence.items():

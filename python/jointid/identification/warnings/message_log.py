@@ -1,4 +1,4 @@
-"""How a log of messages was read, where that is not as everybody expects it."""
+"""Unexpected conversions of a message log while it was read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MESSAGE_LOG = FindingType(
     "time stamps, units or sides differ from the file",
     advice="check the recorder. Nothing, if you expect this",
 )
-_ROOM = 65  # characters of a title, beside the number of recordings
+_ROOM = 65  # characters of a title, without the number of recordings
 
 
 def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:

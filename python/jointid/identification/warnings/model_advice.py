@@ -1,4 +1,4 @@
-"""The model that a finding advises, as the text that every face takes."""
+"""Model that a finding advises, as text for all interfaces."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from jointid.identification.warnings.evidence import Evidence
 
 
 def add_ripple(evidence: Evidence, order: float) -> Action:
-    """Add one order of ripple to the identified model; where it is there, its coefficients are fixed or bounded.
+    """Add one order of ripple to the identified model. If the order is present, its coefficients are fixed or bounded.
 
-    The text has every field that is stated, defaults included: one that is left out is the joint's again.
+    The text has every stated field, including defaults, because the joint's value replaces an omitted field.
     """
     model = evidence.problem.choice.model
     modelled = model.resolved.ripple
@@ -21,5 +21,5 @@ def add_ripple(evidence: Evidence, order: float) -> Action:
 
 
 def simpler_model(evidence: Evidence) -> str:
-    """The identified model without the Stribeck effect, with every field that is stated."""
+    """Return the identified model without the Stribeck effect, with every stated field."""
     return str(evidence.problem.choice.model.replace(name="coulomb_viscous"))

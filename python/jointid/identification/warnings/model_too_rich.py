@@ -30,15 +30,15 @@ MODEL_TOO_RICH = FindingType(
 STATIC = ("static", "static_positive", "static_negative")
 SHAPES = ("stribeck", "stribeck_velocity", "stribeck_exponent")
 _LACKED = (*STATIC, *SHAPES)
-_SIGNIFICANT = 0.5  # standard error, of the value
-_PLAIN = 4.0  # standard errors of a static excess of a given shape
+_SIGNIFICANT = 0.5  # standard error over value
+_PLAIN = 4.0  # standard errors of a static excess with a fixed shape
 _FEW = 3  # windows: a passage through low speed
-_SHOWN = 0.2  # of a static friction: what acts at the slowest that a window shows; a value beyond is extrapolated
+_SHOWN = 0.2  # of static friction: smallest share that acts in the slowest window; with less, the value is extrapolated
 _COULOMB = ("coulomb", "coulomb_positive", "coulomb_negative")
 
 
 def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
-    """Why the data do not determine a static excess, and the numbers; None when they do."""
+    """Return why the data do not determine a static excess, and the numbers; None if they do."""
     found = evidence.parameters
     static = [found[name] for name in STATIC if name in found and found[name].vary]
     if not static:
@@ -73,7 +73,7 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
 def _seen_in_few(
     evidence: Evidence, p: ParameterEstimate
 ) -> tuple[str, dict[str, Measured]] | None:
-    """Why the windows that show a static friction are too few, or show too little of it; None when they are enough."""
+    """Return why too few windows show static friction, or show too little of it; None if they are enough."""
     regressor, penalty = evidence.at_best, evidence.penalty
     if p.name not in regressor.names or (p.stderr is None and p.at_bound is None):
         return None
@@ -115,7 +115,7 @@ def _seen_in_few(
 
 
 def _beyond(measured: Mapping[str, Measured]) -> str:
-    """What a static friction is without the few windows that show it, or where none shows it."""
+    """Return the static friction without the few windows that show it, or that no window shows it."""
     for name, error in measured.items():
         static, _, kind = name.partition(".")
         if kind == "elsewhere_stderr":
@@ -129,7 +129,7 @@ def _beyond(measured: Mapping[str, Measured]) -> str:
 
 
 def _without(evidence: Evidence) -> str:
-    """What to take away from the call: the simpler model refuses parameters that it lacks."""
+    """Return the arguments to remove from the call, because the simpler model refuses parameters that it lacks."""
     stated = [
         name
         for name, found in evidence.parameters.items()
@@ -139,7 +139,7 @@ def _without(evidence: Evidence) -> str:
 
 
 def _stated_by_call(evidence: Evidence, found: ParameterEstimate) -> bool:
-    """Whether its bounds or its fixed value are neither the joint's nor computed from the recording."""
+    """Return whether the call states its bounds or fixed value: they are neither the joint's nor from the recording."""
     of_joint = evidence.joint.parameters.get(found.name) if evidence.joint is not None else None
     if not found.vary:
         return of_joint is None or of_joint.vary or of_joint.value != found.value
@@ -150,9 +150,9 @@ def _stated_by_call(evidence: Evidence, found: ParameterEstimate) -> bool:
 
 
 def _plain_excess(evidence: Evidence) -> bool:
-    """Whether friction grows at low speed beyond doubt, although its shape is not determined.
+    """Return whether friction clearly increases at low speed, although its shape is not determined.
 
-    Without the static terms the others take up what they carry: the simpler model is then worse everywhere.
+    Without static terms, the other terms absorb their effect, and the simpler model is worse at all speeds.
     """
     regressor, found = evidence.at_best, evidence.parameters
     free = [name for name in regressor.names if name in found and found[name].vary]

@@ -1,4 +1,4 @@
-"""Advice to record other motion, with the call that designs it: its limits from the joint or the recordings."""
+"""Advice to record other motion, with the call that designs it. Limits come from the joint or the recordings."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from jointid.joint.joint import Joint
 from jointid.recording.order_statistics import quantile, quantile_of_sizes
 
 DESIGNED = "; `jointid design --after` or `jid.design(estimate)` designs it"
-"""What the list of findings says of such advice."""
+"""Text about this advice in the table of findings."""
 
 _SHORTEST, _LONGEST = 6.0, 60.0  # [s]
-_GENTLER = 0.9  # of the torque at which the drive's was cut off
-_PEAK = 0.999  # quantile: one outlier is neither a speed nor a torque
+_GENTLER = 0.9  # of the torque at which the drive's torque was clipped
+_PEAK = 0.999  # quantile: a single outlier is neither a speed nor a torque
 
 
 def other_motion(
@@ -31,15 +31,15 @@ def other_motion(
 ) -> Action:
     """Return the advice to record such a motion, with the arguments of `design`.
 
-    What the joint limits is left out: the design takes it from there. Where the joint does not say, a motion stays
-    in the range that was recorded; one that must leave it leaves the range to the user.
+    Limits that the joint states are omitted, because the design takes them from the joint. For other quantities, the
+    motion stays in the recorded range. If it must leave that range, the range is left to the user.
 
     Parameters
     ----------
     text : str
-        What is missing.
+        Text of the missing motion.
     wider, faster : bool
-        Whether the recorded range of positions, or of speeds, is what is missing. Default False.
+        Whether the recorded range of positions, or of speeds, is too small. Default False.
     gentler : bool
         Whether less torque than the recorded one is needed. Default False.
     sensor_range : float, optional
@@ -64,12 +64,12 @@ def other_motion(
     arguments: dict[str, Any] = {"limits": limits} if limits else {}
     arguments["duration"] = float(round(min(max(longest, _SHORTEST), _LONGEST)))
     if evidence.sensor_parameters and (joint is None or joint.link is None):
-        arguments["joint"] = ...  # what loads the sensor
+        arguments["joint"] = ...  # the load of the sensor
     return Action("record", arguments, text, "next_motion")
 
 
 def _recorded_torque(evidence: Evidence, share: float) -> Any:
-    """A share of the largest torque of the recordings, at the output; only the user knows where they cannot say."""
+    """Return a share of the largest recorded torque at the output; ``...`` if only the user knows it."""
     joint = evidence.joint or Joint()
     try:
         torques = [np.abs(joint.output_torque(each.recording)) for each in evidence.inspections]
@@ -79,7 +79,7 @@ def _recorded_torque(evidence: Evidence, share: float) -> Any:
 
 
 def _short(value: float) -> float:
-    """Three digits, towards zero: a limit is not widened by its rounding."""
+    """Return three digits, rounded towards zero, so that rounding does not widen a limit."""
     rounded = float(f"{value:.2e}")
     if abs(rounded) <= abs(value):
         return rounded

@@ -1,4 +1,4 @@
-"""Values that are on the motor's side, because nobody said the gear ratio."""
+"""Values on the motor side, because no gear ratio is known."""
 
 from collections.abc import Iterator
 
@@ -49,7 +49,7 @@ def _without_gear(evidence: Evidence, run: Recording) -> bool:
 
 
 def other_side(ratio: float | None, factor: float) -> tuple[str, Action] | None:
-    """Return which signal is on the other side of the gear, and how to say so; None where no gear explains a factor.
+    """Return the signal on the other side of the gear, and its advice; None if no gear explains the factor.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def other_side(ratio: float | None, factor: float) -> tuple[str, Action] | None:
 
 
 def possible_side(factor: float) -> Action:
-    """Return how to read the faster of two signals as the motor's, with the ratio that their rates then show."""
+    """Return the advice to read the faster of two signals as the motor's, with the ratio of their rates."""
     signal, ratio = ("velocity", 1.0 / factor) if abs(factor) < 1.0 else ("position", factor)
     return _on_motor(signal, float(f"{ratio:.4g}"), f"if the {signal} is the motor's")
 
@@ -77,7 +77,7 @@ def _on_motor(signal: str, ratio: float, text: str = "") -> Action:
 
 
 def known_ratio(evidence: Evidence) -> float | None:
-    """Return the gear ratio that the joint, or else a recording, states; None where none does."""
+    """Return the gear ratio of the joint, otherwise of a recording; None if none states it."""
     if evidence.joint is not None and evidence.joint.gear_ratio != 1.0:
         return evidence.joint.gear_ratio
     stated = [run.metadata.get("gear_ratio") for run in evidence.recordings]

@@ -1,4 +1,4 @@
-"""A torque that holds no friction although the joint moves: measured at the link, or of a joint that has none."""
+"""A torque without friction although the joint moves: measured at the link, or of a joint without friction."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ NO_FRICTION = FindingType(
     advice="load the motor's torque or current as torque, and this column as sensor. Nothing, if the joint has no "
     "friction",
 )
-_EXPLAINED = 0.95  # of the variance: friction is missing, not lost in a misfit
+_EXPLAINED = 0.95  # of the variance: friction is absent, not hidden in a residual
 _SMALL = 0.02  # of the torque's root mean square
-_SMALL_AT_THE_LINK = 0.05  # bearings of the link have some
-_SMALL_WITHOUT_DRY = 0.1  # no drive has viscous friction alone: noise, or a damper of a simulation
+_SMALL_AT_THE_LINK = 0.05  # higher, because the link's bearings have friction
+# no drive has viscous friction alone: it is noise, or a damper of a simulation
+_SMALL_WITHOUT_DRY = 0.1
 _SURE = 3.0  # standard errors
 _BOUND = 2.0  # standard errors
 _LEVELS = ("coulomb", "static")
@@ -33,7 +34,7 @@ _REMEDY = "where the torque is measured, and load the motor's torque or current"
 
 
 def without_friction(evidence: Evidence) -> tuple[str, ...]:
-    """Return the friction of an estimate that has none beside the torque's size; empty where there is some."""
+    """Return the friction parameters of an estimate with negligible friction; empty if there is friction."""
     friction = [p for p in evidence.parameters.values() if _is_friction(p)]
     if not any(p.vary for p in friction) or evidence.residuals.r_squared < _EXPLAINED:
         return ()
@@ -54,7 +55,7 @@ def without_friction(evidence: Evidence) -> tuple[str, ...]:
 
 
 def _most(evidence: Evidence, friction: list[ParameterEstimate]) -> float:
-    """A bound of the friction in the recorded motion [N·m or N]."""
+    """Return an upper bound of the friction in the recorded motion [N·m or N]."""
     speed = 0.0
     if any(_kind(p) == "viscous" for p in friction):
         speed = float(np.sqrt(np.mean(np.square(evidence.table.velocity))))
@@ -74,7 +75,7 @@ def _is_friction(p: ParameterEstimate) -> bool:
 
 
 def _header(evidence: Evidence) -> str:
-    """The torque's header if it names the joint's side of the drive; empty if none does."""
+    """Return the torque's header if it names the joint's side of the drive; empty if it does not."""
     headers = (str(run.metadata.get(AT_THE_LINK, "")) for run in evidence.recordings)
     return next(filter(None, headers), "")
 

@@ -1,4 +1,4 @@
-"""Extra signals of own terms whose noise moves parameters."""
+"""Extra signals of own terms with noise that changes parameters."""
 
 from __future__ import annotations
 

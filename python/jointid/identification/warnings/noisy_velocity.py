@@ -1,4 +1,4 @@
-"""A velocity whose noise hides how it changes, or blurs friction at low speed."""
+"""A velocity with noise that hides its change, or that blurs friction at low speed."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ NOISY_VELOCITY = FindingType(
     advice="record the position with a finer resolution, or record longer. Leave the velocity column out if it is "
     "noisier than the position's derivative",
 )
-_MOVED = 0.02  # of the value: two of them are what `undetermined` calls wide
-_OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
-_MANY = 10.0  # of the value: a larger share is no size
-_OF_ERROR = 0.5  # of the standard error: less adds at most an eighth to it
+_MOVED = 0.02  # of the value: twice this is wide in the sense of `undetermined`
+_OF_TORQUE = 0.05  # of the torque's level: smallest reference for a constant torque
+_MANY = 10.0  # of the value: a larger share is not shown as a share
+_OF_ERROR = 0.5  # of the standard error: a smaller change adds at most an eighth to it
 _QUIETER = 0.5  # of the recorded velocity's noise
 _JITTER = 0.02  # sample periods between position and stamps
 _FINER = Action("record", text="the position with a finer resolution, or for longer")
@@ -42,7 +42,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         for name, share in moved_by_noise(evidence).items()
         if _size_of(evidence, name) >= _OF_ERROR * (evidence.parameters[name].stderr or 0.0)
     }
-    # Running integrals have no edges whose noise would count.
+    # Running integrals have no window edges, so noise does not matter.
     limited = evidence.penalty.noise_limited and not evidence.penalty.cumulative
     if not (limited or moved):
         return
@@ -66,7 +66,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             None, (_resolution(evidence), "computed with a simulated second recording")
         )
         measured |= {f"{name}.moved": Measured(share) for name, share in moved.items()}
-    # By the stamps of a busy computer the position's rate is wrong, however quiet it looks.
+    # With the stamps of a busy computer the position's rate is wrong, even if it looks quiet.
     stamped = all(_are_stamps_right(inspected) for inspected in evidence.inspections)
     quieter = stamped and any(
         _derived_is_quieter(evidence, number) for number in range(len(evidence.recordings))
@@ -86,9 +86,9 @@ def _are_stamps_right(inspected: Inspected) -> bool:
 
 
 def moved_by_noise(evidence: Evidence) -> dict[str, float]:
-    """Return how far, relative to its value, the velocity's noise moves each parameter; only the large ones.
+    """Return the relative change of each parameter by the velocity's noise; only large changes.
 
-    A value on its bound is left out: `at_bound` names it, and no move is large or small against it.
+    A value at its bound is omitted: `at_bound` reports it, and its size is no reference for a change.
     """
     effect = evidence.velocity_effect
     if effect is None:
@@ -106,7 +106,7 @@ def moved_by_noise(evidence: Evidence) -> dict[str, float]:
 
 
 def _size(evidence: Evidence, name: str, share: float) -> str:
-    """How far the noise moves a value: a share of it, or an amount where it is near zero."""
+    """Return the change of a value by noise: as a share, or as an amount if the value is near zero."""
     p = evidence.parameters[name]
     if abs(p.value) >= p.uncertainty and share <= _MANY:
         return percent(share)
@@ -114,7 +114,7 @@ def _size(evidence: Evidence, name: str, share: float) -> str:
 
 
 def _size_of(evidence: Evidence, name: str) -> float:
-    """How far the noise moves a value, in its unit; 0 where no effect of the noise is known."""
+    """Return the change of a value by noise, in its unit; 0 if no effect of noise is known."""
     effect = evidence.velocity_effect
     if effect is None:
         return 0.0

@@ -36,7 +36,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             severity="blocking",
         )
         return
-    # Noise alone is no misfit, and the errors contain it, unless it is all that was measured.
+    # Noise alone is no fault of the model, and the errors contain it, unless only noise was measured.
     limit = _NOTHING if evidence.white else POORLY_EXPLAINED
     if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
@@ -48,7 +48,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _of_the_weight(evidence: Evidence) -> tuple[Action, ...]:
-    """A link whose weight is stated wrongly spoils everything."""
+    """Return advice to check a link's weight: a wrong weight makes all values wrong."""
     model = evidence.problem.choice.model
     if model.resolved.gravity != "known":
         return ()

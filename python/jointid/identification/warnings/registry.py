@@ -1,4 +1,4 @@
-"""The list of all checks. A new check is a file beside this one and a line here."""
+"""List of all checks. A new check is a file in this folder and a line here."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from importlib import import_module
 
 from jointid.identification.warnings.check import Check, FindingType
 
-# In the order in which findings of one severity are listed: what is wrong with a signal has effects on what stands
-# below. Each file has a CHECK.
+# Order of findings with the same severity: a fault of a signal affects the checks below it. Each file has a CHECK.
 FILES = (
     "stopped",
     "velocity",
@@ -43,7 +42,7 @@ FILES = (
     "left_out",
     "mended",
     "message_log",
-    "cross_check",  # says nothing of the cause, so it takes none away from the checks before
+    "cross_check",  # it does not show the cause, so it is after the checks that do
 )
 
 

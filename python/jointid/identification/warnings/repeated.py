@@ -1,4 +1,4 @@
-"""Samples that merely repeat the one before while the joint moves."""
+"""Samples that repeat the previous one while the joint moves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ripple that is missing from the model: a peak of the residual at a multiple of the motor's or the joint's angle."""
+"""Ripple that the model lacks: a peak of the residual at a multiple of the motor's or the joint's angle."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ RIPPLE = FindingType(
     picture="windows",
 )
 
-_HALVES = 16  # multiples of half the motor's angle that are looked at: 0.5 to 8
+_HALVES = 16  # number of multiples of half the motor's angle that are examined: 0.5 to 8
 _SHARE = 0.05  # of the residual's variance
-_CHANCE = 30.0  # times the share that white noise gives one multiple
-_OUTSTANDING = 10.0  # times the median share of all multiples: a sharp event has them all
-_FINE = 2.2  # sample periods a window: longer ones average fast ripple away
+_CHANCE = 30.0  # times the share of one multiple in white noise
+_OUTSTANDING = 10.0  # times the median share of all multiples: a sharp event contains all of them
+_FINE = 2.2  # sample periods per window: longer windows average fast ripple out
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,9 +43,9 @@ class _Peak:
 
 
 def _highest_peak(problem: Problem, best: Array) -> _Peak | None:
-    """The multiple of the motor's angle that explains most of the residual over windows of two samples.
+    """Return the multiple of the motor's angle that explains most of the residual over windows of two samples.
 
-    Windows of fast motion average the highest multiple away, and are left out.
+    Windows of fast motion are omitted, because they average the highest multiple out.
     """
     if abs(problem.choice.gear_ratio) == 1.0 or problem.recordings[0].kind == "prismatic":
         return None
@@ -93,7 +93,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _concerned(evidence: Evidence) -> tuple[str, ...]:
-    """Gain and static friction, and what is uncertain besides."""
+    """Return gain and static friction, and the other parameters that become uncertain."""
     biased = ("sensor_gain", "static", "static_positive", "static_negative")
     names = (name for name in biased if name in evidence.parameters)
     return with_partners(evidence, (*names, *wide(evidence)))

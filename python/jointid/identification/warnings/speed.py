@@ -1,4 +1,4 @@
-"""Motion that is too fast, too wide or too slow for a joint: probably degrees for radians, or another unit of time."""
+"""Motion that is too fast, too wide or too slow for a joint: probably degrees as radians, or another unit of time."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from jointid.recording.plausibility import slow_stamps
 from jointid.recording.recording import Recording
 
 _MOTOR_SPEED = 2000.0  # [rad/s]: beyond any geared servo motor
-_SWING = 25.0  # [rad] back and forth: four turns
+_SWING = 25.0  # [rad] in both directions: four revolutions
 
 
 def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]:
     recording, peak = inspected.recording, inspected.found.peak_speed
-    at_motor = _of_the_motor(recording)  # its speed is not multiplied again
+    at_motor = _of_the_motor(recording)  # its speed is not multiplied by the ratio again
     gear = 1.0 if evidence.joint is None or at_motor else abs(evidence.joint.gear_ratio)
     if (slow := _slow_stamps(recording)) is not None:
         yield slow
@@ -32,7 +32,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     if recording.kind == "prismatic" or (
         agreement is not None and abs(agreement.scale - 1.0) > MISMATCH
     ):
-        return  # what contradicts itself has no speed, and that is reported already
+        return  # contradictory signals have no speed, and this is already reported
     if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is not a speed
         peak = quantile_of_sizes(recording.velocity, 0.99)
     severity: Severity = "blocking"
@@ -88,27 +88,27 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
 
 
 def _of_many_turns(recording: Recording, *, agrees: bool) -> Severity:
-    """How much a wide motion speaks against units: nothing against stated ones, which no guess overrides.
+    """Return the severity of a wide motion: low for stated units, because no guess overrides them.
 
     Parameters
     ----------
     agrees : bool
-        Whether a velocity is recorded, and is the position's rate.
+        Whether a recorded velocity agrees with the position's derivative.
     """
     assumed = recording.metadata.get("assumed_units")
     unstated = set(assumed) if isinstance(assumed, list | tuple) else set()
     if "position" not in unstated or (agrees and "velocity" not in unstated):
         return "info"
-    return "blocking"  # two columns in one wrong unit agree, too
+    return "blocking"  # two columns with the same wrong unit also agree
 
 
 def _of_the_motor(recording: Recording) -> bool:
-    """Whether the position is that of a motor without a known gear ratio, which may turn often."""
+    """Return whether the position is that of a motor without a known gear ratio, which may turn many times."""
     return recording.metadata.get("side") == "motor"
 
 
 def _is_converted(recording: Recording) -> bool:
-    """Whether the position was converted to radians, by a header's unit or by a factor: it is in degrees no more."""
+    """Return whether the position was converted to radians, by a unit or a factor: it is then not in degrees."""
     scale, stated = (recording.metadata.get(name) for name in ("scale", "stated_sides"))
     of_motor = isinstance(stated, Mapping) and stated.get("position") == "motor"
     return isinstance(scale, Mapping) and "position" in scale and not of_motor

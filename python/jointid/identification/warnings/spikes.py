@@ -1,4 +1,4 @@
-"""Single samples far off both neighbours, and positions that jump."""
+"""Single samples far from both neighbours, and positions that jump."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
 
 
 def _is_motion(recording: Recording, jump: int) -> bool:
-    """Whether a recorded velocity, or the steps between the new positions beside it, account for half of a step."""
+    """Return whether a recorded velocity, or the steps next to a jump, account for half of the jump."""
     changes = np.diff(recording.position)
     half = 0.5 * abs(float(changes[jump]))
     if not recording.velocity_derived:
@@ -74,16 +74,16 @@ def _is_motion(recording: Recording, jump: int) -> bool:
         passed = float(ends.mean()) * float(recording.time[jump + 1] - recording.time[jump])
         if abs(float(changes[jump]) - passed) < half:
             return True
-    new = np.flatnonzero(changes)  # rows that repeat the one before have no step
+    new = np.flatnonzero(changes)  # repeated rows have no step
     place = int(np.searchsorted(new, jump))
     beside = changes[[*new[max(0, place - 1) : place], *new[place + 1 : place + 2]]]
     return bool(np.abs(beside).max(initial=0.0) > half)
 
 
 def _without_kicks(inspected: Inspected) -> _core.Spike:
-    """The sensor's largest spike beside those of the link, which feels every jump of the velocity.
+    """Return the sensor's largest spike, without those from the link's response to jumps of the velocity.
 
-    A command that turns friction's compensation around at a reversal stops the drive at once.
+    Such a jump comes from a friction compensation that changes its sign at a reversal and stops the drive at once.
     """
     recording, spike = inspected.recording, inspected.spike("sensor")
     if not spike.count or recording.sensor is None:

@@ -1,4 +1,4 @@
-"""Residuals that are not noise, where no cause has a name."""
+"""Residuals that are not noise and have no known cause."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ _ROOM = 50  # characters of names in a title
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    # Running integrals of white noise are correlated by themselves.
+    # Running integrals of white noise are always correlated.
     if evidence.penalty.cumulative or named(evidence):
         return
     correlation = evidence.residuals.autocorrelation
@@ -33,12 +33,12 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     title = (
         f"an effect is missing: residuals of neighbouring windows correlate (r = {correlation:.2f})"
     )
-    if not correlation > _CORRELATED:  # what is uncertain is all that shows it
+    if not correlation > _CORRELATED:  # only the uncertain values show it
         title = (
             f"{listed(uncertain, _ROOM)} uncertain, although well excited (r = {correlation:.2f})"
         )
         makes = "the model lacks an effect, or the windows are too long to show it"
-    # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
+    # If all intervals are narrow, including the effect of the residual, the finding is an info.
     yield STRUCTURED_RESIDUAL.finding(
         title,
         Action("inspect", text="the residuals over time and over velocity"),
@@ -50,24 +50,24 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _unexplained(evidence: Evidence) -> tuple[str, ...]:
-    """Uncertain values; none where noise of the velocity, which has its own finding, moves them all."""
+    """Return uncertain values; none if noise of the velocity, which has its own finding, changes them all."""
     found = with_partners(evidence, wide(evidence))
     noisy = with_partners(evidence, moved_by_noise(evidence))
     return () if set(found) <= set(noisy) else found
 
 
 def named(evidence: Evidence) -> bool:
-    """Whether a cause of the misfit is found that does harm."""
+    """Return whether a harmful cause of the residual is found."""
     return evidence.causes is not None and bool(evidence.causes.found)
 
 
 def harmless(evidence: Evidence) -> bool:
-    """Whether a cause of the misfit is found that does none; a note has it."""
+    """Return whether a harmless cause of the residual is found; it has its own info."""
     return evidence.causes is not None and bool(evidence.causes.harmless)
 
 
 def excluded(evidence: Evidence, what: str = "it") -> str:
-    """A harmless cause, or how many causes were excluded, as a clause.
+    """Return a harmless cause, or the number of excluded causes, as a clause.
 
     `Causes.excluded` has the names.
     """
@@ -79,7 +79,7 @@ def excluded(evidence: Evidence, what: str = "it") -> str:
 
 
 def excluded_number(evidence: Evidence) -> dict[str, Measured]:
-    """The share of a harmless cause, or how many causes were looked for and not found, as evidence."""
+    """Return the share of a harmless cause, or the number of excluded causes, as evidence."""
     if evidence.causes is None:
         return {}
     if evidence.causes.harmless:

@@ -16,19 +16,19 @@ _TABLE = re.compile(rf"^{re.escape(_HEAD)}(?:\|.*\n)*", re.MULTILINE)
 
 
 def findings_table() -> str:
-    """A row for each code, in the order in which findings are listed."""
+    """Return a row for each code, in the order of findings."""
     return _HEAD + table_rows(finding_types().values())
 
 
 def table_rows(types: Iterable[FindingType]) -> str:
-    """Rows of a page's table, one for each code."""
+    """Return rows of a page's table, one for each code."""
     return "".join(
         f"| `{each.code}` | {each.severity} | {each.meaning} | {each.advice} |\n" for each in types
     )
 
 
 def in_place_of_the_table(page: str, text: str) -> str:
-    """Return the page of findings with another text instead of its table."""
+    """Return the page of findings with its table replaced by another text."""
     changed, count = _TABLE.subn(lambda _: text, page)
     if count != 1:
         raise ValueError(f"the page has {count} tables of findings, not one")

@@ -1,4 +1,4 @@
-"""Time stamps that are not when the samples were taken."""
+"""Time stamps that differ from the times of the samples."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     as_stamped, as_uniform = inspected.found.timing_errors
     period = recording.sample_period
     copies = inspected.stale_share("position") > REPEATED
-    if copies:  # they have no time of their own
+    if copies:  # repeated rows have no own time
         as_stamped, period = _without_copies(recording)
     if as_stamped < _JITTER * period:
         return
-    # Rows that merely repeat make even stamps wrong, however even they look.
+    # Repeated rows make even stamps wrong, even if these look regular.
     even = not copies and as_uniform < 0.3 * as_stamped
     seen = "; the samples themselves look evenly spaced" if even else ""
     seen = "; without the copies" if copies else seen
@@ -54,7 +54,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
 
 
 def _without_copies(recording: Recording) -> tuple[float, float]:
-    """Return the scatter of the stamps and the median period [s] of the rows that hold a new position."""
+    """Return the scatter of the stamps and the median period [s] of the rows with a new position."""
     time, position = fresh_rows(recording.time, recording.position)
     if len(time) < 3:
         return 0.0, recording.sample_period

@@ -1,4 +1,4 @@
-"""Whether torque, motion and sensor obey one torque balance: reversed signs, wrong scales."""
+"""Check whether torque, motion and sensor satisfy one torque balance: reversed signs, wrong scales."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ UNSIGNED_TORQUE = FindingType(
 _BOTH = 0.2  # of the windows in each direction
 _AGAINST = -0.1  # correlation of torque and velocity: friction makes it positive
 _SCALE = 0.05
-_HIDDEN = 0.5  # of the gain: noise leaves no more of it, and the link's inertia goes to the joint
-GROSS = 1.5  # factor of an inertia that is wrong even then
+_HIDDEN = 0.5  # of the gain: noise reduces it to this share at most, and the link's inertia is added to the joint
+GROSS = 1.5  # factor of an inertia that is wrong even with such noise
 _DEGREE = np.pi / 180.0
 
 
@@ -71,7 +71,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _is_unsigned(evidence: Evidence) -> bool:
-    """Whether the windows' torque is the magnitude of what friction, inertia and gravity make."""
+    """Return whether the windows' torque is the magnitude of the torque of friction, inertia and gravity."""
     torques = [output_torque(run, evidence.joint) for run in evidence.recordings]
     lowest, highest = min(each.min() for each in torques), max(each.max() for each in torques)
     if not is_one_sided(float(lowest), float(highest)) or evidence.problem.choice.sensor:
@@ -91,9 +91,9 @@ def _is_unsigned(evidence: Evidence) -> bool:
 
 
 def _torque_with_velocity(evidence: Evidence) -> float | None:
-    """Correlation of torque and velocity where the drive takes power from the joint, else None.
+    """Return the correlation of torque and velocity if the drive absorbs power from the joint, otherwise None.
 
-    Friction can only take power from the drive.
+    Friction can only dissipate power of the drive.
     """
     table = evidence.table
     torque = np.asarray(evidence.penalty.target) / table.duration
@@ -103,7 +103,7 @@ def _torque_with_velocity(evidence: Evidence) -> float | None:
 
 
 def _flip_the_torque(evidence: Evidence) -> tuple[Action, ...]:
-    """The sign of the gear ratio is that of a torque on the motor's side; another is flipped as it is read."""
+    """Return advice to flip the torque: by the gear ratio's sign on the motor side, otherwise when loading."""
     joint = evidence.joint
     if all(run.torque is not None for run in evidence.recordings):
         read_from = evidence.recordings[0].metadata.get(READ_FROM, "torque")
@@ -114,14 +114,14 @@ def _flip_the_torque(evidence: Evidence) -> tuple[Action, ...]:
 
 
 def _flipped(evidence: Evidence, signal: str) -> Action:
-    """Read a signal with the other sign."""
+    """Return advice to read a signal with the other sign."""
     scaled = evidence.recordings[0].metadata.get("scale")
     factor = scaled.get(signal, 1.0) if isinstance(scaled, Mapping) else 1.0
     return Action("call", {"scale": {signal: -factor}}, function="load")
 
 
 def _inertia_ratio(free: Unbounded, given: float) -> float | None:
-    """Ratio of the inertia that the recording shows to the given one; None when they agree."""
+    """Return the ratio of the inertia in the recording to the known one; None if they agree."""
     ratios = [free.values["inertia"] / given]
     reverse = free.with_noisy_sensor()
     if reverse is not None:
@@ -136,12 +136,12 @@ def _inertia_ratio(free: Unbounded, given: float) -> float | None:
 
 
 def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Finding]:
-    """A known inertia fixes the scale: the recording must agree with it."""
+    """Yield the finding of a contradicted inertia; a known inertia fixes the scale, so the recording must agree."""
     given = evidence.parameters.get("inertia")
     if given is None or given.vary or given.value == 0.0 or "inertia" not in free.values:
         return
     if free.relative > EXPLAINED:
-        return  # something else is wrong, and the inertia absorbs it
+        return  # another fault that changes the inertia
     ratio = _inertia_ratio(free, given.value)
     if ratio is None or not free.sure("inertia", given.value):
         return
@@ -167,7 +167,7 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
     yield WRONG_SCALE.finding(
         seen,
         *corrections,
-        # Not a call that frees the inertia: with a wrong torque it hides this finding, and all stays wrong.
+        # No call that frees the inertia: with a wrong torque it would hide this finding, and all values stay wrong.
         Action(
             "inspect",
             text="gear ratio, torque constant, torque unit and inertia; correct the wrong one",
@@ -179,7 +179,7 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
 
 
 def scaled_with_torque(evidence: Evidence) -> tuple[str, ...]:
-    """Return the free parameters that a wrong scale of the torque multiplies: all but shapes."""
+    """Return the free parameters that scale with the torque: all except shapes."""
     coefficients = evidence.penalty.names[: evidence.penalty.coefficients]
     return tuple(name for name in coefficients if evidence.parameters[name].vary)
 

@@ -1,4 +1,4 @@
-"""Which fact of the torque, corrected, explains a factor between it and a known inertia: its side, its unit."""
+"""Corrections of the torque that explain a factor between it and a known inertia: its side, its unit."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from jointid.recording.sides import READ_FROM
 from jointid.recording.signals import dimensions
 from jointid.recording.units import UNITS, find_unit
 
-_CLOSE = 0.1  # of a factor: a known inertia may be off by some
+_CLOSE = 0.1  # of a factor: tolerance of a known inertia
 
 
 def corrections_of(evidence: Evidence, ratio: float) -> Iterator[Action]:
-    """Yield how to read the torque so that it is 1 / `ratio` as large; what a header states is never overridden.
+    """Yield corrections that make the torque 1 / `ratio` as large; a fact in a header is never overridden.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def _of_gear(joint: Joint, recording: Recording, signal: str, ratio: float) -> I
 
 
 def _other_unit(recording: Recording, signal: str, ratio: float) -> str | None:
-    """The unit that explains the factor, of a signal without a stated unit or with one that the call states."""
+    """Return the unit that explains the factor, for a signal without a unit or with a unit from the call."""
     assumed, stated = (recording.metadata.get(key) for key in ("assumed_units", "stated_units"))
     by_call = stated.get(signal) if isinstance(stated, Mapping) else None
     if by_call is None and not (isinstance(assumed, list | tuple) and signal in assumed):

@@ -1,4 +1,4 @@
-"""A torque of which nothing says on which side of the gear it is, beside a motion on the motor's."""
+"""A torque without a stated side of the gear, together with a motion on the motor side."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     ratio = stated.get("gear_ratio")
     inertia = evidence.parameters.get("inertia")
     if inertia is not None and not inertia.vary:
-        return  # a known inertia shows the side: what contradicts it is a wrong scale
+        return  # a known inertia shows the side: a contradiction is reported as a wrong scale
     if stated.get("assumed_side") == "torque" and isinstance(ratio, int | float):
         yield TORQUE_SIDE.finding(
             f"is the torque the motor's, too? Then all values are {abs(ratio):.4g} times as large",

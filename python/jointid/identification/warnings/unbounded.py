@@ -11,14 +11,14 @@ from jointid.identification.warnings.evidence import Evidence, Regressor
 
 Array = NDArray[np.float64]
 
-EXPLAINED = 0.03  # what may be left of the torque when every term is free
+EXPLAINED = 0.03  # largest share of the torque that is left if every term is free
 _SURE = 10.0  # standard errors
-_STRIBECK_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)  # Stribeck velocities, of the peak speed
+_STRIBECK_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)  # shares of the peak speed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unbounded:
-    """Coefficients with every term free and no bounds, at the shapes found or others."""
+    """Coefficients with every term free and without bounds, at the found shapes or others."""
 
     evidence: Evidence
     regressor: Regressor
@@ -27,7 +27,7 @@ class Unbounded:
     relative: float
 
     def sure(self, name: str, wanted: float) -> bool:
-        """Whether the data contradict a value by many standard errors, robust to slow drifts of the residual."""
+        """Return whether the data contradict a value by many standard errors; robust to slow drifts of the residual."""
         names, penalty = list(self.values), self.evidence.penalty
         best = self.evidence.best if self.best is None else self.best
         columns = penalty.columns(best[penalty.coefficients :])
@@ -37,10 +37,10 @@ class Unbounded:
         return bool(abs(self.values[name] - wanted) > _SURE * spread.stderr[names.index(name)])
 
     def with_noisy_sensor(self) -> dict[str, float] | None:
-        """Coefficients of the reverse regression, of the sensor by all other terms; None without a sensor.
+        """Return coefficients of the reverse regression, of the sensor by all other terms; None without a sensor.
 
-        Noise of the sensor makes the gain too small in `values`, and leaves part of the link's inertia to
-        the joint's; noise of the torque does the opposite here. The truth lies between.
+        In `values`, noise of the sensor makes the gain too small and moves a part of the link's inertia to the joint.
+        Here, noise of the torque has the opposite effect. The true values are between the two.
         """
         if "sensor_gain" not in self.values:
             return None
@@ -59,7 +59,7 @@ class Unbounded:
 
 
 def without_bounds(evidence: Evidence) -> Unbounded | None:
-    """The best fit at the estimated shape and a few others, because bounds may have distorted the shape."""
+    """Return the best fit at the estimated shape and some others, because bounds may have distorted the shape."""
     found = _at(evidence, None)
     shapes = [i for i, name in enumerate(evidence.penalty.names) if name == "stribeck"]
     if found is None or not shapes or found.relative < EXPLAINED:

@@ -1,4 +1,4 @@
-"""Values that the recording does not determine, with what it lacks: speeds, reversals, loads, acceleration, travel."""
+"""Values that the recording does not determine, and its deficits: speed, reversals, load, acceleration, travel."""
 
 from __future__ import annotations
 
@@ -25,29 +25,29 @@ UNDETERMINED = FindingType(
     advice=f"record what is missing, or fix the parameter{DESIGNED}",
 )
 
-# A parameter is not well determined where its 95 % interval is wider than this to either side, or when other windows
-# move it by so many errors. Wider than 5 % would leave unnamed what is off by 5 % by chance.
+# A parameter is not well determined if its 95 % interval is wider than this on either side, or if other windows
+# change it by more than this number of errors. With a limit above 5 %, errors of 5 % by chance would not be reported.
 _LARGE_ERROR = 0.04
-# A gain is a calibration: where the load hardly varies, it is named above this.
+# A gain is a calibration. If the load hardly varies, it is reported above this.
 _LARGE_GAIN_ERROR = 0.01
 _GAIN = ("sensor_gain", "sensor_offset")
 _LARGE_SHIFT = 3.0
 _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
-_NEARLY = 0.5  # of the limit: so uncertain is what moves with a parameter beyond it
+_NEARLY = 0.5  # of the limit: so uncertain are other parameters that correlate with one beyond it
 _LOAD_FRICTION = 0.05
-HIDES = 0.5  # noise in the velocity's change over a window: more of it than of the motion
+HIDES = 0.5  # noise in the velocity's change over a window: above it, noise exceeds the motion
 _PAIRS = 5
 _LOW_SPEED = ("static", "stribeck", "stribeck_velocity", "stribeck_exponent")
 _FEW = 3  # names in a sentence
-_SHOWN = 4  # more of them in the details; the evidence has all
-_ACT = 73  # characters of what to record: with the verb before it, 80
+_SHOWN = 4  # further names in the details; the evidence contains all
+_ACT = 73  # characters of the motion to record; 80 with the verb
 
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
     short: str
-    text: str  # why, where the short one does not say it all
+    text: str  # full reason, if the short one is not enough
     measured: Mapping[str, Measured]
 
 
@@ -88,7 +88,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _title(values: Sequence[str], missing: Sequence[str]) -> tuple[str, int]:
-    """The values and what the recording lacks for them, as many as a title holds; and how many values it has."""
+    """Return values and deficits of the recording, as many as fit into a title, and the number of values in it."""
     title, count = "", 1
     for count in range(min(_FEW, len(values)), 0, -1):
         for lacks in range(min(2, len(missing)), -1, -1):
@@ -104,9 +104,9 @@ def _others(count: int) -> str:
 
 
 def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, Lack]]:
-    """Why parameters are not well determined, of those for which the recording lacks something, and what it lacks."""
+    """Return why parameters are not well determined, if the recording lacks something, and these deficits."""
     excitation = Excitation(evidence)
-    # By findings of their own.
+    # These have their own findings.
     elsewhere = {name for each in evidence.undivided for name in each.change}
     elsewhere |= set(without_friction(evidence))
     reasons: dict[str, list[_Reason]] = {}
@@ -120,20 +120,20 @@ def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, La
             continue
         reasons[p.name] = found
         known = lacks.get(lack.quantity)
-        # Of two figures for the same quantity the one that asks for more.
+        # If two figures apply to the same quantity, the larger requirement is kept.
         if known is None or lack.wanted > known.wanted:
             lacks[lack.quantity] = lack
     for p in _as_uncertain(evidence, reasons):
         if p.name not in reasons and p.name not in elsewhere:
             reasons[p.name] = [_uncertain(p, evidence)]
-    # More time helps least where something else is missing, too.
+    # More time is the last advice, because it helps least if other quantities are missing.
     return reasons, dict(sorted(lacks.items(), key=lambda entry: entry[0] == "duration"))
 
 
 def _as_uncertain(evidence: Evidence, names: Collection[str]) -> list[ParameterEstimate]:
     """Return parameters nearly as uncertain as one of `names` that correlates with them.
 
-    Two parameters that the recording hardly separates are wrong together; one may stay just below the limit.
+    Two parameters that the recording hardly separates are wrong together, even if one of them is just below the limit.
     """
     tied = {
         name
@@ -152,7 +152,7 @@ def _as_uncertain(evidence: Evidence, names: Collection[str]) -> list[ParameterE
 
 
 def _lack(p: ParameterEstimate, evidence: Evidence, excitation: Excitation) -> Lack | None:
-    """What the recording lacks for a parameter; None where the model's misfit makes its error large."""
+    """Return the deficit of the recording for a parameter; None if the model's residual makes its error large."""
     if _hidden(p, evidence):
         return excitation.noise()
     lack = excitation.lack(p)
@@ -165,15 +165,15 @@ def _lack(p: ParameterEstimate, evidence: Evidence, excitation: Excitation) -> L
 
 
 def wide(evidence: Evidence) -> tuple[str, ...]:
-    """Parameters that are not well determined, whatever the reason."""
+    """Return parameters that are not well determined, for any reason."""
     return tuple(p.name for p in evidence.parameters.values() if _why_undetermined(p, evidence))
 
 
 def with_partners(evidence: Evidence, names: Collection[str]) -> tuple[str, ...]:
-    """The parameters, and the rest of the friction at low speed if they have a part of it.
+    """Return the parameters, plus the other friction parameters at low speed if they contain one of these.
 
-    Its height and its decay lie on one curve: what moves one of them moves the other by an amount that no shift of
-    first order shows.
+    Height and decay of this friction lie on one curve. An effect on one of them changes the other by an amount that a
+    first-order shift does not show.
     """
     low = [name for name, p in evidence.parameters.items() if p.vary and _kind(name) in _LOW_SPEED]
     partners = low if set(low) & set(names) else []
@@ -181,7 +181,7 @@ def with_partners(evidence: Evidence, names: Collection[str]) -> tuple[str, ...]
 
 
 def listed(names: Collection[str], room: int = TITLE) -> str:
-    """At most three names in a sentence, fewer where they need more characters than there is room for."""
+    """Return at most three names for a sentence; fewer if there is no room for them."""
     text = ""
     for count in range(min(_FEW, len(names)), 0, -1):
         text = ", ".join(list(names)[:count]) + _others(len(names) - count)
@@ -193,7 +193,7 @@ def listed(names: Collection[str], room: int = TITLE) -> str:
 def _worst_pairs(
     correlations: Mapping[tuple[str, str], float], names: Collection[str]
 ) -> list[tuple[tuple[str, str], float]]:
-    """The pairs with one of the parameters `names` that the recording separates least; a few of possibly thousands."""
+    """Return the pairs with one of `names` that the recording separates least; only a few of many."""
     pairs = [
         (pair, correlation)
         for pair, correlation in correlations.items()
@@ -212,7 +212,7 @@ def _advice(
     if motions:
         while len(text := ", ".join(motions)) > _ACT:
             motions.pop()
-        if set(lacks) == {"velocity_noise"}:  # another log of the same motion would do
+        if set(lacks) == {"velocity_noise"}:  # another log of the same motion is enough
             yield Action("record", text=text)
         else:
             yield other_motion(
@@ -226,21 +226,21 @@ def _advice(
         yield Action("inspect", text=text)
     if sign_was_guessed:
         gain = evidence.parameters["sensor_gain"].value
-        # A bound of 0 is refused: the sensor's residual is divided by the gain.
+        # A bound of 0 is refused, because the sensor's residual is divided by the gain.
         bound = {"sensor_gain": {"min" if gain > 0.0 else "max": float(f"{0.01 * gain:.1e}")}}
         yield Action("call", {"parameters": bound}, text="if that is its sign")
 
 
 def _kind(name: str) -> str:
-    """A parameter's name without direction and recording."""
+    """Return a parameter's name without direction and recording."""
     return name.split("[")[0].removesuffix("_positive").removesuffix("_negative")
 
 
 def scale_of(p: ParameterEstimate, evidence: Evidence) -> float:
-    """Reference of the interval's width: an offset, or one phase of a harmonic, may be zero."""
+    """Return the reference of the interval's width, because an offset or one phase of a harmonic may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), evidence.torque_level)
-    if p.name == "load_friction":  # a joint may have none
+    if p.name == "load_friction":  # it may be 0 for a joint
         return max(abs(p.value), _LOAD_FRICTION)
     family, _, rest = p.name.partition("_")
     if family in ("gravity", "ripple", "position"):
@@ -257,7 +257,7 @@ def scale_of(p: ParameterEstimate, evidence: Evidence) -> float:
 def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]:
     if _hidden(p, evidence):
         share = evidence.residuals.noise_share
-        # The noise adds its share to the variance that the inertia's slope is divided by.
+        # Noise adds to the variance of the velocity's change, which is the divisor of the inertia's slope.
         text = (
             "velocity noise hides the inertia in windows of any length"
             if share > HIDES
@@ -273,7 +273,7 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
     reasons = []
     if _half_width(p) > (_LARGE_GAIN_ERROR if p.name in _GAIN else _LARGE_ERROR) * scale:
         reasons.append(_uncertain(p, evidence))
-    chance = evidence.chance[p.name]  # a shift is part of p.stderr, and would hide itself
+    chance = evidence.chance[p.name]  # p.stderr contains the shift, which would hide it
     shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
     if scale > 0.0 and shift > _LARGE_SHIFT * chance and shift > _NOTICEABLE_SHIFT * scale:
         text = (
@@ -289,7 +289,7 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
 
 
 def _uncertain(p: ParameterEstimate, evidence: Evidence) -> _Reason:
-    """The standard error, as a share where the value itself is what it is held against."""
+    """Return the standard error, as a share if the value itself is the reference."""
     scale = scale_of(p, evidence)
     error = p.stderr or 0.0
     relative = scale == abs(p.value) and scale > 0.0
@@ -305,7 +305,7 @@ def _uncertain(p: ParameterEstimate, evidence: Evidence) -> _Reason:
 
 
 def _half_width(p: ParameterEstimate) -> float:
-    """Half of the 95 % interval, without what no recording of this joint could determine; 0 without one."""
+    """Return half of the 95 % interval, without the part that no recording can determine; 0 without an interval."""
     if p.interval is None:
         return 0.0
     half = 0.5 * (p.interval[1] - p.interval[0])
@@ -318,7 +318,7 @@ def _hidden(p: ParameterEstimate, evidence: Evidence) -> bool:
 
 
 def _with_unit(p: ParameterEstimate) -> str:
-    """The standard error as the table has it."""
+    """Return the standard error as in the table."""
     return f"{two_digits(p.stderr or 0.0)} {p.unit}".rstrip()
 
 

@@ -1,4 +1,4 @@
-"""An offset and two Coulomb frictions: their sum is known, how it divides is not."""
+"""An offset and two Coulomb frictions: only their sum is determined."""
 
 from __future__ import annotations
 

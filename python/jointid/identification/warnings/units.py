@@ -1,4 +1,4 @@
-"""What to do where degrees were taken for radians: state a unit that no header states, never overrule a header's."""
+"""Advice if degrees were read as radians: state a unit that no header states, and never override a header."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ IMPLAUSIBLE_UNITS = FindingType(
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
 
-# Position's change over the integral of the velocity, both read in SI → the units that they are in.
+# Position's change over the integral of the velocity, both read in SI units → their true units.
 _FACTORS: tuple[tuple[float, dict[str, str]], ...] = (
     (1.0 / (2.0 * math.pi), {"position": "rev"}),
     (2.0 * math.pi, {"velocity": "rev_s"}),
@@ -38,7 +38,7 @@ _CLOSE = 0.03
 def unit_by_factor(
     recording: Recording, factor: float, ratio: float | None = None
 ) -> tuple[str, tuple[Action, ...]]:
-    """Return which unit a factor between position and velocity suggests, as words and as advice.
+    """Return the unit that a factor between position and velocity suggests, as words and as advice.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def unit_by_factor(
 
 
 def degrees_advice(recording: Recording, signals: Sequence[str]) -> Action:
-    """How to read signals that seem to be in degrees."""
+    """Return advice to read signals that seem to be in degrees."""
     assumed = recording.metadata.get("assumed_units")
     unstated = [name for name in signals if isinstance(assumed, list | tuple) and name in assumed]
     overridden = recording.metadata.get("overridden_units")

@@ -30,7 +30,7 @@ VELOCITY_MISMATCH = FindingType(
 )
 
 MISMATCH = 0.03  # of the position's rate
-_WRONG = 1.1  # a factor that no filter or gain explains: a wrong fact, of which nothing says that it is the velocity's
+_WRONG = 1.1  # a factor that no filter or gain explains: a fact is wrong, perhaps not that of the velocity
 _OTHER_UNIT = 3.0  # a factor that a side of the gear may explain
 _DEGREE = np.pi / 180.0
 _WITHOUT_VELOCITY = Action(
@@ -100,7 +100,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
 
 
 def _units_against_the_file(recording: Recording) -> dict[str, str]:
-    """The units that the file states and the call replaces, of a motion; none where the file leaves one open."""
+    """Return units of the motion that the call states instead of the file; none if the file leaves one open."""
     assumed, overridden = (
         recording.metadata.get(name) for name in ("assumed_units", "overridden_units")
     )
@@ -113,7 +113,7 @@ def _units_against_the_file(recording: Recording) -> dict[str, str]:
 
 
 def _stated_facts(recording: Recording, factor: float) -> Iterator[Action]:
-    """What the call states and a factor between position and velocity corrects: the rate, the gear ratio."""
+    """Yield corrections of facts in the call that explain a factor between position and velocity: rate, gear ratio."""
     stated = recording.metadata
     period, ratio = stated.get("sample_period"), stated.get("gear_ratio")
     if isinstance(period, int | float):
@@ -130,13 +130,13 @@ def _stated_facts(recording: Recording, factor: float) -> Iterator[Action]:
 
 
 def _short(value: float) -> float:
-    """A value of four digits; of two where these are within 1 %, as a rate or a ratio is stated."""
+    """Return a value with four digits, or with two if these are within 1 %, as rates and ratios are usually stated."""
     two = float(f"{value:.2g}")
     return two if abs(two / value - 1.0) < 0.01 else float(f"{value:.4g}")
 
 
 def raise_if_far_off(recordings: Sequence[Recording]) -> None:
-    """Raise `InputError` if a velocity is so large that the joint seems to stand still beside it."""
+    """Raise `InputError` if a velocity is so large that the joint seems to stand still in comparison."""
     for number, run in enumerate(recordings):
         found = inspect(run).found.agreement
         if found is not None and 0.0 < abs(found.scale) < 1.0 / _OTHER_UNIT:

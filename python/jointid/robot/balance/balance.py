@@ -19,22 +19,22 @@ from jointid.robot.motion.motion import Motion
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-_LEAST = 0.2  # of a window that has to be usable
-_STEP = 5e-4  # [s], for the torque's change with the delay of commands
+_LEAST = 0.2  # smallest usable share of a window
+_STEP = 5e-4  # [s], step of the derivative of the torque by the delay of commands
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rows:
-    """Windows of all joints and recordings, in the order of time; a row for each joint and window: (rows,)."""
+    """Windows of all joints and recordings, in the order of time: (rows,), one row for each joint and window."""
 
     joint: Whole
-    piece: Whole  # counted through all recordings
-    window: Whole  # counted in each piece
+    piece: Whole  # number of the piece, counted through all recordings
+    window: Whole  # number of the window in its piece
     start: Array  # [s]
     stop: Array  # [s]
     duration: Array  # integrated time [s]
-    velocity: Array  # the joint's mean
-    torque: Array  # integral of the measured one [N·m·s]
+    velocity: Array  # mean velocity of the joint
+    torque: Array  # integral of the measured torque [N·m·s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,22 +43,23 @@ class Balance:
 
     rows: Rows
     labels: tuple[tuple[int, str], ...]  # joint and name of each parameter of `matrix`
-    keys: tuple[str, ...]  # of their terms in the core's table; empty of what every joint has
-    least: Array  # their lower bounds
+    # keys of their terms in the core's table; empty for parameters that every joint has
+    keys: tuple[str, ...]
+    least: Array  # lower bounds of the parameters
     matrix: Array  # (rows, parameters)
-    inertia: Array  # (rows, directions), by changes of the inertial parameters
-    basis: Array  # (10 n, directions), these changes, of all links' inertial parameters
-    known: Array  # (rows,), integral of the torque of given rotor inertias
-    # (rows,), change of the torque's integral with the delay of commands [N·m]; 0 where no delay is looked for
+    inertia: Array  # (rows, directions), integrals per change of the inertial parameters
+    basis: Array  # (10 n, directions), these changes, for the inertial parameters of all links
+    known: Array  # (rows,), integral of the torque of the stated rotor inertias
+    # (rows,), change of the torque's integral with the delay of commands [N·m]; 0 if no delay is searched
     by_delay: Array
-    standing: Array  # (n,), share of the time that each joint's balance leaves out
+    standing: Array  # (n,), share of the time that is left out of each joint's balance
     samples: int
     velocity_noise: Array  # (n,)
-    summings: tuple[Summing, ...]  # one a piece: for columns that are not linear
-    places: tuple[Whole, ...]  # numbers of each joint's rows
+    summings: tuple[Summing, ...]  # one for each piece: for columns that are not linear
+    places: tuple[Whole, ...]  # row numbers of each joint
 
     def columns_of(self, models: Sequence[str], dropped: Collection[int] = ()) -> list[int]:
-        """Return the places of the columns of joints with these models, without the inertia of some rotors."""
+        """Return the positions of the columns of joints with these models, without the inertia of some rotors."""
         friction = [{"", *(term.key for term in terms_of(model))} for model in models]
         return [
             place
@@ -77,7 +78,7 @@ class Balance:
 def balance_of(robot: Robot, motions: Iterable[Motion], duration: float, basis: Array) -> Balance:
     """Return the balances of a robot's joints over windows of a duration [s]; `basis` is as in `Balance`.
 
-    Motions are taken one after the other; of each only its velocities and windows are kept.
+    The motions are processed one after the other. Only the velocities and windows of each motion are kept.
     """
     parts = [_part(robot, motion, number, duration, basis) for number, motion in enumerate(motions)]
     first = parts[0]
@@ -107,7 +108,7 @@ def balance_of(robot: Robot, motions: Iterable[Motion], duration: float, basis: 
 
 
 def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Array) -> Balance:
-    """The balances of one recording."""
+    """Return the balances of one recording."""
     windows = Windows.of(motion.time, duration)
     summing = Summing.of(robot, motion, windows)
     columns = linear_columns(robot, motion, summing)
@@ -181,7 +182,7 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Arr
 
 
 def _by_delay(robot: Robot, motion: Motion) -> Array:
-    """How torques change with the delay of commands, where it is looked for; (n, samples)."""
+    """Return the change of the torques with the delay of commands, (n, samples); 0 if no delay is searched."""
     if robot.drive is None or robot.drive.delay is not None:
         return np.zeros_like(motion.torque)
     step = np.full(robot.n, _STEP)

@@ -1,4 +1,4 @@
-"""What held-out torque decides: which joints have a shaped term, and how much the URDF's inertias say."""
+"""Choices by held-out torque: which joints have a shaped term, and how much weight the URDF's inertias have."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from jointid.robot.balance.solving import PriorRows, Solution
 Array = NDArray[np.float64]
 
 _CERTAINTIES = (1.0, 3.0, 10.0, 30.0, 100.0)
-_CLEAR = 1.0  # standard errors by which the misfit falls
+_CLEAR = 1.0  # standard errors by which the residual falls
 
 
 def with_shapes(
     found: ShapedSolution, products: Products, shaped: ShapedTerms, prior: PriorRows
 ) -> tuple[int, ...]:
-    """Return the joints that need their shaped term, as static friction; products and prior are of the other columns.
+    """Return the joints that need their shaped term, such as static friction.
 
-    Each stretch of time is predicted from the others, with the shaped terms of all joints and without that of one. It
-    is kept where it makes the joint's own prediction better by more than its scatter over the stretches. A shape at the
-    bound of its range, or a coefficient at 0, is no such term.
+    `products` and `prior` are those of the other columns. Each stretch of time is predicted from the other stretches,
+    with the shaped terms of all joints and without the term of one joint. The term is kept if it improves the joint's
+    own prediction by more than the scatter over the stretches. A term with its shape at the bound of the range, or
+    with a coefficient of 0, is not kept.
     """
     joints = shaped.joints
     every = np.arange(products.columns + len(joints))
@@ -42,10 +43,10 @@ def with_shapes(
 
 
 def certainty(products: Products, plain: Solution, prior: PriorRows) -> tuple[float, PriorRows]:
-    """Return how certain the URDF's inertias are made, as a factor, and what is then known of the parameters.
+    """Return the certainty of the URDF's inertias, as a factor, and the resulting prior of the parameters.
 
-    Base parameters are many; of a short motion each fits some of its noise. They are held near the URDF's by as much as
-    makes the prediction of held-out stretches best.
+    There are many base parameters, and in a short motion each fits some of the noise. The prior holds them near the
+    URDF's values. The factor is the one that gives the best prediction of held-out stretches.
     """
     if not prior.target.size:
         return 0.0, prior
@@ -63,7 +64,7 @@ def certainty(products: Products, plain: Solution, prior: PriorRows) -> tuple[fl
 def held_out_misfits(
     sums: Array, prior_product: Array, scatter: Array, columns: NDArray[np.int64]
 ) -> Array:
-    """Weighted squared residuals of each stretch and joint, with the values that the other stretches give."""
+    """Return the weighted squared residuals of each stretch and joint, with values fitted to the other stretches."""
     both = np.append(columns, sums.shape[-1] - 1)
     part = sums[:, :, both[:, None], both]
     each = np.array([weighted(fold, scatter) for fold in part])

@@ -29,27 +29,27 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Column:
-    """One linear parameter and what it adds to each joint's balance."""
+    """One linear parameter and its columns in the balances of the joints."""
 
-    joint: int  # whose parameter it is
+    joint: int  # joint that the parameter belongs to
     name: str
-    values: Mapping[int, Array]  # joint whose balance it enters → its integrals over all windows
-    key: str = ""  # of the term in the core's table; empty of what every joint has
-    least: float = field(default=-np.inf)  # lower bound: 0 of what cannot be negative
+    values: Mapping[int, Array]  # joint of the balance → integrals over all windows
+    key: str = ""  # key of the term in the core's table; empty for parameters that every joint has
+    least: float = field(default=-np.inf)  # lower bound: 0 if the parameter cannot be negative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Summing:
-    """Integrals over intervals summed over the windows, of each joint's usable intervals alone."""
+    """Sums of integrals over the windows, from the usable intervals of each joint."""
 
-    velocity: Array  # (n, samples), of the joints
-    usable: Flags  # (n, samples - 1), intervals in which a joint's balance holds
+    velocity: Array  # (n, samples), velocities of the joints
+    usable: Flags  # (n, samples - 1), intervals in which the joint's balance holds
     windows: Windows
     step: Array  # (samples - 1,) [s]
 
     @classmethod
     def of(cls, robot: Robot, motion: Motion, windows: Windows) -> Summing:
-        """Return it for a motion: a joint's balance holds where every friction in it is known."""
+        """Return the sums for a motion. A joint's balance holds in an interval if every friction in it is known."""
         usable = motion.moving.copy()
         for joint in range(robot.n):
             for motor in np.flatnonzero(robot.coupled & (robot.couplings[:, joint] != 0.0)):
@@ -66,8 +66,9 @@ class Summing:
 def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Column]:
     """Return the columns of friction without shape parameters, of offsets, and of rotor inertias.
 
-    A joint's viscous coefficient is the torque at the joint per its own speed. What a coupled motor adds to it is in
-    it; its own coefficient says what it does beyond that: the torque at one joint per speed of another.
+    A joint's viscous coefficient is the torque at the joint per its own speed. It contains the contribution of a
+    coupled motor. The motor's own coefficient describes the coupling: the torque at one joint per speed of another
+    joint.
     """
     found: list[Column] = []
     for joint in range(robot.n):
@@ -79,7 +80,7 @@ def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Colum
             found.append(Column(joint=joint, name="rotor_inertia", values=values, least=0.0))
         if _gainless(motion, joint):
             assert motion.of_unit_gain is not None
-            # What the drive adds is taken from what the other parameters have to explain.
+            # The drive's torque is subtracted from the torque that the other parameters explain.
             pushed = torque_integrals(motion.of_unit_gain[joint], summing.step, motion.torque_held)
             values = {joint: summing(joint, -pushed)}
             found.append(Column(joint=joint, name=POSITION_GAIN, values=values, least=0.0))
@@ -87,7 +88,7 @@ def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Colum
 
 
 def _gainless(motion: Motion, joint: int) -> bool:
-    """Whether the gain of a joint's drive is identified."""
+    """Return whether the gain of the joint's drive is identified."""
     return motion.of_unit_gain is not None and bool(motion.of_unit_gain[joint].any())
 
 
@@ -103,10 +104,10 @@ def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
             column(t.name, _integrals(t, velocity, travel, summing.step), key, least_of(t))
             for key, t in LINEAR_TERMS.items()
         ),
-        # The load is known with the links' inertias only: see `loads`.
+        # The load is known only when the links' inertias are known: see `loads`.
         column(LOAD.name, np.zeros_like(travel), LOAD.key, least_of(LOAD)),
         column(DIFFERENCE, np.abs(travel)),
-        # Of a gain that is found from the weight at rest, an offset would take all of it away.
+        # A gain is identified from the weight at rest. An offset would absorb that weight.
         *((column("torque_offset", summing.step),) if not _gainless(motion, joint) else ()),
     ]
 
@@ -126,7 +127,7 @@ def _of_motor(motor: int, robot: Robot, motion: Motion, summing: Summing) -> lis
 
 
 def _integrals(term: _core.Term, velocity: Array, travel: Array, step: Array) -> Array:
-    """Integrals of a term's basis over the intervals."""
+    """Return the integrals of a term's basis over the intervals."""
     if term.basis == CONSTANT.basis:
         return direction_integrals(velocity, step)
     if term.basis == VISCOUS.basis:
@@ -135,6 +136,6 @@ def _integrals(term: _core.Term, velocity: Array, travel: Array, step: Array) ->
 
 
 def rotor_values(motor: int, robot: Robot, motion: Motion, summing: Summing) -> dict[int, Array]:
-    """Integrals of the torque that a motor's inertia of 1 needs, at each joint that it turns with."""
+    """Return the integrals of the torque for a motor inertia of 1, at each joint that the motor turns."""
     row, change = robot.couplings[motor], np.diff(motion.motor_velocity[motor])
     return {joint: row[joint] * summing(joint, change) for joint in map(int, np.flatnonzero(row))}

@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 class Fit:
     """Values of all parameters."""
 
-    models: tuple[str, ...]  # one a joint
-    # joint and name; of a base parameter None and the combination
+    models: tuple[str, ...]  # one for each joint
+    # joint and name; for a base parameter None and the combination
     labels: tuple[tuple[int | None, str], ...]
     units: tuple[str, ...]  # of base parameters
     values: Array
@@ -32,9 +32,9 @@ class Fit:
     at_bound: NDArray[np.bool_]
     jacobian: Array  # (rows, parameters)
     residual: Array  # (rows,)
-    scatter: Array  # (joints,), root mean square of each one's residuals
+    scatter: Array  # (joints,), root mean square of each joint's residuals
     columns: InertiaColumns
-    inertial: Array  # (10 n,), of all links
+    inertial: Array  # (10 n,), inertial parameters of all links
 
     @classmethod
     def of(
@@ -46,7 +46,7 @@ class Fit:
         shaped: ShapedTerms,
         found: ShapedSolution,
     ) -> Self:
-        """Return the fit of a solution; `products` are of the balance's and the inertia's columns of these models."""
+        """Return the fit of a solution; `products` are of the balance's and the inertia's columns for these models."""
         kept = balance.columns_of(models, columns.dropped)
         labels = [balance.labels[place] for place in kept]
         inertial: list[tuple[int | None, str]] = [
@@ -94,7 +94,7 @@ class Fit:
     def covariance(self, balance: Balance) -> Covariance:
         """Return the covariance of the free parameters, clustered over segments of motion.
 
-        A delay of commands that is not known counts as one more parameter.
+        An unknown delay of commands counts as one more parameter.
         """
         rows = balance.rows
         weight = 1.0 / self.scatter[rows.joint]

@@ -1,4 +1,4 @@
-"""Parts of a robot's balance: what is fitted to some of its rows, and what that tells of the others."""
+"""Parts of a robot's balance: fit some rows and predict the others."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ Whole = NDArray[np.int64]
 
 
 def blocks_of(rows: Rows, runs: Sequence[int], count: int) -> Whole:
-    """Return the block of each row: of one recording, stretches of as many rows; otherwise whole recordings.
+    """Return the block of each row: equal stretches of one recording, otherwise whole recordings.
 
-    There are at most `count` blocks; `runs` is the recording of each piece.
+    There are at most `count` blocks. `runs` gives the recording of each piece.
     """
     recording = np.asarray(runs)[rows.piece]
     every = np.unique(recording)
@@ -31,7 +31,7 @@ def blocks_of(rows: Rows, runs: Sequence[int], count: int) -> Whole:
         for number, group in enumerate(groups_of(every.size, count)):
             found[np.isin(recording, every[group])] = number
         return found
-    # A window's rows stay together: those of all joints begin at the same time.
+    # The rows of a window stay together: the windows of all joints begin at the same time.
     begins = block_starts(rows.start, count, np.unique(rows.joint).size)
     return np.searchsorted(begins, rows.start, side="right").astype(np.int64)
 
@@ -50,7 +50,7 @@ def part_of_balance(balance: Balance, kept: Flags) -> Balance:
 
 
 def predicted_torque(fit: Fit, balance: Balance) -> Array:
-    """Return the integrals of torque that a fit tells of a balance, which it need not have seen."""
+    """Return the integrals of torque that a fit predicts for a balance; the fit may be from other data."""
     inertial = [
         value
         for value, (joint, name) in zip(fit.values, fit.labels, strict=True)

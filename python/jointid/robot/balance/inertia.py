@@ -1,4 +1,4 @@
-"""What is identified of the links' inertias: nothing, a scale a link, or base parameters."""
+"""Identified parameters of the links' inertias: none, one scale for each link, or base parameters."""
 
 from __future__ import annotations
 
@@ -17,29 +17,30 @@ from jointid.robot.links.robot import Robot
 
 Array = NDArray[np.float64]
 
-_STATES = 64  # random ones: far more rows than parameters
-_DEPENDENT = 1e-8  # what is left of a column, of its length, that the others explain
-_SHOWN = 1e-6  # of the coefficients in a combination
+_STATES = 64  # number of random states: far more rows than parameters
+_DEPENDENT = 1e-8  # share of a column's length that other columns do not explain
+_SHOWN = 1e-6  # smallest coefficient that a combination shows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class InertiaColumns:
-    """Columns of the inertia that are identified, and what remains as given."""
+    """Columns of the identified inertia, and the inertia that stays as in the URDF."""
 
-    # one a column; of a scale the joint's number, of a base parameter the combination
+    # one for each column: joint number of a scale, combination of a base parameter
     names: tuple[str, ...]
     units: tuple[str, ...]
-    joints: tuple[int, ...]  # link that each belongs to
+    joints: tuple[int, ...]  # link of each column
     directions: Array  # (10 n, columns), inertial parameters of all links per unit of each column
-    given: Array  # (10 n,), what is not identified
-    start: Array  # (columns,), values of the URDF
-    dropped: tuple[int, ...] = ()  # motors whose inertia no motion separates from the links'
-    # (columns,), which base parameters contain a rotor's inertia
+    given: Array  # (10 n,), inertial parameters that are not identified
+    start: Array  # (columns,), values in the URDF
+    # motors with an inertia that no motion separates from the links' inertias
+    dropped: tuple[int, ...] = ()
+    # (columns,), True for base parameters that contain a rotor's inertia
     of_rotors: NDArray[np.bool_] | None = None
-    # links whose scale no motion separates from the rotors' inertias or other scales; they stay at 1
+    # Links with a scale that no motion separates from the rotors' inertias or other scales; they stay at 1.
     fixed: tuple[int, ...] = ()
     scales: bool = False  # whether the columns are scales
-    prior: Prior | None = None  # what the URDF says of base parameters
+    prior: Prior | None = None  # prior of base parameters from the URDF
 
     def inertial(self, values: Array) -> Array:
         """Return the inertial parameters of all links that have these values, shape (10 n,)."""
@@ -48,7 +49,7 @@ class InertiaColumns:
         return np.asarray(self.given + self.directions @ values)
 
     def loading(self, values: Array) -> Array:
-        """Return inertial parameters whose torque loads the gears, shape (10 n,).
+        """Return the inertial parameters that give the load of the gears, shape (10 n,).
 
         A base parameter that also contains a rotor's inertia has the URDF's value: a rotor does not load its gear.
         """
@@ -57,7 +58,7 @@ class InertiaColumns:
         return np.asarray(self.given + self.directions @ values)
 
     def prior_rows(self, others: int) -> PriorRows:
-        """Return what the prior says of the parameters, behind so many others."""
+        """Return the prior's rows, with the parameters of the prior after `others` other parameters."""
         if self.prior is None:
             return PriorRows.nothing(others + len(self.names))
         empty = np.zeros((len(self.names), others))
@@ -70,7 +71,7 @@ class InertiaColumns:
         return np.asarray(balance.inertia @ within(balance.basis, self.directions))
 
     def known(self, balance: Balance) -> Array:
-        """Return the integrals of what is given."""
+        """Return the integrals of the inertia that is not identified."""
         return np.asarray(balance.inertia @ within(balance.basis, self.given) + balance.known)
 
 
@@ -82,8 +83,8 @@ def within(basis: Array, changes: Array) -> Array:
 def basis_of(robot: Robot, mode: str) -> Array:
     """Return the changes of inertial parameters that a mode needs, shape (10 n, directions).
 
-    For the URDF's inertias, as they are or scaled, these are the links one by one; behind them those by which an error
-    of the URDF is named: see `moment_columns`.
+    For the URDF's inertias, unchanged or scaled, the first directions are the links one by one. After them come the
+    directions that name an error of the URDF: see `moment_columns`.
     """
     if mode == FREE:
         return inertia_columns(robot, FREE).directions
@@ -152,7 +153,7 @@ def inertia_columns(robot: Robot, mode: str) -> InertiaColumns:
 
 
 def _structure(robot: Robot) -> tuple[Array, Array]:
-    """Momentum and force of random states by the links' and the motors' parameters."""
+    """Return momentum and force of random states, per parameter of the links and motors."""
     tree, n = robot.tree, robot.n
     generator = np.random.default_rng(0)
     position = generator.uniform(-np.pi, np.pi, (n, _STATES))
@@ -170,7 +171,7 @@ def _structure(robot: Robot) -> tuple[Array, Array]:
 
 
 def independent(matrix: Array) -> tuple[list[int], Array]:
-    """Return the columns that those before them do not explain, and a matrix that combines these to all columns."""
+    """Return the columns that are independent of those before them, and a matrix that combines them to all columns."""
     basis = np.zeros((matrix.shape[0], 0))
     kept: list[int] = []
     nothing = _DEPENDENT * float(np.linalg.norm(matrix, axis=0).max(initial=0.0))
@@ -191,7 +192,7 @@ def independent(matrix: Array) -> tuple[list[int], Array]:
 
 
 def _combination(robot: Robot, weights: Array, free: list[int]) -> str:
-    """A base parameter in words: ``Izz_1 + Iyy_2 + 0.2 mx_2``."""
+    """Return a base parameter as text: ``Izz_1 + Iyy_2 + 0.2 mx_2``."""
     names = [f"{what}_{link + 1}" for link in range(robot.n) for what in INERTIAL]
     names += [f"rotor_{motor + 1}" for motor in free]
     parts = []

@@ -1,7 +1,7 @@
 """The columns of inertia of each joint's torque balance, integrated over windows.
 
-Over a window, the integral of a joint's torque is the change of its momentum, less the integral of the force that its
-motion and gravity exert, plus that of friction (see `momentum`). No piece of it is an acceleration.
+Over a window, the integral of a joint's torque is the change of its momentum, minus the integral of the force of
+motion and gravity, plus the integral of friction (see `momentum`). No part of it is an acceleration.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from jointid.robot.motion.motion import Motion
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-_PIECE = 1024  # samples at a time: their columns stay in the processor's cache
+_PIECE = 1024  # samples in one step: their columns fit into the processor's cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class InertiaIntegrals:
-    """Integrals of a joint's balance by inertial parameters, for each of its usable windows."""
+    """Integrals of a joint's balance per inertial parameter, for each of its usable windows."""
 
-    links: tuple[int, ...]  # that the joint carries
+    links: tuple[int, ...]  # links that the joint carries
     columns: Array  # (windows, 10 * links)
 
 
 def inertia_integrals(
     tree: LinkTree, motion: Motion, usable: Flags, windows: Windows
 ) -> list[InertiaIntegrals]:
-    """Return each joint's integrals by inertial parameters of the links that it carries, over its usable intervals."""
+    """Return each joint's integrals per inertial parameter of the links that it carries, over its usable intervals."""
     pairs, count = tree.pairs, len(windows.edges) - 1
     total = np.zeros((len(pairs), 10, count))
     rows = np.array([joint for joint, _ in pairs])

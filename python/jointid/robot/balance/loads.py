@@ -1,4 +1,4 @@
-"""Friction in proportion to the links' torque: its columns, which the links' inertias give."""
+"""Columns of friction in proportion to the links' torque; the links' inertias give these columns."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Array = NDArray[np.float64]
 
 
 def loaded(balance: Balance, models: Sequence[str], links: Array) -> Balance:
-    """Return a balance with the columns of the joints that have friction under load.
+    """Return a balance with the columns of friction under load, for the joints that have it.
 
-    `links` are the inertial parameters, (10 n,), in the span of the balance's basis. Within a window the mean of the
-    torque stands for the load, and the mean of the direction for its sign.
+    `links` are the inertial parameters, (10 n,), in the span of the balance's basis. Within a window, the mean of the
+    torque is the load, and the mean of the direction is its sign.
     """
     concerned = [joint for joint, model in enumerate(models) if is_loaded(model)]
     if not concerned:

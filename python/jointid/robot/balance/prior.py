@@ -1,8 +1,8 @@
-"""What a URDF says of base parameters: a weak prior, and the inertial parameters next to the URDF's.
+"""A weak prior of base parameters from the URDF, and the inertial parameters closest to the URDF's.
 
-A short motion leaves some base parameters nearly free; as plain least squares has them, they fit its noise and predict
-other motions worse. The URDF's values, each uncertain by as much as a link of its mass and size can have, keep them
-where the data say nothing; what the data determine they do not move.
+A short motion leaves some base parameters nearly free. Plain least squares fits noise with them, and predicts other
+motions worse. In the prior, each value of the URDF has the uncertainty that a link of its mass and size can have. It
+holds the parameters where the data give no information, and hardly moves those that the data determine.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from jointid.robot.links.robot import Robot
 
 Array = NDArray[np.float64]
 
-_LIGHTEST = 0.1  # of the links' mean mass: as uncertain is a link that weighs less
+_LIGHTEST = 0.1  # of the links' mean mass: a lighter link is as uncertain as a link with this mass
 _SHORTEST = 0.05  # [m]
 
 
@@ -28,18 +28,18 @@ class Prior:
 
     mean: Array  # (base,)
     root: Array  # (base, base), takes differences from the mean to unit variance
-    urdf: Array  # (10 n,), inertial parameters
-    # (10 n, base), smallest change of the inertial parameters per change of the base parameters, in terms of their
-    # sizes
+    urdf: Array  # (10 n,), inertial parameters of the URDF
+    # (10 n, base), smallest change of the inertial parameters per change of the base parameters, relative to the
+    # parameters' sizes
     gain: Array
-    of_links: Array  # (base, 10 n), base parameters by the links' inertial parameters
+    of_links: Array  # (base, 10 n), base parameters per inertial parameter of the links
 
     @classmethod
     def of(cls, robot: Robot, combined: Array, free: Sequence[int]) -> Self | None:
         """Return the prior, or None where the URDF has no masses.
 
-        `combined`, (base, 10 n + rotors), is base parameters by those of links and free rotors; `free` are the rotors'
-        motors.
+        `combined`, (base, 10 n + rotors), gives the base parameters from the parameters of links and free rotors.
+        `free` are the motors of these rotors.
         """
         urdf = robot.tree.inertias.ravel()
         mass = robot.tree.inertias[:, 0]
@@ -51,7 +51,7 @@ class Prior:
         spread = combined * scale
         covariance = spread @ spread.T
         root = np.linalg.inv(np.linalg.cholesky(covariance))
-        # What a rotor has that no motion separates counts as the links', so that they explain all of the torque.
+        # The part of a rotor that no motion separates is counted as the links', so that they explain the whole torque.
         alone = combined[:, : urdf.size] * sizes.ravel()
         gain = (alone * sizes.ravel()).T @ np.linalg.inv(alone @ alone.T)
         return cls(
@@ -63,12 +63,12 @@ class Prior:
         )
 
     def completed(self, base: Array) -> Array:
-        """Return the inertial parameters with these base parameters that are nearest to the URDF's."""
+        """Return the inertial parameters with these base parameters that are closest to the URDF's."""
         return np.asarray(self.urdf + self.gain @ (base - self.mean))
 
 
 def _sizes(robot: Robot, mass: Array) -> Array:
-    """How large each inertial parameter of a link may be: of its mass at its distance."""
+    """Return the possible size of each inertial parameter of a link: its mass at its distance."""
     inertias = robot.tree.inertias
     first = np.linalg.norm(inertias[:, 1:4], axis=1) / mass
     trace = inertias[:, 4] + inertias[:, 6] + inertias[:, 9]

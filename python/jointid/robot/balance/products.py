@@ -1,7 +1,8 @@
-"""The rows of all joints as products of their columns: what every solution needs, however long the recording is.
+"""Products of the columns of all joints' rows: the input of every solution, independent of the recording's length.
 
-Rows are looked at once. Least squares with any weights of the joints, any columns left out and any stretch of time held
-out then costs the same. The columns are scaled to unit length, so that little is lost by squaring the condition.
+The rows are read only once. After that, least squares costs the same for any weights of the joints, any omitted
+columns and any held-out stretch of time. Columns are scaled to unit length, because products square the condition
+number.
 """
 
 from __future__ import annotations
@@ -17,22 +18,22 @@ from jointid.robot.balance.balance import Rows
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-FOLDS = 8  # stretches of time, held out in turn
+FOLDS = 8  # number of stretches of time that are held out in turn
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Products:
     """Columns and target of all joints."""
 
-    blocks: tuple[Array, ...]  # scaled columns of each joint's rows, the target last
-    places: tuple[Whole, ...]  # numbers of each joint's rows
-    folds: tuple[Whole, ...]  # stretch of time of each of them
-    norms: Array  # lengths of the columns and of the target, by which they are divided
+    blocks: tuple[Array, ...]  # scaled columns of each joint's rows; the target is the last one
+    places: tuple[Whole, ...]  # row numbers of each joint
+    folds: tuple[Whole, ...]  # stretch of time of each row
+    norms: Array  # lengths of the columns and of the target, used as divisors
     sums: Array  # (FOLDS, joints, columns + 1, columns + 1), products by stretch and joint
 
     @classmethod
     def of(cls, blocks: list[Array], places: list[Whole], rows: Rows) -> Self:
-        """Return the products of unscaled blocks, which are scaled in place."""
+        """Return the products of unscaled blocks. The blocks are scaled in place."""
         power = sum((np.einsum("ij,ij->j", each, each) for each in blocks), np.zeros(1))
         norms = np.sqrt(np.where(power > 0.0, power, 1.0))
         stretch = folds_of(rows)
@@ -51,12 +52,12 @@ class Products:
 
     @property
     def columns(self) -> int:
-        """How many columns there are besides the target."""
+        """Number of columns, without the target."""
         return self.norms.size - 1
 
     @property
     def counts(self) -> Whole:
-        """Rows of each joint."""
+        """Number of rows of each joint."""
         return np.array([place.size for place in self.places])
 
     def with_columns(self, added: dict[int, Array]) -> Array:
@@ -83,19 +84,19 @@ class Products:
 
 
 def folds_of(rows: Rows) -> Whole:
-    """Return the stretch of time of each row: as many windows in each, through all recordings."""
+    """Return the stretch of time of each row. All stretches have the same number of windows, over all recordings."""
     count = rows.start.size
     return np.asarray(np.arange(count, dtype=np.int64) * FOLDS // max(count, 1))
 
 
 def weighted(sums: Array, scatter: Array) -> Array:
-    """Return products of all joints, each weighted by the scatter of its residuals; over stretches if there are any."""
+    """Return the sum of all joints' products, weighted by the residuals' scatter; for each stretch, if present."""
     if sums.ndim == 4:
         sums = sums.sum(axis=0)
     return np.asarray(np.einsum("jab,j->ab", sums, 1.0 / scatter**2))
 
 
 def powers(sums: Array, values: Array) -> Array:
-    """Return the squared residuals of each joint (and stretch) with some values of the scaled parameters."""
+    """Return the squared residuals of each joint (and stretch) for given values of the scaled parameters."""
     full = np.append(values, -1.0)
     return np.asarray(np.maximum(np.einsum("...ab,a,b->...", sums, full, full), 0.0))

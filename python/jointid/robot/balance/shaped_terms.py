@@ -1,7 +1,7 @@
-"""Friction with a shape parameter, as static friction that decays with speed: the only nonlinear parameters.
+"""Friction with a shape parameter, such as static friction that decays with speed. Only these shapes are nonlinear.
 
-All linear parameters are eliminated (variable projection: Golub and Pereyra 1973; its derivative as by Kaufman 1975).
-Each joint's shape starts where a grid of shapes explains most of what the other terms leave.
+All linear parameters are eliminated (variable projection: Golub and Pereyra 1973; derivative after Kaufman 1975).
+Each joint's shape starts at the shape on a grid that explains most of the residual of the other terms.
 """
 
 from __future__ import annotations
@@ -24,38 +24,38 @@ from jointid.robot.links.parameters import least_of
 
 Array = NDArray[np.float64]
 
-_GRID = 16  # shapes, from the lowest to the highest
+_GRID = 16  # number of shapes, from the lowest to the highest
 _STEPS = 12
-_SETTLED = 1e-5  # of the misfit, and of the logarithm of a shape
-_LONGEST = 1.0  # step of a logarithm
+_SETTLED = 1e-5  # relative change of the residual, and change of the logarithm of a shape
+_LONGEST = 1.0  # largest step of a logarithm
 _HALVINGS = 6
-_APART = 1e-5  # of logarithms on both sides of a shape, for a slope
+_APART = 1e-5  # difference of the logarithm on both sides of a shape, for a slope
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapedTerms:
-    """Columns of the terms with a shape parameter of some joints."""
+    """Columns of the terms with a shape parameter, for the joints that have them."""
 
     balance: Balance
     terms: Mapping[int, _core.Term]  # by joint
 
     @classmethod
     def of(cls, balance: Balance, models: Sequence[str]) -> Self:
-        """Return those of joints with these models."""
+        """Return the terms of joints with these models."""
         found = {joint: shaped_term(model) for joint, model in enumerate(models)}
         return cls(balance=balance, terms={j: term for j, term in found.items() if term})
 
     @property
     def joints(self) -> tuple[int, ...]:
-        """Joints that have such a term."""
+        """Joints with a shaped term."""
         return tuple(self.terms)
 
     def column(self, joint: int, shape: float) -> Array:
-        """Integrals of the basis over a joint's rows."""
+        """Return the integrals of the basis over a joint's rows."""
         return self._integrals(joint, lambda velocity: self._basis(joint, velocity, shape))
 
     def slope(self, joint: int, shape: float) -> Array:
-        """Derivative of the column by the shape's logarithm."""
+        """Return the derivative of the column by the shape's logarithm."""
 
         def of(velocity: Array) -> Array:
             low, high = (
@@ -78,7 +78,7 @@ class ShapedTerms:
         return np.concatenate(found)
 
     def torque(self, values: Mapping[tuple[int | None, str], float]) -> Array:
-        """Integrals over all rows with these values of the joints' parameters."""
+        """Return the integrals over all rows for given values of the joints' parameters."""
         total = np.zeros(self.balance.rows.torque.size)
         for joint, term in self.terms.items():
             column = self.column(joint, values[joint, term.shapes[0]])
@@ -86,11 +86,11 @@ class ShapedTerms:
         return total
 
     def bounds(self, joint: int) -> tuple[float, float]:
-        """Lowest and highest shape that the joint's speeds show."""
+        """Return the lowest and highest shape that can be seen at the joint's speeds."""
         peak = max(
             float(np.abs(summing.velocity[joint]).max()) for summing in self.balance.summings
         )
-        # A joint that never moves shows none.
+        # A joint that never moves shows no shape.
         return shape_bounds(self.terms[joint].shapes[0], peak or 1.0)
 
     @property
@@ -100,7 +100,7 @@ class ShapedTerms:
 
     @property
     def norms(self) -> Array:
-        """Lengths by which the columns are divided: those of the joints' durations."""
+        """Divisors of the columns: the lengths of the joints' durations."""
         rows = self.balance.rows
         return np.array(
             [
@@ -112,14 +112,14 @@ class ShapedTerms:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapedSolution:
-    """A solution with shapes."""
+    """A solution with shaped terms."""
 
-    # values of the fixed columns, then the coefficient of each joint's shaped term, as scaled
+    # scaled values of the fixed columns, then the scaled coefficient of each joint's shaped term
     solution: Solution
-    logs: Array  # of the shapes
-    # shapes at a bound of their range, or of a term that a bound holds at 0
+    logs: Array  # logarithms of the shapes
+    # True if the shape is at a bound of its range, or its coefficient is held at 0
     at_bound: NDArray[np.bool_]
-    sums: Array  # products with the columns of shaped terms, by stretch and joint
+    sums: Array  # products with the columns of shaped terms, for each stretch and joint
 
 
 def solved_with_shapes(
@@ -129,9 +129,10 @@ def solved_with_shapes(
     prior: PriorRows,
     start: Sequence[float] | None = None,
 ) -> ShapedSolution:
-    """Return the best values of linear parameters and shapes; `products`, `least` and `prior` are of the fixed columns.
+    """Return the best values of linear parameters and shapes.
 
-    The search begins at `start`, logarithms of the shapes, or on a grid.
+    `products`, `least` and `prior` are those of the fixed columns. The search begins at `start`, the logarithms of
+    the shapes, or on a grid.
     """
     plain = solved(products, least, prior)
     if not shaped.joints:
@@ -168,19 +169,19 @@ def solved_with_shapes(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _At:
-    """The fit at some shapes."""
+    """The fit at given shapes."""
 
     misfit: float
     values: Array
     held: NDArray[np.bool_]
     scatter: Array
-    slope: Array  # of the misfit's half, negative
+    slope: Array  # negative derivative of half the squared residual
     curvature: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Search:
-    """Gauss-Newton on the logarithms of the shapes, all linear parameters eliminated."""
+    """Gauss-Newton search for the logarithms of the shapes, with all linear parameters eliminated."""
 
     shaped: ShapedTerms
     products: Products
@@ -190,7 +191,7 @@ class _Search:
     prior_product: Array
 
     def sums(self, logs: Array, *, slopes: bool) -> Array:
-        """Products with the columns of shaped terms; their slopes, if asked for, stand behind all of them."""
+        """Return products with the columns of shaped terms; their slopes, if requested, come after all of them."""
         count, first = len(self.shaped.joints), self.products.columns
         added = {}
         for place, joint in enumerate(self.shaped.joints):
@@ -213,7 +214,7 @@ class _Search:
         return found[:, :, order[:, None], order]
 
     def from_grid(self, plain: Solution) -> Array:
-        """The shape of each joint that explains most of the residual of everything else."""
+        """Return for each joint the shape that explains most of the residual of all other terms."""
         whole = self.products.sums.sum(axis=0)
         gram = weighted(whole, plain.scatter)[:-1, :-1]
         inverse = np.linalg.pinv(gram, rcond=1e-12, hermitian=True)
@@ -233,7 +234,7 @@ class _Search:
         return logs
 
     def at(self, logs: Array, scatter: Array) -> _At:
-        """The fit at some shapes, and how the misfit changes with them."""
+        """Return the fit at given shapes, and the change of the residual with them."""
         count, first = len(self.shaped.joints), self.products.columns
         by_joint = self.sums(logs, slopes=True).sum(axis=0)
         linear = np.append(np.arange(first + count), by_joint.shape[-1] - 1)
@@ -243,7 +244,7 @@ class _Search:
         values, held = above_bounds(product, self.least)
         full = np.append(values, -1.0)
         sizes = values[first:]
-        # The residual's products with the derivatives, and what of these the linear parameters cannot follow.
+        # Products of the residual with the derivatives, and the part of them that the linear parameters cannot follow.
         pushed = -(whole[np.ix_(slopes, linear)] @ full) * sizes
         free = np.flatnonzero(~held)
         across = whole[np.ix_(slopes, free)] * sizes[:, None]
@@ -261,7 +262,7 @@ class _Search:
         )
 
     def searched(self, logs: Array, scatter: Array) -> tuple[Array, _At]:
-        """The best shapes with these weights."""
+        """Return the best shapes with these weights."""
         low, high = self.bounds.T
         now = self.at(logs, scatter)
         for _ in range(_STEPS):

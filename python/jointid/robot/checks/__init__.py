@@ -1,1 +1,1 @@
-"""What is held against an identification: torques, another regression, slow motion."""
+"""Checks of an identification: sign and size of torques, a second regression, slow motion."""

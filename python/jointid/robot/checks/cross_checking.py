@@ -1,4 +1,4 @@
-"""The second look compared with an identification, and the finding that it does not agree."""
+"""The cross-check of an identification, and the finding that the two disagree."""
 
 from __future__ import annotations
 
@@ -24,15 +24,16 @@ from jointid.robot.result.record import RobotJoint
 Array = NDArray[np.float64]
 
 COMPARED = (*JOINT_FRICTION, "rotor_inertia")
-_APART, _ERRORS = 0.05, 3.0  # of the value, and of both errors
-_MATTERS = 0.01  # of the joint's torque: a smaller difference spoils nothing
-_VAGUE = 0.5  # of the value: with more doubt the look says nothing
+_APART, _ERRORS = 0.05, 3.0  # relative to the value, and to both errors
+_MATTERS = 0.01  # of the joint's torque: a smaller difference is harmless
+_VAGUE = 0.5  # of the value: with a larger error the cross-check gives no answer
 _SHOWN = 5
-_PAST = 2.2  # of the speed that a shape stands for: static friction is gone
-_RISEN = 3.0  # of the same: dry friction has risen
+_PAST = 2.2  # of the speed of a shape: above it, static friction has decayed
+_RISEN = 3.0  # of the speed of a shape: above it, dry friction has risen fully
 _GONE = 0.01  # of a coefficient
 _CLEARER = 0.25  # of the squared residuals
-_POOR, _BETTER = 0.05, 0.5  # residual of the torque, and the second look's squared one beside it
+# residual over torque, and the ratio of the cross-check's squared residual to it
+_POOR, _BETTER = 0.05, 0.5
 
 
 def cross_checked(
@@ -41,9 +42,9 @@ def cross_checked(
     request: Request,
     requested_delay: Array | None,
 ) -> CrossCheck:
-    """Return the second look at signals as they were recorded, with the delay of the torques that a call names [s].
+    """Return the cross-check on signals as recorded, with the delay of the torques that a call states [s].
 
-    A drive's signals are without the delay of its commands: nothing else is late.
+    The signals of a drive already contain the delay of its commands. Nothing else in them is late.
     """
     robot, estimate = attempt.robot, attempt.estimate
     delay, other = requested_delay, attempt.delay
@@ -82,13 +83,13 @@ def cross_checked(
 
 
 def clearer(stamped: CrossCheck, even: CrossCheck) -> CrossCheck:
-    """The look at the even clock of the samples, if it leaves far less of the torque than the one at the stamps."""
+    """Return the check on the even clock if its residual is far smaller than that of the check on the stamps."""
     left = [sum(own**2 for _, own in each.residuals.values()) for each in (even, stamped)]
     return even if even.residuals and left[0] < _CLEARER * left[1] else stamped
 
 
 def _past_shape(joint: RobotJoint) -> float:
-    """The speed past which a joint's shaped term is gone, or all there; infinite where it never is."""
+    """Return the speed above which a joint's shaped term has settled; infinite if it never settles."""
     term = shaped_term(joint.model)
     if term is None:
         return 0.0
@@ -128,7 +129,7 @@ def _compared(attempt: Attempt, look: SecondLook, joint: int, name: str) -> Comp
 
 
 def _residuals(attempt: Attempt, look: SecondLook) -> Iterator[tuple[str, tuple[float, float]]]:
-    """Each joint's residual over its torque with both sets of values."""
+    """Yield each joint's residual over its torque, with both sets of values."""
     fit = attempt.fit
     places = {label: place for place, label in enumerate(fit.labels)}
     for joint, (labels, matrix) in look.matrix.items():
@@ -146,13 +147,13 @@ def _much_worse(identified: float, second: float) -> bool:
 
 
 def slow_motion(signals: Sequence[PlainSignals]) -> float:
-    """The speed below which the second look has no rows, of the joint in the middle [rad/s or m/s]."""
+    """Return the median over the joints of the speed below which the cross-check has no rows [rad/s or m/s]."""
     peaks = [np.abs(each.velocity).max(axis=1) for each in signals] or [np.zeros(1)]
     return float(f"{SETTINGS[0][1] * float(np.median(np.max(peaks, axis=0))):.2g}")
 
 
 def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
-    """The blocking finding that the second look does not support the values; `slow`: what it left out [rad/s]."""
+    """Yield the blocking finding that the cross-check does not support the values; `slow`: its least speed [rad/s]."""
     if found.agrees is not False or found.explained:
         return
     apart = {name: each for name, each in found.parameters.items() if each.agrees is False}

@@ -1,4 +1,4 @@
-"""Whether the joints' columns, or those of their torques, are in another order than the robot's."""
+"""Check whether the joints' columns, or only their torques, are in another order than the robot's joints."""
 
 from __future__ import annotations
 
@@ -23,29 +23,27 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Order = tuple[int, ...]
 
-_STRETCHES = 2  # of the recordings, for each order that is tried
-_LEAST = 1e-4  # of a squared torque: less does not decide between orders
-_CLEARLY = (
-    0.5  # of the logarithms of what is left, squared and summed: what an exchange has to gain
-)
-_WELL = 0.1  # of the torques, root mean square: what the right order may leave, and a wrong one does not
-_POOR = 0.05  # of the torques: less unexplained is not looked at
-_BETTER = 0.1  # of what the given order leaves, squared
+_STRETCHES = 2  # stretches of the recordings for each order that is tried
+_LEAST = 1e-4  # of a squared torque: a smaller residual does not decide between orders
+_CLEARLY = 0.5  # summed fall of the logarithms of the squared residuals: required for an exchange
+_WELL = 0.1  # of the torques, root mean square: residual of the right order at most, and of a wrong order at least
+_POOR = 0.05  # of the torques: a smaller residual is not examined
+_BETTER = 0.1  # of the squared residual of the original order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Found:
     order: Order
     score: float
-    left: float  # of the squared torques, in the mean
+    left: float  # mean residual, relative to the squared torques
 
 
 def joint_order(
     recordings: Sequence[RobotRecording], robot: Robot, given: Mapping[int, LinkFactor]
 ) -> Finding | None:
-    """Return the blocking finding of another order of all signals or of the torques, if it alone explains the torques.
+    """Return the blocking finding of another order of all signals or of the torques, if only that explains the torques.
 
-    `given` is what the joints' rows say as they are taken.
+    `given` are the factors from the joints' rows in their present order.
     """
     before = float(_left(given, robot.n).mean())
     if robot.n < 2 or before < _POOR**2:
@@ -67,7 +65,7 @@ def _explains(found: _Found, before: float) -> bool:
 
 
 def _climbed(n: int, score: Callable[[Order], _Found]) -> _Found:
-    """The order that no exchange of two joints betters; it has as few exchanges as that takes."""
+    """Return the order that no exchange of two joints improves, with as few exchanges as possible."""
     best = score(tuple(range(n)))
     while True:
         pairs = itertools.combinations(range(n), 2)
@@ -92,7 +90,7 @@ def _exchanged(order: Order, first: int, second: int) -> Order:
 def _score_of_torques(
     recordings: Sequence[RobotRecording], robot: Robot
 ) -> Callable[[Order], _Found]:
-    """Of an order of the torques alone: each joint's rows with each torque are made once."""
+    """Return the score of an order of the torques; the rows of each joint with each torque are computed once."""
     n = robot.n
     table = np.ones((n, n))  # joint and torque
     for turn in range(n):

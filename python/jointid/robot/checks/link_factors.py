@@ -1,4 +1,4 @@
-"""What each joint's rows say of its torque: its factor on what the URDF's links need, friction aside."""
+"""Factor of each joint's torque on the torque of the URDF's links, with friction fitted."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from jointid.robot.motion.plain_motion import PlainSignals
 
 Array = NDArray[np.float64]
 
-_SEEN = 0.15  # of what friction leaves, squared: what the links may leave to say a factor
+_SEEN = 0.15  # of the squared residual with friction alone: largest residual with the links for a valid factor
 
-_WORSE = 1.2  # of what friction leaves, squared: with more a factor is not this joint's
+_WORSE = 1.2  # of the squared residual with friction alone: with a larger residual, the factor is not this joint's
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkFactor:
-    """What one joint's rows say of its torque: its factor on the URDF's, and squared residuals over its torque."""
+    """Factor of one joint's torque on the URDF's, and its squared residuals over its torque."""
 
     value: float
     left: float  # residual with the factor
@@ -34,11 +34,11 @@ class LinkFactor:
 
     @property
     def sure(self) -> bool:
-        """Whether the links explain enough to say it."""
+        """Whether the links explain enough for a valid factor."""
         return self.left < _SEEN * self.without and self.left < CLEAR**2
 
     def contradicts(self, factor: float) -> bool:
-        """Whether these rows are worse with a factor than without the links."""
+        """Return whether the residual is larger with a factor than without the links."""
         curvature = (self.without - self.left) / self.value**2 if self.value else 0.0
         return self.left + (factor - self.value) ** 2 * curvature > _WORSE * self.without
 
@@ -46,7 +46,7 @@ class LinkFactor:
 def link_rows(
     signals: Sequence[PlainSignals], robot: Robot, directions: Array | None = None
 ) -> dict[int, Block]:
-    """Return rows with the links' torque as the last column, or further changes of their parameters behind it."""
+    """Return rows with the links' torque as the last column, or with further changes of their parameters after it."""
     weights = robot.tree.inertias.reshape(-1, 1)
     every = weights if directions is None else np.hstack([weights, directions])
     count = every.shape[1]
@@ -64,7 +64,7 @@ def link_rows(
 
 
 def link_factor(block: Block) -> LinkFactor:
-    """Return what the rows of a joint say."""
+    """Return the factor from the rows of a joint."""
     target, links = block.targets[:, 0], block.matrix[:, -1]
     power = float(target @ target) or 1.0
     rest = without(block.matrix[:, :-1], np.column_stack([target, links]))
@@ -79,6 +79,6 @@ def link_factor(block: Block) -> LinkFactor:
 
 
 def weight_factors(signals: Sequence[PlainSignals], robot: Robot) -> dict[int, float]:
-    """Return the factor of each joint's torque on what the URDF's links need, of those whose links explain it."""
+    """Return the factor of each joint's torque on the torque of the URDF's links, if the links explain that torque."""
     factors = {joint: link_factor(block) for joint, block in link_rows(signals, robot).items()}
     return {joint: each.value for joint, each in factors.items() if each.sure}

@@ -1,4 +1,4 @@
-"""Rows of a plain inverse-dynamics regression, and their least squares."""
+"""Rows of a plain inverse-dynamics regression, and their least-squares solution."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Label = tuple[int | None, str]
 
-BETTER = 0.8  # of a residual: a delay, or a recorded velocity, that leaves more is not taken
-_THINNED = 3  # rows in half an average: more say the same
-_FEWEST = 40  # rows of a joint
-_BLOCK, _BLOCKS = 0.5, 12  # [s] of motion that is one observation, and how many there are at least
-_RANK = 1e-9  # of the largest eigenvalue of scaled normal equations
+BETTER = 0.8  # of a residual: a delay, or a recorded velocity, is used only below this ratio
+_THINNED = 3  # rows in half an average: further rows add no information
+_FEWEST = 40  # smallest number of rows of a joint
+# [s] of motion that counts as one observation, and the smallest number of them
+_BLOCK, _BLOCKS = 0.5, 12
+_RANK = 1e-9  # of the largest eigenvalue of the scaled normal equations
 _UNSEEN = 1e-6
-_AS_GOOD = 1.05  # a residual with another delay, which the rows cannot tell from their own
+_AS_GOOD = 1.05  # ratio of a residual with another delay, below which the rows do not decide between the delays
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,14 +36,14 @@ class Block:
 
     labels: tuple[Label, ...]  # of the columns
     matrix: Array  # (rows, columns)
-    targets: Array  # (rows, delays), the torque less what is known of it
-    stretch: Whole  # (rows,), of time: one observation
+    targets: Array  # (rows, delays), the torque minus its known part
+    stretch: Whole  # (rows,), number of the stretch of time; a stretch is one observation
     size: float  # root mean square of the torque
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Rows:
-    """One joint's columns in a stretch, the samples that are rows, and what is known of the torque there."""
+    """One joint's columns in a stretch, the samples that are rows, and the known torque there."""
 
     kept: Whole
     labels: tuple[Label, ...]
@@ -52,20 +53,20 @@ class _Rows:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Columns:
-    """What a regression is to determine."""
+    """The parameters of a regression and its settings."""
 
     robot: Robot
     inertia: InertiaColumns
     slowest: Array  # (n,), speed of each joint below which there are no rows
-    models: Sequence[str]  # one a joint
-    links: Array  # (10 n,), inertial parameters that the load of friction comes from
-    # columns by signals, width and least speeds, once they were made
+    models: Sequence[str]  # one for each joint
+    links: Array  # (10 n,), inertial parameters that give the load of friction
+    # columns that were already computed, by signals, width and least speeds
     made: dict[tuple[int, int, tuple[float, ...]], list[_Rows]] = field(default_factory=dict)
 
     def blocks(
         self, signals: Sequence[PlainSignals], period: float, fastest: float, delays: Array
     ) -> dict[int, Block]:
-        """Rows of the joints that move enough."""
+        """Return the rows of the joints that move enough."""
         peaks = [np.abs(np.vstack([s.velocity, self._motors(s)])).max(axis=1) for s in signals]
         limit = fastest * np.max(peaks, axis=0)
         limit[: self.robot.n] = np.maximum(limit[: self.robot.n], self.slowest)
@@ -120,7 +121,7 @@ class Columns:
         return found
 
     def _rows(self, signals: PlainSignals, width: int, limit: Array) -> list[_Rows]:
-        """Each joint's columns, which no delay of the torque changes."""
+        """Return each joint's columns. They do not depend on the delay of the torque."""
         key = (id(signals), width, tuple(limit))
         if key not in self.made:
             self.made[key] = self._made(signals, width, limit)
@@ -162,7 +163,7 @@ class Columns:
     def _friction(
         self, joint: int, speed: Array, motors: Array, change: Array
     ) -> dict[Label, Array]:
-        """Columns of a joint's balance besides the links; "given" is what is known."""
+        """Return the columns of a joint's balance without the links; "given" is the known torque."""
         robot, own = self.robot, speed[joint]
         found: dict[Label, Array] = {
             (joint, term.name): _core.friction_basis(term.key, own, ())
@@ -170,7 +171,7 @@ class Columns:
             if not term.needs_load
         }
         shaped = shaped_term(self.models[joint])
-        if shaped is not None and shaped.settles:  # rows are where it has risen
+        if shaped is not None and shaped.settles:  # rows are at speeds where it has risen
             found[joint, shaped.name] = np.sign(own)
         found[joint, "torque_offset"] = np.ones_like(own)
         found[joint, "given"] = np.zeros_like(own)
@@ -193,7 +194,7 @@ class Columns:
 def own_delays(
     blocks: dict[int, Block], grid: Array, better: float = BETTER
 ) -> tuple[dict[int, float], dict[int, float]]:
-    """Each joint's delay by its own rows, and the residual that it leaves."""
+    """Return each joint's delay from its own rows, and the residual with it."""
     none = int(np.argmin(np.abs(grid)))
     found, left = {}, {}
     for joint, block in blocks.items():
@@ -208,16 +209,16 @@ def own_delays(
 
 
 def as_good(block: Block) -> Block:
-    """A joint's rows with the second of two delays, if it leaves hardly more than the first."""
+    """Return a joint's rows with the second of two delays, if its residual is hardly larger than with the first."""
     basis = np.linalg.qr(block.matrix / np.maximum(np.linalg.norm(block.matrix, axis=0), 1e-300))[0]
     left = np.linalg.norm(block.targets - basis @ (basis.T @ block.targets), axis=0)
     return replace(block, targets=block.targets[:, [int(left[1] < _AS_GOOD * left[0])]])
 
 
 def solved(blocks: dict[int, Block], n: int) -> tuple[dict[Label, float], dict[Label, float]]:
-    """Values of all joints together, each weighted by its residual, and their clustered errors.
+    """Return the values of all joints together, each joint weighted by its residual, and their clustered errors.
 
-    What no row tells from another parameter has an infinite error.
+    A parameter that no row separates from the others has an infinite error.
     """
     every = list(dict.fromkeys(label for block in blocks.values() for label in block.labels))
     if not every:

@@ -1,7 +1,7 @@
-"""The second look: a plain filtered least squares of inverse dynamics, and whether it finds the same values.
+"""The cross-check: a plain filtered least squares of inverse dynamics, to compare its values with the identified ones.
 
-It is the first thing that an expert does by hand, on the signals as they were given. Only stated facts, the zeros that
-were found and the shapes of friction are those of the identification.
+It is the usual first analysis by hand, on the signals as recorded. Only the stated facts, the zeros that were found
+and the shapes of friction are taken from the identification.
 """
 
 from __future__ import annotations
@@ -26,24 +26,25 @@ from jointid.robot.motion.plain_motion import PlainSignals
 
 Array = NDArray[np.float64]
 
-SETTINGS = ((1.0, 0.15), (0.6, 0.1), (1.5, 0.25))  # of the average's period, and of the peak speed
+# factors on the average's period, and of the peak speed
+SETTINGS = ((1.0, 0.15), (0.6, 0.1), (1.5, 0.25))
 _DELAYS: Array = 0.005 * np.arange(-6.0, 7.0)  # [s]
 _FINE: Array = 0.001 * np.arange(-4.0, 5.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SecondLook:
-    """What a second look found."""
+    """Results of the cross-check."""
 
-    values: dict[Label, float]  # of the first setting
+    values: dict[Label, float]  # values with the first setting
     errors: dict[Label, float]  # clustered over stretches
-    spread: dict[Label, float]  # how far the other settings are from the value
-    # filtered torque of the joints that were examined, with given inertias taken away
+    spread: dict[Label, float]  # largest difference of the values with the other settings
+    # filtered torque of the examined joints, minus the torque of known inertias
     torque: dict[int, Array]
-    matrix: dict[int, tuple[tuple[Label, ...], Array]]  # its columns
+    matrix: dict[int, tuple[tuple[Label, ...], Array]]  # columns of these torques
     size: dict[int, float]  # root mean square of the joint's torque
-    delay: Array  # (n,), that the second look took away by itself [s]
-    recorded: bool  # whether the recorded velocity explained clearly more
+    delay: Array  # (n,), delay that the cross-check found and removed [s]
+    recorded: bool  # True if the recorded velocity explained clearly more
 
 
 def filtered_fit(
@@ -58,9 +59,9 @@ def filtered_fit(
 ) -> SecondLook:
     """Return a plain fit of a robot's torques, without rows below the speeds `slowest`.
 
-    The load of friction is that of links with the inertial parameters `inertial`, (10 n,).
-    `delay` is what a call states of each torque, `other` what the identification took away [s]: where these rows cannot
-    tell it from their own, values differ by so much.
+    The load of friction is that of links with the inertial parameters `inertial`, (10 n,). `delay` is the stated delay
+    of each torque, and `other` the delay that the identification removed [s]. If these rows do not separate `other`
+    from their own delay, the spread of the values contains the difference.
     """
     columns = inertia_columns(robot, mode)
     every = Columns(robot, columns, slowest, models, inertial)

@@ -1,7 +1,7 @@
-"""Whether the torques are torques at all: one sign, one factor, a magnitude, degrees; before anything else is tried.
+"""Check that the torques are torques: one sign, one factor, a magnitude, degrees. It runs before all other checks.
 
-The torques are regressed on what the URDF's links need, besides friction, a rotor and an offset of each joint. Such a
-fault makes every later finding a consequence, so that it is the only one.
+The torques are regressed on the torque of the URDF's links, with friction, a rotor and an offset of each joint. All
+other findings would only be consequences of such a fault, so it is the only finding.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from jointid.robot.result.finding_types import TYPES, listed
 
 Array = NDArray[np.float64]
 
-_FAR = 1.6  # a factor on all torques: no URDF is off by so much in the weight of all links
-_CERTAIN = 2.5  # a factor that no load or link makes, which the URDF does not know
-_OFF = 0.1  # of a logarithm: a joint's factor that differs from 1
-_NEAR = 0.03  # of a torque: another reading is not tried
-_LINK = 0.5  # of what one link's other weight would leave, squared: what a factor has to leave
-_BOTH = 0.2  # of the rows in each direction
-_RANGE = 2.0  # times the URDF's range: no joint moves so far
+_FAR = 1.6  # a factor on all torques: a URDF's total weight is never wrong by this factor
+_CERTAIN = 2.5  # a factor that no unknown load or link explains
+_OFF = 0.1  # of a logarithm: a joint's factor differs from 1
+_NEAR = 0.03  # of a torque: with a smaller residual no other reading is tried
+_LINK = 0.5  # of the squared residual with a changed weight of one link: required of a factor
+_BOTH = 0.2  # smallest share of the rows in each direction
+_RANGE = 2.0  # of the URDF's range: no joint moves further
 _DEGREES = np.pi / 180.0
 _MOVES = 0.05  # [rad or m]
 
@@ -42,7 +42,7 @@ _MOVES = 0.05  # [rad or m]
 def wrong_torques(
     recordings: Sequence[RobotRecording], signals: Sequence[PlainSignals], robot: Robot
 ) -> Finding | None:
-    """Return the blocking finding of torques, or positions, that are not what they are taken for."""
+    """Return the blocking finding of torques, or positions, with a wrong meaning."""
     if not signals:
         return None
     blocks = link_rows(signals, robot)
@@ -81,7 +81,7 @@ def wrong_torques(
 def _several(
     signals: Sequence[PlainSignals], robot: Robot, given: Mapping[int, LinkFactor]
 ) -> Finding | None:
-    """The finding of a factor for each joint, where several differ from 1 and explain what no link explains."""
+    """Return the finding of a factor for each joint, if several differ from 1 and no single link explains this."""
     sure = {joint: each for joint, each in given.items() if each.sure}
     off = [
         joint for joint, each in sure.items() if each.value < 0.0 or abs(np.log(each.value)) > _OFF
@@ -106,13 +106,13 @@ def _several(
 
 
 def _agree(factors: Iterable[LinkFactor]) -> bool:
-    """Whether one factor on all torques says the same."""
+    """Return whether one factor on all torques fits all joints."""
     values = np.array([each.value for each in factors])
     return bool(np.all(values > 0.0) and np.ptp(np.log(values)) < _OFF)
 
 
 def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
-    """The least of what is left, squared and of all torques, if one link had another weight and centre."""
+    """Return the smallest squared residual of all torques if one link had another weight and centre."""
     n = robot.n
     moments = [10 * link + k for link in range(n) for k in range(4)]
     links = np.kron(np.eye(n), np.ones((10, 1))) * robot.tree.inertias.reshape(-1, 1)
@@ -133,7 +133,7 @@ def _otherwise(signals: Sequence[PlainSignals], robot: Robot) -> float:
 
 
 def _tried(signals: Sequence[PlainSignals], robot: Robot, factor: float) -> dict[int, LinkFactor]:
-    """The joints' factors if all positions were multiplied."""
+    """Return the joints' factors if all positions were multiplied by `factor`."""
     moved = [
         replace(each, position=factor * each.position, velocity=factor * each.velocity)
         for each in signals
@@ -142,13 +142,13 @@ def _tried(signals: Sequence[PlainSignals], robot: Robot, factor: float) -> dict
 
 
 def _common(factors: Mapping[int, LinkFactor]) -> float | None:
-    """The factor on which the joints that can say one agree; None where they do not, or none can."""
+    """Return the factor on which the joints with a valid factor agree; None if they do not agree or there are none."""
     sure = np.array([each.value for each in factors.values() if each.sure])
     if not sure.size or 2 * sure.size < len(factors) or not np.all(sure * sure[0] > 0.0):
         return None
     middle = float(np.median(np.abs(sure)))
     spread = float(np.abs(sure).max() / np.abs(sure).min())
-    if spread > max(middle, 1.0 / middle, _FAR):  # a link or a load that the URDF does not know
+    if spread > max(middle, 1.0 / middle, _FAR):  # an unknown link or load
         return None
     common = float(np.copysign(middle, sure[0]))
     if any(each.contradicts(common) for each in factors.values() if not each.sure):
@@ -157,7 +157,7 @@ def _common(factors: Mapping[int, LinkFactor]) -> float | None:
 
 
 def _fits(other: Mapping[int, LinkFactor], given: Mapping[int, LinkFactor]) -> bool:
-    """Whether the torques are the URDF's, by their size, with another reading of the positions, and only with it."""
+    """Return whether the torques have the URDF's size with another reading of the positions, and only with it."""
     common = _common(other)
     if common is None or not 1.0 / _FAR < abs(common) < _FAR:
         return False
@@ -167,7 +167,7 @@ def _fits(other: Mapping[int, LinkFactor], given: Mapping[int, LinkFactor]) -> b
 
 
 def _far(signals: Sequence[PlainSignals], robot: Robot) -> bool:
-    """Whether most joints move over far more than the URDF's range."""
+    """Return whether most joints move over far more than the URDF's range."""
     spans = np.array(robot.tree.spans or (np.inf,) * robot.n)
     moved = np.max([np.ptp(each.position, axis=1) for each in signals], axis=0)
     known = (spans > 0.0) & np.isfinite(spans) & ~np.array(robot.tree.prismatic) & (moved > _MOVES)
@@ -180,8 +180,8 @@ def _far(signals: Sequence[PlainSignals], robot: Robot) -> bool:
 def _unsigned(
     recordings: Sequence[RobotRecording], robot: Robot, blocks: Mapping[int, Block]
 ) -> Finding | None:
-    """Joints whose torque is never negative, although what moves them has to be."""
-    if robot.drive is not None:  # its torques do not come from the recording
+    """Return the joints with a torque that is never negative, although it must be at times."""
+    if robot.drive is not None:  # its torques are computed, not recorded
         return None
     lowest, highest = np.full(robot.n, np.inf), np.full(robot.n, -np.inf)
     for run in recordings:
@@ -218,7 +218,7 @@ def _unsigned(
 
 
 def _folded(block: Block) -> bool:
-    """Whether a joint's rows are the magnitude of what the columns make, and not its value."""
+    """Return whether a joint's rows fit the magnitude of the modelled torque, not its value."""
     target = block.targets[:, 0]
     direction = block.matrix[
         :, block.labels.index(next(e for e in block.labels if e[1] == CONSTANT.name))
@@ -234,7 +234,7 @@ def _scales(robot: Robot, factors: Sequence[float]) -> list[float]:
 
 
 def _divided(robot: Robot, factors: Sequence[float]) -> Action:
-    """The call that takes factors out of the torques."""
+    """Return the call that removes factors from the torques."""
     return Action(
         "call",
         facts_of_scales(robot.drive, _scales(robot, factors), robot.torque_scales),
@@ -244,7 +244,7 @@ def _divided(robot: Robot, factors: Sequence[float]) -> Action:
 
 
 def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Finding:
-    """The torques, multiplied by one factor or reversed, are those of the URDF's links."""
+    """Return the finding that the torques fit the URDF's links only with a common factor or the opposite sign."""
     if 1.0 / _FAR < abs(common) < _FAR:
         return TYPES["reversed_torques"].finding(
             "all torques have the opposite sign to the weight of the URDF's links",
@@ -279,10 +279,10 @@ def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Fin
 
 
 def _reversed(robot: Robot, torques_too: bool) -> Finding:
-    """All positions count the other way."""
+    """Return the finding that all positions have the opposite sign."""
     before = robot.directions or (1.0,) * robot.n
     found: dict[str, object] = {"directions": [-each for each in before]}
-    if not torques_too:  # a direction turns the torque with the position
+    if not torques_too:  # a direction changes the sign of position and torque
         found["torque_scales"] = [-each for each in robot.torque_scales or (1.0,) * robot.n]
     with_torques = " and torques" if torques_too else ""
     return TYPES["reversed_positions"].finding(

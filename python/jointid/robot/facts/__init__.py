@@ -1,1 +1,1 @@
-"""Which given facts are wrong, and what else a misfit tells."""
+"""Diagnosis of wrong facts, and other causes of a large residual."""

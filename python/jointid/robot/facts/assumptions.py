@@ -1,4 +1,4 @@
-"""What is assumed of recordings and robot where nobody said it, and where that is not plausible."""
+"""Assumptions about recordings and robot that no fact states, and checks whether they are plausible."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from jointid.robot.result.finding_types import TYPES, listed
 
 _MOVES = 0.01  # [rad or m]
 _DEGREES = 180.0 / np.pi
-_NEAR = 0.1  # of a logarithm: so near to degrees, a ratio is that of degrees
+_NEAR = 0.1  # of a logarithm: tolerance of the ratio between radians and degrees
 
 
 def assumption_findings(
     recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
 ) -> Iterator[Finding]:
-    """Findings of what was assumed: joints in order, joints that stand, no gravity, and signals in degrees.
+    """Yield findings of assumptions: the order of joints, omitted joints, no gravity, and signals in degrees.
 
-    The robot is as given.
+    `robot` has the facts as stated.
     """
     for run in recordings:
         columns = robot.columns_of(run)
@@ -43,7 +43,7 @@ def assumption_findings(
 
 
 def _left_out(recordings: Sequence[RobotRecording]) -> Iterator[Finding]:
-    """Joints of the log that are on another clock."""
+    """Yield a finding of the joints of the log that have another clock."""
     others: dict[str, str] = {}
     for run in recordings:
         named = run.metadata.get("joints_left_out")
@@ -58,7 +58,7 @@ def _left_out(recordings: Sequence[RobotRecording]) -> Iterator[Finding]:
 
 
 def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Finding]:
-    """Joints of the URDF that were left out and move."""
+    """Yield findings of joints of the URDF that were left out and move."""
     for name in robot.tree.locked:
         spans = [
             float(np.ptp(run.position[:, run.names.index(name)]))
@@ -77,7 +77,7 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
 def _units(
     recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
 ) -> Iterator[Finding]:
-    """Joints with velocities in another unit than their positions."""
+    """Yield findings of joints with velocities in another unit than their positions."""
     for joint, name in enumerate(robot.names):
         ratio = None if robot.tree.prismatic[joint] else _of_velocity(recordings, robot, joint)
         if ratio is None or abs(abs(np.log(ratio)) - np.log(_DEGREES)) >= _NEAR:
@@ -93,13 +93,13 @@ def _units(
 
 
 def _of_velocity(recordings: Sequence[RobotRecording], robot: Robot, joint: int) -> float | None:
-    """The recorded velocity in terms of the position's; None where there is none."""
+    """Return the ratio of the recorded velocity to the position's derivative; None if there is none."""
     run = recordings[0]
     if run.velocity is None:
         return None
     column = robot.columns_of(run)[joint]
     recorded = float(np.median(np.abs(run.velocity[:, column])))
-    every = max(1, run.samples // 200)  # far apart, against the positions' noise
+    every = max(1, run.samples // 200)  # a large distance, against the positions' noise
     time, position = run.time[::every], run.position[::every, column]
     derived = float(np.median(np.abs(np.diff(position) / np.diff(time))))
     return recorded / derived if recorded > 0.0 and derived > 0.0 else None

@@ -1,4 +1,4 @@
-"""Friction that differs between the directions, where the model of a joint has none."""
+"""Check whether friction differs between the directions, for joints with a model without such a difference."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from jointid.robot.links.parameters import DIFFERENCE, VISCOUS
 from jointid.robot.result.finding_types import TYPES, titled
 
 _SURE = 6.0  # standard errors
-_BETTER = 3.0  # standard errors by which held-out stretches fit better
+_BETTER = 3.0  # standard errors by which the residual of held-out stretches falls
 _LARGE = 0.03  # of the viscous friction
 _EXPLAINED = 0.1  # of the squared residual
 
 
 def asymmetry_findings(attempt: Attempt) -> Iterator[Finding]:
-    """Findings of joints whose viscous friction clearly differs between the directions."""
+    """Yield findings of joints with viscous friction that clearly differs between the directions."""
     rows = ExcerptRows(attempt.balance, attempt.fit, attempt.excerpts)
     for joint, (name, found) in enumerate(attempt.estimate.joints.items()):
         keys = [term.key for term in terms_of(found.model)]

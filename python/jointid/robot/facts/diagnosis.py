@@ -1,7 +1,8 @@
-"""Which given facts are wrong: one after the other, each with the ones before it corrected, and what follows from them.
+"""Find wrong facts one after the other, each with the previous ones corrected, and their consequences.
 
-A wrong fact has consequences: friction held at 0, parameters that are not determined, joints that fit badly. They are
-told from its causes by identifying the robot again with the fact as it should be: what is then gone was a consequence.
+A wrong fact has consequences: friction held at 0, parameters that are not determined, joints that fit badly. To
+separate consequences from causes, the robot is identified again with the corrected fact. Findings that then
+disappear were consequences.
 """
 
 from __future__ import annotations
@@ -30,25 +31,25 @@ from jointid.robot.result.findings import doubtful_joints
 Array = NDArray[np.float64]
 
 _ROBOT = "Robot.from_urdf"
-_MOST = 3  # facts that are looked for
-_REFINED = 3  # identifications without a fact, at most
-_BETTER = 0.02  # fall of the joints' logarithmic residuals, summed: less is no correction
-_SIMPLER = 0.3  # of the same: what an error with more values has to gain on a simpler one
-_POOR = 0.15  # of a joint's torque: what is left says that more is wrong
+_MOST = 3  # largest number of facts to find
+_REFINED = 3  # largest number of identifications with the same fact corrected
+_BETTER = 0.02  # summed fall of the joints' logarithmic residuals: a smaller fall is no correction
+_SIMPLER = 0.3  # of the same: extra fall required of an error with more values
+_POOR = 0.15  # of a joint's torque: with a larger residual more must be wrong
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Diagnosis:
-    """Findings of an attempt, and the attempt without the wrong facts."""
+    """Findings of an attempt, and the attempt with corrected facts."""
 
     findings: tuple[Finding, ...]
-    recordings: Sequence[RobotRecording]  # with their columns as they should be
-    corrected: Attempt  # the same attempt where no fact is wrong
+    recordings: Sequence[RobotRecording]  # with their columns corrected
+    corrected: Attempt  # the attempt with corrected facts; the same attempt if no fact is wrong
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Corrected:
-    """A wrong fact, and the identification without it."""
+    """A wrong fact, and the identification with the fact corrected."""
 
     finding: Finding
     recordings: Sequence[RobotRecording]
@@ -59,9 +60,9 @@ class _Corrected:
 def diagnosed(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
 ) -> Diagnosis:
-    """Return an attempt's findings: the given facts that are wrong first, and without what only follows from them.
+    """Return an attempt's findings: the wrong facts first, without findings that only follow from them.
 
-    The recordings are on even clocks, with the torques as they were recorded; the robot is as given.
+    The recordings are on even clocks, with the torques as recorded. The robot has the facts as stated.
     """
     causes: list[Finding] = []
     last = attempt
@@ -86,7 +87,7 @@ def diagnosed(
 def _with_turned_zeros(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
 ) -> _Corrected | None:
-    """The identification with other zeros than the stated ones, where quarter turns explain what these do not."""
+    """Return the identification with other zeros than the stated ones, if quarter turns clearly fit better."""
     if robot.zero_offsets is None or not doubtful_joints(attempt.estimate):
         return None
     zeros = zeros_of(attempt.robot, list(attempt.excerpts.values()), attempt.duration)
@@ -105,7 +106,7 @@ def _with_turned_zeros(
 def _corrected(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
 ) -> _Corrected | None:
-    """The fact that explains most, if it is corrected: what the identification without it leaves decides."""
+    """Return the fact with the best fit after its correction."""
     found = []
     small = [
         _without_error(each, recordings, robot, request, attempt) for each in small_errors(attempt)
@@ -121,7 +122,7 @@ def _corrected(
             _without_fact(each, recordings, robot, request, attempt)
             for each in (wrong, *wrong.others)
         ]
-        # Friction takes power away: that decides where a coupling's sign hardly shows.
+        # Friction dissipates power: this decides between couplings if the sign hardly shows.
         found.append(min(signs, key=lambda each: (_held(each.attempt), _misfit(each.attempt))))
     falls = [_misfit(attempt) - _misfit(each.attempt) for each in found]
     if not falls or max(falls) < _BETTER:
@@ -137,7 +138,7 @@ def _without_error(
     attempt: Attempt,
 ) -> _Corrected:
     for turn in range(_REFINED):
-        # Quarter turns of the zeros that were found stay open, unless it is a zero that is wrong.
+        # Quarter turns of the zeros that were found are searched again, unless a zero is wrong.
         zeros = error.robot.zero_offsets if error.kind == ZERO else robot.zero_offsets
         other = replace(error.robot, zero_offsets=zeros)
         without = attempted(recordings, other, request, attempt.delay)
@@ -180,18 +181,18 @@ def _without_fact(
 
 
 def _misfit(attempt: Attempt) -> float:
-    """Sum of the logarithms of the joints' residuals."""
+    """Return the sum of the logarithms of the joints' residuals."""
     return float(np.sum(np.log(_left(attempt))))
 
 
 def _left(attempt: Attempt) -> Array:
-    """Each joint's residual over its torque."""
+    """Return each joint's residual over its torque."""
     left = [joint.relative_residual for joint in attempt.estimate.joints.values()]
     return np.maximum(left, 1e-6)
 
 
 def _held(attempt: Attempt) -> int:
-    """How many parameters of friction are at a bound."""
+    """Return the number of friction parameters at a bound."""
     return sum(
         p.at_bound is not None
         for joint in attempt.estimate.joints.values()
@@ -201,7 +202,7 @@ def _held(attempt: Attempt) -> int:
 
 
 def _key(found: Finding, attempt: Attempt) -> tuple[str, tuple[str, ...], str]:
-    """What makes two findings of two attempts the same."""
+    """Return a key that is equal for the same finding of two attempts."""
     joint = next((name for name in attempt.robot.names if f" {name} " in f" {found.cause} "), "")
     return found.code, found.parameters, joint
 
@@ -209,7 +210,7 @@ def _key(found: Finding, attempt: Attempt) -> tuple[str, tuple[str, ...], str]:
 def _summary(
     causes: Sequence[Finding], gone: Sequence[Finding], attempt: Attempt, last: Attempt
 ) -> list[Finding]:
-    """What follows from wrong facts, and whether more is wrong."""
+    """Yield the consequences of wrong facts, and whether more is wrong."""
     before, after = attempt.estimate.relative_residual, last.estimate.relative_residual
     evidence = {"before": Measured(before), "after": Measured(after)}
     facts = "this fact" if len(causes) == 1 else "these facts"

@@ -1,8 +1,8 @@
-"""Given facts that are somewhat wrong: each is one to four further columns, and what explains most is the cause.
+"""Small errors of facts. Each is one to four further columns; the error that explains most is the cause.
 
-A base that is not upright, a zero that is a few degrees off, a torque constant, a body that the URDF does not know, a
-link's weight or its centre of mass: the balances of all joints change with each in a way of its own. What a column
-explains counts on stretches of motion from which its value was not taken.
+Examples are a tilted base, a zero that is off by a few degrees, a torque constant, an unknown body, a link's weight
+or its centre of mass. Each changes the balances of all joints in its own pattern. The explained share of a column is
+counted on stretches of motion that were not used for its value.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from jointid.robot.links.robot import Robot
 Array = NDArray[np.float64]
 
 _EXPLAINED = 0.03  # of the held-out squared residual
-_CERTAIN = 2.0  # standard errors of that, by its scatter over stretches
-_WALD = 150.0  # of the values per column; errors of a model, too, are no chance
-_AS_GOOD = 0.93  # of what the best explains: a simpler cause is taken
-_SETTLED = 0.02  # of an error: what is left of it
-_MAY_BE = 0.97  # of it: another cause that is named
+_CERTAIN = 2.0  # standard errors of that share, by its scatter over stretches
+_WALD = 150.0  # Wald statistic per column; so large because the model's errors also exceed chance
+_AS_GOOD = 0.93  # of the best explained share: above it, a simpler cause is preferred
+_SETTLED = 0.02  # of an error: the remainder that is ignored
+_MAY_BE = 0.97  # of the best explained share: above it, another cause is also named
 TILT, ZERO, TORQUE, LINK, CENTRE, PAYLOAD = (
     *("tilted_base", "wrong_zero", "wrong_torque_scale"),
     *("wrong_inertia", "wrong_centre", "payload"),
@@ -44,32 +44,32 @@ _MATTERS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SmallError:
-    """A fact that is somewhat wrong.
+    """A small error of a fact.
 
-    Values of a tilt: further gravity along the base's two other axes, of its size. Of a zero: what is missing [rad or
-    m]. Of a torque or a link: its scale less 1. Of a centre: further first moments [kg·m]. Of a payload: mass, then
-    first moments.
+    Its values depend on the kind. Tilt: further gravity along the base's two other axes, relative to gravity. Zero:
+    missing angle or distance [rad or m]. Torque or link: scale minus 1. Centre: further first moments [kg·m]. Payload:
+    mass, then first moments.
     """
 
-    kind: str  # one of the names above; also the finding's code
-    joint: int | None  # whose zero, torque or link
+    kind: str  # one of the names above, which are also codes of findings
+    joint: int | None  # joint of the zero, torque or link
     values: Array
     errors: Array
-    # of the squared residuals of held-out stretches, weighted by joint, that it explains
+    # explained share of the squared residuals of held-out stretches, weighted by joint
     share: float
-    given: Robot  # as it was given
+    given: Robot  # with the facts as stated
     robot: Robot  # with the fact corrected
-    others: tuple[tuple[str, int | None], ...] = ()  # kinds and joints that explain as much
+    others: tuple[tuple[str, int | None], ...] = ()  # kinds and joints that explain nearly as much
 
 
 _Told = tuple[str, int | None, Share]
-"""Kind, joint, and what it explains."""
+"""Kind, joint, and explained share."""
 
 
 def small_errors(attempt: Attempt) -> list[SmallError]:
-    """Return the small error of a given fact that explains most of what an attempt leaves, if there is one.
+    """Return the small error that explains most of an attempt's residual, or an empty list.
 
-    A simpler one that explains nearly as much stands before it: what each leaves if it is corrected decides.
+    A simpler error that explains nearly as much comes before it. The residuals after correction decide.
     """
     found = [
         (kind, joint, share)
@@ -78,7 +78,7 @@ def small_errors(attempt: Attempt) -> list[SmallError]:
         and share.certainty > _CERTAIN
         and share.wald > _WALD
         and _size(attempt, kind, joint, share.values) > _MATTERS[kind]
-        and not (kind in (TORQUE, LINK) and share.values[0] <= -1.0)  # a sign, or no body
+        and not (kind in (TORQUE, LINK) and share.values[0] <= -1.0)  # a wrong sign, or no body
     ]
     if not found:
         return []
@@ -90,7 +90,7 @@ def small_errors(attempt: Attempt) -> list[SmallError]:
 
 
 def _error(attempt: Attempt, near: list[_Told], of: _Told) -> SmallError:
-    """One of the errors that explain nearly the same, with those that may be it."""
+    """Return one of several errors that explain nearly the same, with the alternatives."""
     kind, joint, share = of
     best = max(each.share for _, _, each in near)
     others = tuple(
@@ -113,9 +113,10 @@ def _error(attempt: Attempt, near: list[_Told], of: _Told) -> SmallError:
 
 
 def refined(error: SmallError, attempt: Attempt) -> SmallError | None:
-    """Return the error with what an attempt without it still shows of it, or None where that is next to nothing.
+    """Return the error plus the remainder that a corrected attempt shows, or None if the remainder is negligible.
 
-    The balances change with a tilt or a zero by sine and cosine; the first step is along their slope.
+    The balances change with a tilt or a zero by sine and cosine. The first step follows their slope, so that a
+    remainder is left.
     """
     if error.kind not in (TILT, ZERO):
         return None
@@ -131,7 +132,7 @@ def refined(error: SmallError, attempt: Attempt) -> SmallError | None:
 
 
 def tilts(gravity: Array) -> Array:
-    """Return two directions across gravity, as large as it, shape (2, 3)."""
+    """Return two directions perpendicular to gravity, with gravity's size, shape (2, 3)."""
     size = float(np.linalg.norm(gravity))
     axes = np.eye(3)[np.argsort(np.abs(gravity), kind="stable")[:2]]
     first = np.cross(gravity, np.cross(axes[0], gravity))
@@ -140,7 +141,7 @@ def tilts(gravity: Array) -> Array:
 
 
 def _shares(attempt: Attempt) -> Iterator[tuple[str, int | None, Share]]:
-    """What each possible error explains, with its kind and joint."""
+    """Yield the explained share of each possible error, with its kind and joint."""
     robot, balance, fit = attempt.robot, attempt.balance, attempt.fit
     rows = ExcerptRows(balance, fit, attempt.excerpts, free=True)
     mechanics = (robot.tree, balance, rows, attempt.excerpts, fit.inertial)
@@ -150,7 +151,7 @@ def _shares(attempt: Attempt) -> Iterator[tuple[str, int | None, Share]]:
     zeros = moved_zeros(*mechanics)
     for joint in np.flatnonzero(~np.array(robot.tree.prismatic)).tolist():
         yield ZERO, joint, rows.share(zeros[:, joint : joint + 1])
-    # What the fit explains of a joint's torque, were it larger: all of it but friction hangs on other joints.
+    # A joint's modelled torque is the column of its scale. Without friction, this torque also depends on other joints.
     explained = (balance.rows.torque - fit.residual)[rows.kept]
     for joint in range(robot.n):
         mine = np.where(rows.joint == joint, explained, 0.0)
@@ -172,7 +173,7 @@ def _size(attempt: Attempt, kind: str, joint: int | None, values: Array) -> floa
     if kind == CENTRE:
         return float(np.linalg.norm(values)) / max(float(inertias[joint, 0]), 1e-300)
     if kind == PAYLOAD:
-        # What is fixed to a link makes it heavier.
+        # A payload makes the link heavier.
         return float(values[0]) / float(inertias[:, 0].sum())
     return float(np.linalg.norm(values))
 

@@ -1,4 +1,4 @@
-"""A robot's joint as the attribution of causes sees it: its rows, its friction, the rest of the robot as known."""
+"""A robot's joint as input of the search for causes: its rows and friction, with the rest of the robot known."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ from jointid.robot.links.parameters import FRICTION, MOTOR_TERMS, SHAPES
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-_HELD = ("inertia_scale",)  # of a link: it acts on other joints, too
+_HELD = ("inertia_scale",)  # parameters of a link: they act on other joints, too
 _NO_LOAD = ("torque_offset", "rotor_inertia")
 
 
 @dataclass(frozen=True, kw_only=True)
 class FittedJoint(FittedBalance):
-    """The minimum of a robot's balance in the parameters of one joint, over the recordings' excerpts.
+    """The minimum of a robot's balance in the parameters of one joint, over excerpts of the recordings.
 
-    Inertias and the parameters of other joints are held at their values.
+    Inertias and the parameters of other joints stay at their values.
     """
 
     joint: int
     attempt: Attempt
-    kept: Whole  # its rows of the balance
-    places: Whole  # of its parameters in the fit
+    kept: Whole  # row numbers of the joint in the balance
+    places: Whole  # positions of its parameters in the fit
 
     @classmethod
     def of(cls, attempt: Attempt, joint: int) -> Self:
@@ -78,7 +78,7 @@ class FittedJoint(FittedBalance):
 
     @property
     def duration_of_recording(self) -> float:
-        """Of all of it, of which the excerpts are a part."""
+        """Duration of the whole recording; the excerpts are a part of it."""
         rows = self.attempt.balance.rows
         recording = np.asarray(self.attempt.runs)[rows.piece]
         return max(
@@ -93,19 +93,19 @@ class FittedJoint(FittedBalance):
 
     @property
     def terms(self) -> Sequence[_core.Term | None]:
-        """Of its own friction, and of a motor's that turns with several joints."""
+        """Terms of the joint's own friction, and of a motor that turns with several joints."""
         own: dict[str, _core.Term] = {term.name: term for term in terms_of(self.model)}
         return [(own | MOTOR_TERMS).get(name) for name in self.names if name not in SHAPES]
 
     @functools.cached_property
     def columns(self) -> Array:
-        """Those of the fit."""
+        """Columns of the fit."""
         linear = self.places[: len(self.terms)]
         return self.attempt.fit.jacobian[self.kept][:, list(linear)]
 
     @property
     def duration(self) -> Array:
-        """Of its rows."""
+        """Durations of the rows."""
         return self.attempt.balance.rows.duration[self.kept]
 
     @functools.cached_property
@@ -116,13 +116,13 @@ class FittedJoint(FittedBalance):
 
     @property
     def spans(self) -> Array:
-        """Of its rows."""
+        """Spans of the rows."""
         rows = self.attempt.balance.rows
         return np.column_stack([rows.start, rows.stop])[self.kept]
 
     @property
     def window_duration(self) -> float:
-        """Of all joints."""
+        """Duration of the windows, the same for all joints."""
         return self.attempt.duration
 
     @functools.cached_property
@@ -139,23 +139,23 @@ class FittedJoint(FittedBalance):
 
     @property
     def kind(self) -> Literal["revolute", "prismatic"]:
-        """That of the URDF."""
+        """Kind of the joint in the URDF."""
         return "prismatic" if self.attempt.robot.tree.prismatic[self.joint] else "revolute"
 
     @property
     def gear_ratio(self) -> float:
-        """That of the robot."""
+        """Gear ratio of the joint."""
         ratios = self.attempt.robot.gear_ratios
         return 1.0 if ratios is None else abs(float(ratios[self.joint]))
 
     @property
     def knows_link(self) -> bool:
-        """The URDF describes all links."""
+        """True, because the URDF describes all links."""
         return True
 
     @functools.cached_property
     def load(self) -> Array:
-        """What the links need of the joint, by the fit."""
+        """Torque at the joint that the links need, by the fit."""
         own = [
             number
             for number, name in enumerate(self.names[: len(self.terms)])
@@ -172,16 +172,16 @@ class FittedJoint(FittedBalance):
 
     @property
     def model_name(self) -> str:
-        """Its name."""
+        """Name of the joint's model."""
         return name_of(self.model)
 
     @property
     def is_asymmetric(self) -> bool:
-        """Whether the model says so."""
+        """Whether the model has different friction in the two directions."""
         return is_asymmetric(self.model)
 
     def integral_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """Means over the intervals, within a reversal by the share of time on each side."""
+        """Return means over the intervals; within a reversal weighted by the time on each side."""
         return self._summed(
             signal,
             lambda values, summing: (
@@ -190,7 +190,7 @@ class FittedJoint(FittedBalance):
         )
 
     def rise_of_each(self, signal: Callable[[int, Samples], Array]) -> Array:
-        """Differences over the intervals."""
+        """Return differences over the intervals."""
         return self._summed(signal, lambda values, _: np.diff(values))
 
     def _summed(
@@ -210,7 +210,7 @@ class FittedJoint(FittedBalance):
         return every[:, 0] if values.ndim == 1 else every
 
     def identified_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `identify` with another model of this joint, where a robot can have it."""
+        """Return a call of `identify` with another model of this joint, if a robot supports it."""
         changed = self._changed(changes)
         if changed is None:
             return self._alone()
@@ -218,16 +218,16 @@ class FittedJoint(FittedBalance):
         return (Action("call", {"model": models}, function="identify_robot"),)
 
     def compared_with(self, **changes: Any) -> tuple[Action, ...]:
-        """A call of `compare`, where a robot can have such a model."""
+        """Return a call of `compare`, if a robot supports such a model."""
         changed = self._changed(changes)
         if changed is None:
             return self._alone()
         if LOAD.option in changes or changes.get("name") not in (None, PLAIN, SHAPED):
-            return self.identified_with(**changes)  # of the joints that it was found for
+            return self.identified_with(**changes)  # with the joint that it was found for
         return (Action("call", {"models": [self.model, changed]}, function="compare_robot_models"),)
 
     def _changed(self, changes: Mapping[str, Any]) -> str | None:
-        """The model with these fields; None where a robot's joint has no such model."""
+        """Return the model with these fields; None if a robot's joint has no such model."""
         wanted = {
             "name": self.model_name,
             "asymmetric": self.is_asymmetric,

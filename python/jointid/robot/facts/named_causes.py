@@ -1,4 +1,4 @@
-"""Causes of a joint's misfit by name: what the engine of causes finds in its rows."""
+"""Named causes of a joint's residual, found by the engine of causes in the joint's rows."""
 
 from __future__ import annotations
 
@@ -19,14 +19,13 @@ from jointid.robot.result.finding_types import TYPES
 
 CAUSES = ("springs and counterweights", "soft gears")
 UNEXAMINED = f"not examined for a robot: {', '.join(CAUSES)}"
-_SHOWN = (
-    0.5  # of the mean square that all rows leave: with less, the excerpts do not show the misfit
-)
-_CALLED = {"asymmetry": "asymmetric_friction"}  # before there was one name for all balances
+_SHOWN = 0.5  # of the mean square of all rows: below it, the excerpts do not show the residual
+# codes of the engine of causes → codes of a robot's findings
+_CALLED = {"asymmetry": "asymmetric_friction"}
 
 
 def causes_of_joint(attempt: Attempt, name: str) -> Causes:
-    """Return the causes of a joint's misfit; none where the excerpts do not show it, or where little is explained."""
+    """Return the causes of a joint's residual; none if the excerpts do not show it, or if little is explained."""
     found, joint = attempt.estimate.joints[name], attempt.robot.names.index(name)
     fit = FittedJoint.of(attempt, joint)
     whole = float(np.mean(attempt.fit.residual[attempt.balance.places[joint]] ** 2))
@@ -39,7 +38,7 @@ def causes_of_joint(attempt: Attempt, name: str) -> Causes:
 
 
 def cause_finding(cause: Cause, name: str, parameters: tuple[str, ...]) -> Finding:
-    """Return the finding of a joint's cause; it concerns the values that it moves, or all where none is known."""
+    """Return the finding of a joint's cause, for the values that it changes, or for all if these are unknown."""
     moved = tuple(f"{name}.{each}" for each in cause.relative)
     parameters = tuple(each for each in parameters if each in moved) or parameters
     kind = TYPES.get(_CALLED.get(cause.name, cause.name))

@@ -1,4 +1,4 @@
-"""Findings that name a given fact that is wrong, and the call that has it otherwise."""
+"""Findings that name a wrong fact, with the call that corrects it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 
 def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
-    """The finding that the recording counts from another pose than the URDF."""
+    """Return the finding that the recording counts from another pose than the URDF."""
     turned = [
         f"{name} {np.rad2deg(angle):+.0f}°"
         for name, angle in zip(robot.names, zeros.offsets, strict=True)
@@ -51,7 +51,7 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
 
 
 def stated_zeros(zeros: Zeros, robot: Robot) -> Finding:
-    """The finding that stated zeros are off by quarter turns; the robot has the right ones."""
+    """Return the finding that stated zeros are wrong by quarter turns; `robot` has the corrected ones."""
     turned = [
         f"{name} by {np.rad2deg(angle):+.0f}°"
         for name, angle in zip(robot.names, zeros.offsets, strict=True)
@@ -67,7 +67,7 @@ def stated_zeros(zeros: Zeros, robot: Robot) -> Finding:
 
 
 def named_fact(wrong: WrongFact, shown: str) -> Finding:
-    """The finding that one fact, if it were otherwise, would explain most of what is left; `shown`: of which joint."""
+    """Return the finding that a corrected fact explains most of the residual; `shown`: the joint of the residual."""
     first, *others = wrong.joints
     both = " and ".join(wrong.joints)
     coupling = (
@@ -111,7 +111,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
 
 
 def named_error(error: SmallError, names: Sequence[str]) -> Finding:
-    """The finding that a fact is somewhat wrong."""
+    """Return the finding of a small error of a fact."""
     title, details, evidence, advice = _WORDED[error.kind](
         error, "" if error.joint is None else names[error.joint]
     )
@@ -227,7 +227,7 @@ _WORDED = {
 
 
 def _seen(values: Array, errors: Array) -> dict[str, int]:
-    """Places of the components of which the motion says something: their errors are smaller than all of them."""
+    """Return the places of the components that the motion shows: their errors are smaller than the vector's size."""
     size = float(np.linalg.norm(values[np.isfinite(errors)]))
     clear = np.isfinite(errors) & (errors < size)
     return {axis: place for place, axis in enumerate("xyz") if clear[place]}
@@ -238,7 +238,7 @@ def _with_error(value: float, error: float) -> str:
 
 
 def _coupled(robot: Robot) -> dict[str, dict[str, float]]:
-    """All couplings, by motor and joint: those that are stated replace all that were."""
+    """Return all couplings, by motor and joint. A call that states couplings replaces all earlier ones."""
     return {
         motor: {
             joint: float(share)

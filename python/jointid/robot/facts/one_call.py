@@ -1,4 +1,4 @@
-"""The models that several findings advise, as one call: what one of them says must not undo another."""
+"""Merge the models that several findings advise into one call, so that one call does not undo another."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from jointid.estimate.findings import Finding
 from jointid.joint.model import AUTO, Model
 from jointid.robot.links.models import PLAIN, SHAPED
 
-CHOICE = (PLAIN, SHAPED)  # of "auto"
+CHOICE = (PLAIN, SHAPED)  # candidates of "auto"
 
 
 def with_one_call(
     findings: Sequence[Finding], names: Sequence[str], models: Sequence[str]
 ) -> list[Finding]:
-    """Return findings of which each that advises the models of some joints advises those of all.
+    """Return findings with merged advice: a call that sets the models of some joints sets those of all findings.
 
-    `names` are those of the joints, `models` what the call asked for, one a joint: what was stated stays, and where the
-    model is to be chosen, what is advised is an option of that.
+    `names` are the joints, and `models` the requested models, one for each joint. Stated models stay. If the model is
+    to be chosen automatically, the advised options are added to that choice.
     """
     stated = dict(zip(names, models, strict=True))
     advised: dict[str, str] = {}
     for name, model in _advised(findings):
         asked, wanted = (Model.parse(each) for each in (advised.get(name, stated[name]), model))
         both = wanted.over(asked)
-        # Where a choice was asked for, it stays one with the option.
+        # An automatic choice stays automatic, with the advised option.
         advised[name] = str(both.replace(name=asked.name) if wanted.name in CHOICE else both)
     if not advised:
         return [*findings]
@@ -41,7 +41,7 @@ def with_one_call(
 
 
 def advised_models(findings: Sequence[Finding]) -> dict[str, str]:
-    """Return the models by joint that findings advise, after `with_one_call`."""
+    """Return the models by joint that findings advise, from the result of `with_one_call`."""
     return dict(_advised(findings))
 
 

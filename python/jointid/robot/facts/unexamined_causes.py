@@ -1,4 +1,4 @@
-"""Joints whose residual is no noise: its causes by name, or those that nothing examines for a robot."""
+"""Joints with a residual that is not noise: its named causes, or the causes that are not examined for a robot."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 Array = NDArray[np.float64]
 
 _FEWEST = 40  # windows
-_LAGS = range(2, 9)  # windows; neighbours share their velocity's noise
-_FAR = 6.0  # times the median: a window says no more
+_LAGS = range(2, 9)  # windows; windows closer than that share the noise of their velocity
+_FAR = 6.0  # times the median: windows with a larger residual are limited to it
 _SURE = 4.5  # standard errors of an autocorrelation
-_MATTERS = 0.005  # of the torque: the part of the residual that is no noise
-_EXPLAINED = 0.3  # of the largest such part, what corrected facts may leave
-_MOST_LEFT = 0.5  # of a joint's misfit, by the causes that were found, harmless ones too
-_MATTERS_OF_NEXT = 0.015  # the same, where only neighbours are alike
-_LOUD = 3.0  # misfit of the slow windows over that of the others
+_MATTERS = 0.005  # of the torque: the part of the residual that is not noise
+_EXPLAINED = 0.3  # of the largest such part: corrected facts may leave this share
+_MOST_LEFT = 0.5  # of a joint's residual: the causes that were found, including harmless ones, may leave this share
+_MATTERS_OF_NEXT = 0.015  # the same, if only neighbouring windows are alike
+_LOUD = 3.0  # residual of the slow windows over that of the others
 
 
 def misfit_findings(
     attempt: Attempt, corrected: Attempt, models: Sequence[str], *, named: bool = True
 ) -> Iterator[Finding]:
-    """Findings of joints whose residual is no noise: its causes, or what was not examined; both cap the verdict.
+    """Yield findings of joints with a residual that is not noise: its causes, or the causes that were not examined.
 
-    `models` are those that the call asked for, one a joint. Where wrong facts that were named explain it, it is for
-    information: another cause may look like them. Without `named` no cause is looked for: what is known of the
-    recording already may look like one.
+    Both limit the verdict. `models` are the requested models, one for each joint. If named wrong facts explain the
+    residual, the finding is an info, because another cause may look like them. Without `named` no cause is searched,
+    because known faults of the recording may look like one.
     """
     estimate = attempt.estimate
     shares = {name: _structured(joint) for name, joint in estimate.joints.items()}
@@ -102,13 +102,13 @@ def _all_of(estimate: RobotEstimateRecord, name: str) -> tuple[str, ...]:
 
 
 def _structured(joint: RobotJoint) -> float:
-    """The part of a joint's residual that depends on its own past, of the torque; 0 where that is chance or little."""
+    """Return the share of the torque in a joint's residual that depends on its own past; 0 if it is chance or small."""
     table = joint.windows
     rest = (table.measured - table.fitted) / table.duration
     count = rest.size
     if count < _FEWEST or not rest.any():
         return 0.0
-    # Two windows that are far off are alike by chance, and hide what the others have in common: both must show it.
+    # Two windows with a large residual are alike by chance, and hide the similarity of the others: both must show it.
     most = _FAR * float(np.median(np.abs(rest)))
     both = (rest, np.clip(rest, -most, most))
     later = min(max(abs(_alike(each, lag)) for lag in _LAGS) for each in both)
@@ -124,12 +124,12 @@ def _structured(joint: RobotJoint) -> float:
 
 
 def _loud_at_low_speed(joint: RobotJoint) -> bool:
-    """Whether slow windows leave far more than the others: of friction there, neighbours need not be alike."""
+    """Return whether slow windows have a far larger residual; with friction there, neighbours need not be alike."""
     table = joint.windows
     slow = slow_misfit(table.measured - table.fitted, table.duration, table.velocity)
     return slow > _LOUD and joint.relative_residual > _MATTERS
 
 
 def _alike(rest: Array, lag: int) -> float:
-    """How much a row of residuals is like itself some windows later, between -1 and 1."""
+    """Return the correlation of residuals with those some windows later, between -1 and 1."""
     return float(rest[lag:] @ rest[:-lag]) / (float(rest @ rest) or 1.0)

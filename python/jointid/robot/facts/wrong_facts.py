@@ -1,8 +1,8 @@
-"""Facts that may be wrong where a robot's balance leaves much unexplained: each is tried otherwise.
+"""Facts that may be wrong if a robot's balance has a large residual: an alternative of each is tried.
 
-A joint's columns exchanged with another's, a sign, a coupling that is missing or has another sign: with the URDF's
-inertias such an error leaves a large part of the torque unexplained, and the right fact much less. What is found is
-named, not used: the user knows.
+Such facts are exchanged columns of two joints, a sign, and a coupling that is missing or has another sign. With the
+URDF's inertias, such an error leaves a large residual, and the right fact a much smaller one. A wrong fact is
+reported, not corrected, because only the user knows.
 """
 
 from __future__ import annotations
@@ -22,34 +22,32 @@ from jointid.robot.motion.motion import Motion
 
 Array = NDArray[np.float64]
 
-_BETTER = (
-    0.5  # fall of the logarithms of the motors' residuals, summed: what another fact has to reach
-)
-_BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
-_CLEARLY = 0.05  # by which it has to be better than the next
-_LEAST = 0.01  # of a motor's torque: less residual does not decide
-_BLOCKS = 20  # of the windows
-_SURE = 3.0  # standard errors, over the blocks, by which another fact has to be better
-_SLOW = 0.02  # of a peak speed: standing still, for a quick fit
+_BETTER = 0.5  # summed fall of the logarithms of the motors' residuals: required of another fact
+_BETTER_COUPLED = 0.15  # the same for a coupling, which light joints hardly show
+_CLEARLY = 0.05  # advantage over the next fact that is required
+_LEAST = 0.01  # of a motor's torque: a smaller residual does not decide
+_BLOCKS = 20  # number of blocks of windows
+_SURE = 3.0  # standard errors, over the blocks, by which another fact must be better
+_SLOW = 0.02  # of the peak speed: slower motion is a standstill in a quick fit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WrongFact:
-    """A fact that fits clearly better than the given one."""
+    """An alternative fact that fits clearly better than the stated one."""
 
     # "swapped_joints", "swapped_torques", "wrong_sign", "wrong_torque_sign", "wrong_motion_sign" or "wrong_coupling"
     kind: str
     joints: tuple[str, ...]
-    # what the matrix should have in the row of the first joint, at the second
+    # coupling matrix: right value in the row of the first joint, at the second joint
     coupling: float | None
-    # residual over measured torque of the joints that it changes most, with the URDF's inertias
+    # residual over measured torque, of the joints that change most, with the URDF's inertias
     before: float
-    after: float  # the same with the fact as it should be
-    robot: Robot  # with the fact as it should be
-    # columns of the positions in the recording, if they should be exchanged
+    after: float  # the same with the corrected fact
+    robot: Robot  # with the corrected fact
+    # order of the position columns in the recording, if they should be exchanged
     order: NDArray[np.int64] | None = None
-    torque_order: NDArray[np.int64] | None = None  # the same of the torques
-    # the same coupling with another factor, or the sign of another joint, which is nearly as good
+    torque_order: NDArray[np.int64] | None = None  # the same for the torques
+    # the same coupling with another factor, or the sign of another joint, that fits nearly as well
     others: tuple[WrongFact, ...] = ()
 
 
@@ -66,7 +64,7 @@ class _Trial:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _MotorFit:
-    """Residuals and torques of each motor in each window, and how much friction would be negative."""
+    """Residuals and torques of each motor in each window, and the amount of friction below 0."""
 
     residual: Array
     torque: Array
@@ -76,12 +74,12 @@ class _MotorFit:
 def wrong_fact(
     robot: Robot, motions: Sequence[Motion], duration: float, suspects: Sequence[int]
 ) -> WrongFact | None:
-    """Return the one fact about joints with a poor balance that explains most if it is otherwise, or None."""
+    """Return the one fact about joints with a poor balance that explains most if it is changed, or None."""
     thin = [thinned(motion) for motion in motions]
     given = {mode: _motor_fit(robot, thin, duration, mode) for mode in (URDF, FREE)}
     falls = []
     for trial in _trials(robot, thin, set(suspects)):
-        # What a coupling changes is as small as the errors of a light wrist's inertias.
+        # The effect of a coupling is as small as the errors of a light wrist's inertias.
         mode = FREE if trial.kind == "wrong_coupling" else URDF
         was, other = given[mode], _motor_fit(trial.robot, trial.motions, duration, mode)
         if was is None or other is None:
@@ -89,13 +87,13 @@ def wrong_fact(
         before, after = _relative(was, other)
         plain = given[URDF]
         if mode == FREE and plain is not None:
-            # Free inertias may end far off where another fact is wrong; that is no merit of the coupling.
+            # With another wrong fact, free inertias may be far from the truth; this is no evidence for a coupling.
             before = np.minimum(before, _relative(plain, other)[0])
         fall = float(np.log(before / after).sum())
         if not _is_certain(was, other):
             continue
         if mode == FREE and other.held > was.held and fall < _BETTER:
-            continue  # friction that takes no power away, and a balance that hardly says otherwise
+            continue  # friction would not dissipate power, and the balance is hardly better
         falls.append((fall, trial, before, after))
     if not falls:
         return None
@@ -107,7 +105,7 @@ def wrong_fact(
     others = [
         (fall, each) for fall, each, _, _ in falls[1:] if fall > max(best - _CLEARLY, 0.5 * best)
     ]
-    # Of an arm that moves in one plane the mirror image fits as well: the other joint turns the other way.
+    # For an arm that moves in one plane, the mirror image fits as well: the other joint turns in reverse.
     same = [
         each
         for _, each in others
@@ -149,7 +147,7 @@ def _motor_fit(
 
 
 def _relative(given: _MotorFit, other: _MotorFit) -> tuple[Array, Array]:
-    """Each motor's residual over its torque in the windows that two fits have in common."""
+    """Return each motor's residual over its torque, in the windows that two fits have in common."""
     common = np.isfinite(given.residual) & np.isfinite(other.residual)
     found = []
     for fit in (given, other):
@@ -160,7 +158,7 @@ def _relative(given: _MotorFit, other: _MotorFit) -> tuple[Array, Array]:
 
 
 def _is_certain(given: _MotorFit, other: _MotorFit) -> bool:
-    """Whether another fact is better by three standard errors, over blocks, of the fall that is to be reached."""
+    """Return whether another fact reaches the required fall by three standard errors, over blocks."""
     common = np.isfinite(given.residual) & np.isfinite(other.residual)
     size = np.linalg.norm(np.where(common, given.torque, 0.0), axis=1, keepdims=True)
     logs = []
@@ -175,10 +173,10 @@ def _is_certain(given: _MotorFit, other: _MotorFit) -> bool:
 
 def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator[_Trial]:
     n = robot.n
-    # A drive makes other torques of exchanged columns.
+    # A drive computes other torques from exchanged columns.
     pairs = itertools.combinations(range(n), 2) if robot.drive is None else ()
     for i, j in pairs:
-        # What fits well is not exchanged.
+        # A joint that fits well has the right columns.
         if suspects >= {i, j} or (len(suspects) == 1 and suspects & {i, j}):
             order = np.arange(n)
             order[[i, j]] = j, i
@@ -214,7 +212,7 @@ def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator
         other = replace(robot, directions=directions, torque_scales=scales)
         yield _Trial(kind="wrong_motion_sign", joints=(i,), robot=other, motions=moved)
     if not (motions[0].at_motor or robot.coupled.any()):
-        return  # joints' own torques and positions: what a motor turns with does not show
+        return  # joints' own torques and positions: couplings do not show
     for i, j in np.argwhere(robot.couplings - np.diag(np.diag(robot.couplings))).tolist():
         matrix = robot.couplings.copy()
         matrix[i, j], matrix[j, i] = 0.0, matrix[i, j]
@@ -249,10 +247,10 @@ def _remade(
     torque_sign: Array | None = None,
     coupled_before: Array | None = None,
 ) -> Motion:
-    """The motion as other facts have it: columns in another order, other signs, other couplings."""
+    """Return the motion with other facts: columns in another order, other signs, other couplings."""
     before = robot.couplings if coupled_before is None else coupled_before
     shift = np.array(robot.zero_offsets or (0.0,) * robot.n)[:, None]
-    # As recorded: of the motors, or of the joints.
+    # As recorded: at the motors, or at the joints.
     matrix = before if motion.at_motor else np.eye(robot.n)
     position, velocity = matrix @ (motion.position - shift), matrix @ motion.velocity
     pushed = np.linalg.solve(matrix.T, motion.torque)

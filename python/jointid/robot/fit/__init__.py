@@ -1,1 +1,1 @@
-"""One identification: delays taken away, zeros found, values and their conclusion."""
+"""One identification: delays removed, zeros found, values and their conclusion."""

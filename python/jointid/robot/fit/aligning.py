@@ -1,4 +1,4 @@
-"""Torques moved to the positions' clock before a robot is identified, and what is said of it."""
+"""Torques moved to the positions' clock before a robot is identified, and the findings about it."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ from jointid.robot.result.finding_types import TYPES
 Array = NDArray[np.float64]
 
 _TURNS = 3
-_SMALL = 2e-4  # [s]: what is left is not worth another identification
-_SMALL_OF_COMMAND = 2e-5  # [s]: it is held, and its delay is seen more sharply
+_SMALL = 2e-4  # [s]: a smaller remainder needs no further identification
+# [s]: smaller, because the delay of a held command is determined more sharply
+_SMALL_OF_COMMAND = 2e-5
 _LEVEL = 1e-4  # [rad]
 _NORMAL = 1.96  # standard errors of a 95 % interval
-_HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
+_HALF = 0.2  # of a sample period: a torque early by half a period, within this, is probably held
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,18 +36,18 @@ class Alignment:
     """An identification on one clock."""
 
     attempt: Attempt
-    left: TorqueDelay  # delay after what was taken away
-    chosen: bool  # whether what was taken away was found, not given
+    left: TorqueDelay  # delay that is left after the removal
+    chosen: bool  # True if the removed delay was found, not stated
     request: Request  # with the filters of the torques
-    lag: TorqueLag | None = None  # filters that were found in place of a delay
+    lag: TorqueLag | None = None  # filters that were found instead of a delay
 
 
 def aligned(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, shift: object
 ) -> Alignment:
-    """Return the identification without the torque's delay, and what is left of it.
+    """Return the identification without the torque's delay, and the delay that is left.
 
-    Without a `shift`, the delays that are certain are taken away.
+    If the call states no `shift`, the delays that are certain are removed.
     """
     delay = requested_delay(shift, robot)
     free = delay is None
@@ -66,7 +67,7 @@ def aligned(
         if np.abs(step).max() < (_SMALL if robot.drive is None else _SMALL_OF_COMMAND):
             break
         if np.any(delay + step < -_period(attempt)) or np.abs(delay + step).max() > LONGEST:
-            # A torque does not come before its motion: then the position is late, as a coarse one is.
+            # A torque does not come before its motion: in that case the position is late, or it is coarse.
             break
         delay = delay + step
         attempt = attempted(recordings, robot, request, delay)
@@ -84,7 +85,7 @@ def aligned(
 def _levelled(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, attempt: Attempt
 ) -> Attempt:
-    """The identification with the direction of gravity that is found, where it is free."""
+    """Return the identification with the direction of gravity that is found, if this direction is free."""
     for _ in range(_TURNS if robot.gravity_free else 0):
         found = found_gravity(attempt)
         if found.turn < _LEVEL:
@@ -95,7 +96,7 @@ def _levelled(
 
 
 def delay_findings(found: Alignment) -> Iterator[Finding]:
-    """Findings of the delay that was taken away, and of what is certain and left."""
+    """Yield findings of the delay that was removed, and of a certain delay that is left."""
     attempt, left = found.attempt, found.left
     if found.lag is not None:
         yield _lag_finding(found.lag, attempt.robot.names)
@@ -136,7 +137,7 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
     for joint in [0] if alike else np.flatnonzero(which).tolist():
         rest = left.value if alike else float(left.joints[joint])
         error = left.stderr if alike else float(left.errors[joint])
-        # The value is what was taken away and what the balance still shows.
+        # The value is the removed delay plus the delay that the balance still shows.
         value = float(away[joint]) + rest
         low, high = (1e3 * (abs(value) + sign * _NORMAL * error) for sign in (-1, 1))
         of_joint = "" if alike else f" of {names[joint]}"
@@ -195,7 +196,7 @@ def _how_late(robot: Robot, of_joint: str, value: float, size: str, removed: boo
 
 
 def _short(delay: Array, left: TorqueDelay) -> Array:
-    """What a step that was certain left short."""
+    """Return the delay that is left, for joints with a delay that was removed; 0 for the others."""
     values, counts = np.unique(delay, return_counts=True)
     usual = values[int(np.argmax(counts))]
     return np.where(delay == 0.0, 0.0, np.where(delay == usual, left.value, left.joints))

@@ -1,4 +1,4 @@
-"""One identification of a robot by the facts and delays as they are taken to be."""
+"""One identification of a robot with the present facts and delays."""
 
 from __future__ import annotations
 
@@ -34,46 +34,47 @@ from jointid.robot.result.result import RobotEstimate
 
 Array = NDArray[np.float64]
 
-_PIECE = 120_000  # samples of a long recording that are looked at at once
-_TURNS = 3  # of friction under load, which follows from the links, and the links
-_EXCERPTS = 4  # recordings by whose beginnings facts are judged
+_PIECE = 120_000  # samples of a long recording that are processed at once
+_TURNS = 3  # rounds of friction under load and links: each depends on the other
+_EXCERPTS = 4  # number of recordings with excerpts, which are used to check facts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Request:
-    """What a call asks for besides recordings and robot."""
+    """Options of a call, without recordings and robot."""
 
     inertia: str
-    models: tuple[str, ...]  # one a joint
+    models: tuple[str, ...]  # one for each joint
     windows: float | None
-    slowest: Array  # (n,), least speeds
+    slowest: Array  # (n,), least speed of each joint
     mask_standstill: bool
-    # Joints by the velocity in the recording, not by the derived one.
+    # joints with the velocity from the recording instead of the derived one
     recorded: tuple[int, ...] = ()
-    lag: Array | None = None  # (n,), time constants of the torques' filters, to be undone [s]
-    further_modes: tuple[str, ...] = ()  # further modes of inertia that the balance is to hold
+    lag: Array | None = None  # (n,), time constants of the torques' filters, to undo [s]
+    # further modes of inertia for which the balance has columns
+    further_modes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Attempt:
-    """An estimate, and what it was made of."""
+    """An estimate and its inputs."""
 
     robot: Robot  # with the zero offsets that were found
-    delay: Array  # (n,), of the torques, as taken away [s]
+    delay: Array  # (n,), removed delay of the torques [s]
     estimate: RobotEstimate  # without settings
     fit: Fit
     balance: Balance
-    # the beginnings of some recordings, by the number of their piece in the balance
+    # excerpts: the beginnings of some recordings, by the number of their piece in the balance
     excerpts: Mapping[int, Motion]
     duration: float  # of the windows [s]
-    zeros: Zeros | None  # None where they are given
+    zeros: Zeros | None  # None if they are stated
     runs: tuple[int, ...]  # the recording of each piece
 
 
 def attempted(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, delay: Array
 ) -> Attempt:
-    """Return the identification of recordings on even clocks, with a delay of each torque taken away [s]."""
+    """Return the identification of recordings on even clocks, with a delay of each torque removed [s]."""
     runs = [on_the_clock_of_positions(run, robot, delay, request.lag) for run in recordings]
     pieces = _pieces(runs)
     numbers = [number for number, _, _ in pieces]
@@ -132,7 +133,7 @@ def attempted(
 
 
 def _gains(fit: Fit, covariance: Covariance) -> dict[int, float]:
-    """The gains that the motion determines, by joint."""
+    """Return the gains that the motion determines, by joint."""
     errors = dict(zip(np.flatnonzero(~fit.at_bound).tolist(), covariance.stderr, strict=True))
     return {
         joint: float(fit.values[place])
@@ -145,10 +146,10 @@ def _gains(fit: Fit, covariance: Covariance) -> dict[int, float]:
 def fitted(
     robot: Robot, balance: Balance, mode: str, models: Sequence[str]
 ) -> tuple[Fit, PriorRows]:
-    """Return the values of all parameters, and what was known of them beforehand; the balance must hold the mode.
+    """Return the values of all parameters and their prior; the balance must have columns for the mode.
 
-    What the load adds to friction comes from the links as the URDF has them; where they are identified, then from the
-    links as they were found.
+    Friction under load uses the torque of the URDF's links first. If the links are identified, it then uses the
+    identified links.
     """
     columns = inertia_columns(robot, mode)
     links = columns.start
@@ -198,14 +199,14 @@ def _fitted(
 
 
 def _renamed(models: Sequence[str], joints: Collection[int], name: str) -> list[str]:
-    """Models with another name for some joints."""
+    """Return the models with another name for some joints."""
     return [
         renamed(model, name) if joint in joints else model for joint, model in enumerate(models)
     ]
 
 
 def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:
-    """Parts of the recordings that are looked at at once: number of the recording, first sample, end."""
+    """Return the parts of the recordings that are processed at once: number of the recording, first sample, end."""
     found = []
     for number, run in enumerate(runs):
         count = max(1, -(-run.samples // _PIECE))

@@ -1,8 +1,8 @@
-"""The torque's delay against the position: the shift that the balances of all joints ask for.
+"""Delay of the torque against the position: the shift with the smallest residual in the balances of all joints.
 
 The integral of a shifted torque over a window changes with the shift by the torque's difference between the window's
-ends: one more column, besides all parameters of the fit. Each joint says by itself how late its torque is; what they
-say alike is the delay of all, and its error is at least what their scatter shows.
+ends. So the shift is one more column, in addition to all parameters of the fit. Each joint gives its own delay. The
+value on which joints agree is the common delay, and its error is at least the scatter of these delays.
 """
 
 from __future__ import annotations
@@ -23,46 +23,46 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _ROUNDS = 8
-_FAR, _FAR_ERRORS = 5e-4, 3.0  # [s] and standard errors, from where the slope was taken
-_NEAR = 2e-5  # [s], the last step
-_STEP = 5e-4  # [s], for the torque's change with the shift
+_FAR, _FAR_ERRORS = 5e-4, 3.0  # [s] and standard errors: distance from the delay of the slope
+_NEAR = 2e-5  # [s], largest last step
+_STEP = 5e-4  # [s], step of the derivative of the torque by the shift
 _LONGEST_STEP, LONGEST = 4e-3, 0.05  # [s]
-_COARSE = 2.5e-3  # [s]
-_FINEST = 1e-4  # [s]: no joint's delay is surer than this against the others'
-_SMALL = 3e-4  # [s]; a shorter delay is left alone
+_COARSE = 2.5e-3  # [s], step of the coarse grid
+_FINEST = 1e-4  # [s]: least error of a joint's delay in comparison with the others
+_SMALL = 3e-4  # [s]; a shorter delay is not removed
 _WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
 _SURE = 5.0  # standard errors
 _APART, _SURE_OF_ONE = (
     1e-3,
     8.0,
-)  # [s] and standard errors, by which one joint differs from the others
-_APART_OF_LONG = 0.3  # of a delay: reversals are not yet where they were
-_BETTER = 3.0  # standard errors by which held-out stretches fit better
+)  # [s] and standard errors, required for a different delay of one joint
+_APART_OF_LONG = 0.3  # of a delay: with a long delay, the reversals are not yet at their place
+_BETTER = 3.0  # standard errors by which the residual of held-out stretches falls
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TorqueDelay:
-    """How late the torque is against the position [s]; positive: late."""
+    """Delay of the torque against the position [s]; positive: the torque is late."""
 
-    value: float  # of the joints that are alike
+    value: float  # common delay of the joints that agree
     stderr: float
-    joints: Array  # (n,), of each joint by itself
-    errors: Array  # of these
-    # (n,), what is certain: the common delay, another one of a joint that clearly has another, or 0
+    joints: Array  # (n,), own delay of each joint
+    errors: Array  # standard errors of `joints`
+    # (n,), delay to remove: the common delay, a clearly different delay of one joint, or 0
     taken: Array
-    # whether any of it is, and held-out stretches of motion are better explained without it
+    # True if `taken` is not 0 and improves the prediction of held-out stretches
     certain: bool
 
     @property
     def sure(self) -> bool:
-        """Whether chance alone hardly makes it."""
+        """Whether the delay is too large to be chance."""
         return abs(self.value) > _SURE * self.stderr
 
 
 def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> TorqueDelay:
-    """Return the torque's delay; the fit's parameters follow the shift as far as they can.
+    """Return the torque's delay; all parameters of the fit are refitted with the shift.
 
-    The motions are some of the balance's pieces, by number.
+    `motions` are some of the balance's pieces, by number.
     """
     rows = ExcerptRows(balance, fit, motions)
     torque = ShiftedTorque(motions, balance)
@@ -70,7 +70,7 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
     measured = torque(np.zeros(n))
 
     def at(delay: Array) -> tuple[Array, Array]:
-        """The residual with these delays, and how the torque's integrals change with them."""
+        """Return the residual with these delays, and the derivative of the torque's integrals by them."""
         slope = (torque(delay + _STEP) - torque(delay - _STEP)) / (2.0 * _STEP)
         return rows.residual + rows.rest(torque(delay) - measured), slope
 
@@ -95,7 +95,7 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
         far = (np.abs(own) > _FAR) & (np.abs(own) > _FAR_ERRORS * errors)
         if turn == _ROUNDS - 1 or not far.any():
             break
-        # Far from where the slope was taken.
+        # too far from the delay at which the slope was computed
         delay = _within(delay, np.where(far, own, 0.0))
     joints = delay + own
     first = next(iter(motions.values()))
@@ -103,9 +103,9 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
     driven = first.driven is not None
     value, stderr, alike = _common(joints, errors, 0.0 if driven else _WITHIN_SAMPLE * period)
     taken = np.zeros(n)
-    # A torque that is held comes with its sample: what seems earlier by less than one is noise of the positions.
+    # A held torque starts at its sample. If it seems early by less than a sample, this is noise of the positions.
     small = period if value < 0.0 and first.torque_held else _SMALL
-    # A command is always late by something, and what is left of it looks like friction and inertia.
+    # A command is always late, and a remaining delay looks like friction and inertia.
     if (driven or abs(value) > max(small, _SURE * stderr)) and 2 * np.count_nonzero(alike) > n:
         taken[:] = value
     alone = ~alike & (np.abs(joints) > np.maximum(_APART, _SURE_OF_ONE * errors))
@@ -131,14 +131,14 @@ def _within(delay: Array, step: Array) -> Array:
 
 
 def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, Flags]:
-    """Mean of the joints' delays, its error, and which are alike: near the median, by their weights."""
+    """Return the mean of the joints' delays, its error, and which joints agree: near the weighted median."""
     weights = 1.0 / (errors**2 + _FINEST**2)
     order = np.argsort(joints)
     middle = int(np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum()))
     centre = joints[order[min(middle, joints.size - 1)]]
     apart = max(_APART, _APART_OF_LONG * abs(float(centre)))
     alike = np.abs(joints - centre) <= np.maximum(apart, _SURE_OF_ONE * errors)
-    if not weights.any():  # no joint says anything
+    if not weights.any():  # no joint has information
         return 0.0, np.inf, alike
     mine, share = joints[alike], weights[alike] / weights[alike].sum()
     value = float(share @ mine)
@@ -148,7 +148,7 @@ def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, F
 
 
 def coarse_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> float:
-    """Return the delay of all commands that leaves least, of a grid: far from it, no slope leads there."""
+    """Return the common delay on a grid with the smallest residual; far from the minimum, slopes do not lead to it."""
     rows = ExcerptRows(balance, fit, motions, free=True)
     torque, n = ShiftedTorque(motions, balance), fit.scatter.size
     residual = rows.rest(fit.residual[rows.kept])
@@ -161,7 +161,7 @@ def coarse_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> f
 
 
 class ShiftedTorque:
-    """Integrals of the torques of some pieces at any shift."""
+    """Integrals of the torques of some pieces, for any shift."""
 
     def __init__(self, motions: Mapping[int, Motion], balance: Balance) -> None:
         rows = balance.rows
@@ -175,7 +175,7 @@ class ShiftedTorque:
         ]
 
     def __call__(self, delay: Array) -> Array:
-        """Return each row's integral if its joint's torque is late by this much."""
+        """Return each row's integral for these delays of its joint's torque."""
         found, last = np.empty(self._window.size), None
         for piece, joint, mine in self._places:
             motion, summing = self._motions[piece], self._summings[piece]

@@ -1,4 +1,4 @@
-"""Rows of some pieces of a recording, weighted, and what a fit's parameters cannot follow of them."""
+"""Weighted rows of some pieces of a recording, and the part of them that a fit's parameters cannot follow."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ Whole = NDArray[np.int64]
 
 _CLUSTER = 0.3  # [s] of motion that counts as one observation
 _SINGULAR = 1e-11  # of the largest eigenvalue of the scaled normal equations
-_NOTHING = 1e-6  # of a column: what the parameters follow but for rounding
+_NOTHING = 1e-6  # of a column: smaller remainders are rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Share:
-    """What a few further columns explain."""
+    """Result of a few further columns."""
 
-    # of the weighted squared residuals, each stretch with the values that the others give
+    # explained share of the weighted squared residuals; each stretch is predicted from the others
     share: float
-    certainty: float  # that fall over its standard error, by the scatter over the stretches
-    values: Array  # (columns,); 0 of a column that the parameters follow
-    # clustered over stretches of motion; infinite of a column that the parameters follow
+    certainty: float  # this share over its standard error, from the scatter over the stretches
+    values: Array  # (columns,); 0 for a column that the parameters follow
+    # clustered over stretches of motion; infinite for a column that the parameters follow
     errors: Array
-    gains: Array  # (FOLDS,), that fall in each stretch
-    wald: float  # squared values in terms of their errors, per column: 1 by chance
+    gains: Array  # (FOLDS,), fall in each stretch
+    wald: float  # squared values over squared errors, per column: 1 by chance
 
 
 class ExcerptRows:
@@ -59,17 +59,17 @@ class ExcerptRows:
         self._fold = np.arange(self.kept.size) * FOLDS // max(self.kept.size, 1)
 
     def places(self, piece: int, joint: int) -> Whole:
-        """Return the places of a joint's rows in a piece."""
+        """Return the positions of a joint's rows in a piece."""
         return np.flatnonzero((self.piece == piece) & (self.joint == joint))
 
     def rest(self, values: Array) -> Array:
-        """Weighted values (rows, or rows and columns) without what the parameters can follow."""
+        """Return weighted values (rows, or rows and columns) without the part that the parameters follow."""
         weight = self.weight if values.ndim == 1 else self.weight[:, None]
         scaled = values * weight
         return np.asarray(scaled - self._known @ (self._inverse @ (self._known.T @ scaled)))
 
     def share(self, columns: Array) -> Share:
-        """Return what further columns, (rows, columns), explain of the residual."""
+        """Return the share of the residual that further columns, (rows, columns), explain."""
         raw = np.linalg.norm(columns * self.weight[:, None], axis=0)
         rest = self.rest(columns)
         lengths = np.linalg.norm(rest, axis=0)

@@ -1,4 +1,4 @@
-"""Where gravity pulls on a robot on a stand: its direction in the base's frame, from what the links weigh."""
+"""Direction of gravity in the base's frame, for a robot on a stand; found from the weight of the links."""
 
 from __future__ import annotations
 
@@ -25,19 +25,17 @@ _SEEN = 0.1  # of gravity: a component with a larger standard error is not shown
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Gravity:
-    """A direction that was found."""
+    """A direction of gravity that was found."""
 
-    robot: Robot  # as in the attempt, with it
-    turn: float  # [rad], from the attempt's direction
-    errors: (
-        Array  # (3,), of the components [m/s²]; infinite along axes that the motion does not show
-    )
+    robot: Robot  # as in the attempt, with the new direction
+    turn: float  # [rad], angle from the attempt's direction
+    errors: Array  # (3,), errors of the components [m/s²]; infinite along axes that the motion does not show
 
 
 def found_gravity(attempt: Attempt) -> Gravity:
-    """Return the direction that leaves least of an attempt's torques; its size is given.
+    """Return the direction with the smallest residual of an attempt's torques; the size is known.
 
-    Torques are linear in gravity, so that one step leads there from any direction.
+    Torques are linear in gravity, so one step is enough from any start.
     """
     robot, fit = attempt.robot, attempt.fit
     rows = ExcerptRows(attempt.balance, fit, attempt.excerpts, free=True)
@@ -57,7 +55,7 @@ def found_gravity(attempt: Attempt) -> Gravity:
 
 
 def gravity_findings(given: Robot, attempt: Attempt) -> Iterator[Finding]:
-    """The direction of gravity that was found for a robot that states none."""
+    """Yield the finding of the direction of gravity, for a robot that states none."""
     if not given.gravity_free:
         return
     pull, errors = attempt.robot.tree.gravity, found_gravity(attempt).errors
@@ -71,7 +69,7 @@ def gravity_findings(given: Robot, attempt: Attempt) -> Iterator[Finding]:
             severity="warning",
         )
         return
-    # Along gravity itself only its size counts, which is given.
+    # Along gravity only its size counts, and that is known.
     across = np.sqrt(np.maximum(1.0 - (pull / size) ** 2, 0.0))
     error = float(max(errors[axis] * across[axis] for axis in seen)) / size
     vector = ", ".join(f"{each:.3f}" if k in seen else "?" for k, each in enumerate(pull))

@@ -1,8 +1,8 @@
-"""A torque that passed a low-pass filter of first order, in place of one that is late: what held-out motion says.
+"""Detect a torque with a first-order low-pass filter instead of a delay, by held-out motion.
 
-Before such a filter the torque was y + T y'. Its integral over a window is that of y and T times the rise of y: one
-more column, exact for any T. To first order a delay is the same column; they differ where the torque changes fast, as
-at reversals.
+Before such a filter the torque was y + T y'. Its integral over a window is the integral of y plus T times the rise of
+y. This is one more column, exact for any T. To first order a delay gives the same column. The two differ where the
+torque changes fast, such as at reversals.
 """
 
 from __future__ import annotations
@@ -19,24 +19,25 @@ from jointid.robot.fit.excerpt_rows import ExcerptRows
 
 Array = NDArray[np.float64]
 
-_BETTER = 3.0  # standard errors by which held-out stretches fit better than with a delay
+# standard errors by which the residual of held-out stretches is below that with a delay
+_BETTER = 3.0
 _SURE = 5.0  # standard errors of a time constant
-_SMALL = 2e-4  # [s]; a shorter filter is left alone
-_DIGITS = 7  # of seconds, as a call states them
+_SMALL = 2e-4  # [s]; a shorter filter is not undone
+_DIGITS = 7  # decimal places of seconds in a call
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TorqueLag:
-    """Time constants of the torques' filters [s]; 0 of a torque without one."""
+    """Time constants of the torques' filters [s]; 0 for a torque without one."""
 
     values: Array  # (n,)
     errors: Array
 
 
 def torque_lag_of(attempt: Attempt, delay: Array) -> TorqueLag | None:
-    """Return filters that explain held-out motion better than delays [s]; None where none do.
+    """Return filters that explain held-out motion better than delays [s]; None if there are none.
 
-    The attempt is one with the torques as recorded.
+    `attempt` has the torques as recorded.
     """
     rows = ExcerptRows(attempt.balance, attempt.fit, attempt.excerpts)
     shifted = ShiftedTorque(attempt.excerpts, attempt.balance)
@@ -54,7 +55,7 @@ def torque_lag_of(attempt: Attempt, delay: Array) -> TorqueLag | None:
 
 
 def _rises(rows: ExcerptRows, attempt: Attempt) -> Array:
-    """By how much each row's torque rises within its usable intervals."""
+    """Return the rise of each row's torque within its usable intervals."""
     found = np.empty(rows.kept.size)
     for piece, motion in attempt.excerpts.items():
         summing = attempt.balance.summings[piece]

@@ -1,6 +1,6 @@
-"""What small changes of given facts add to the balances of all joints, integrated over their windows.
+"""Changes of the balances of all joints with small changes of facts, integrated over their windows.
 
-Momentum and force are computed anew with a fact a little otherwise, of fewer samples: the change is smooth.
+Momentum and force are computed again with a slightly changed fact, at fewer samples, because the change is smooth.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from jointid.robot.motion.motion import Motion
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 1500  # of a piece
-_NEAR = 1e-3  # [rad or m]
+_SAMPLES = 1500  # samples of a piece
+_NEAR = 1e-3  # [rad or m], change of a zero
 
 
 def moved_zeros(
@@ -30,7 +30,7 @@ def moved_zeros(
     motions: Mapping[int, Motion],
     inertial: Array,
 ) -> Array:
-    """Change of each row's integral per change of each joint's zero, (rows, n); the motions are the rows' pieces."""
+    """Return the change of each row's integral per change of each joint's zero, (rows, n); motions: of the rows."""
     n = len(tree.names)
 
     def changes(motion: Motion) -> list[tuple[Array, Array]]:
@@ -55,7 +55,7 @@ def tilted_gravity(
     inertial: Array,
     axes: Array,
 ) -> Array:
-    """Change of each row's integral per further gravity along each of some axes, (axes, 3) in the base's frame."""
+    """Return the change of each row's integral per further gravity along some axes, (axes, 3) in the base's frame."""
 
     def changes(motion: Motion) -> list[tuple[Array, Array]]:
         still = np.zeros_like(motion.velocity)
@@ -70,7 +70,7 @@ def tilted_gravity(
 def _mechanics(
     tree: LinkTree, position: Array, velocity: Array, inertial: Array
 ) -> tuple[Array, Array]:
-    """Momenta and forces of all joints, (n, samples)."""
+    """Return momenta and forces of all joints, (n, samples)."""
     momentum, force = columns_of(tree, position, velocity)
     found = np.zeros((2, *position.shape))
     for number, (joint, link) in enumerate(tree.pairs):
@@ -87,7 +87,7 @@ def _integrated(
     changes: Callable[[Motion], list[tuple[Array, Array]]],
     count: int,
 ) -> Array:
-    """Integrals over the rows' windows of changed momenta and forces, known at fewer samples."""
+    """Return the integrals over the rows' windows of changed momenta and forces, known at fewer samples."""
     found = np.zeros((rows.kept.size, count))
     for piece, motion in motions.items():
         time, summing = motion.time, balance.summings[piece]

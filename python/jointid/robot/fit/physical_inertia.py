@@ -1,4 +1,4 @@
-"""Inertial parameters that bodies can have, for an estimate with free inertia."""
+"""Physically consistent inertial parameters, for an estimate with free inertia."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ _SINGULAR = 1e-6  # smallest eigenvalue of correlations
 
 
 def with_possible_bodies(estimate: RobotEstimate, fit: Fit) -> RobotEstimate:
-    """Return the estimate with links that bodies can be, or with the finding that there are none near enough.
+    """Return the estimate with physically consistent links, or with the finding that there are none near enough.
 
-    Base parameters and friction stay as they are. Where bodies can have exactly these base parameters, the links have
-    them; else, if the distance may be chance, the links are the nearest possible ones.
+    Base parameters and friction do not change. If bodies can have exactly these base parameters, the links get them.
+    Otherwise, if the distance may be chance, the links are the nearest consistent ones.
     """
     prior = fit.columns.prior
-    if prior is None:  # the URDF has no masses: nothing says which of many links
+    if prior is None:  # without masses in the URDF, nothing selects one of many links
         return replace(estimate, consistent=possible(estimate.inertial))
     places = [place for place, (joint, _) in enumerate(fit.labels) if joint is None]
     found = nearest_possible(
@@ -53,7 +53,7 @@ def with_possible_bodies(estimate: RobotEstimate, fit: Fit) -> RobotEstimate:
 
 
 def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
-    """The finding that no bodies have the identified base parameters."""
+    """Yield the finding that no bodies have the identified base parameters."""
     if estimate.consistent is not False or estimate.impossible_by is None:
         return
     distance = two_digits(estimate.impossible_by)
@@ -67,7 +67,7 @@ def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
 
 
 def _discs(tree: LinkTree, motors: Sequence[int]) -> Array:
-    """What a unit of inertia of motors adds to the links that they move, as flat discs about the joints' axes."""
+    """Return what a unit of motor inertia adds to the moved links, as flat discs about the joints' axes."""
     turning = [motor for motor in motors if not tree.prismatic[motor]]
     found = np.zeros((tree.inertias.size, len(turning)))
     for column, motor in enumerate(turning):
@@ -79,7 +79,7 @@ def _discs(tree: LinkTree, motors: Sequence[int]) -> Array:
 
 
 def _precision(estimate: RobotEstimate, fit: Fit, places: list[int]) -> Array:
-    """Inverse of the base parameters' covariance, with what is known of them beforehand."""
+    """Return the inverse of the base parameters' covariance, including their prior."""
     free = np.cumsum(~fit.at_bound) - 1
     mine = free[places]
     covariance = estimate.covariance[np.ix_(mine, mine)]
@@ -87,7 +87,7 @@ def _precision(estimate: RobotEstimate, fit: Fit, places: list[int]) -> Array:
     precision = np.zeros((len(places), len(places)))
     part = covariance[np.ix_(known, known)]
     scale = np.sqrt(np.diag(part))
-    # Of segments fewer than parameters the correlations are barely a matrix of correlations.
+    # With fewer segments than parameters, the correlation matrix is nearly singular.
     values, vectors = np.linalg.eigh(part / np.outer(scale, scale))
     inverse = (vectors / np.maximum(values, _SINGULAR)) @ vectors.T
     precision[np.ix_(known, known)] = inverse / np.outer(scale, scale)

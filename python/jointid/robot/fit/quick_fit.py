@@ -1,4 +1,4 @@
-"""A quick fit of a robot's balance: fewer samples, the URDF's inertias."""
+"""A quick fit of a robot's balance, with fewer samples and the URDF's inertias."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from jointid.robot.motion.motion import Motion
 Array = NDArray[np.float64]
 
 _SAMPLES = 2000
-_WHOLE = 0.9  # of a window of one joint, what the others' windows have to hold
+_WHOLE = 0.9  # smallest share of a joint's window that the other joints' windows must cover
 
 
 def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[float, float]:
-    """Return the relative residual of all joints' torques together, and the root mean square of the joints' own.
+    """Return the relative residual of all joints' torques together, and the root mean square over the joints' own.
 
-    The fits have the URDF's inertias and linear friction. By the second, what is wrong at the wrist does not drown in
-    the shoulder's torque.
+    The fits have the URDF's inertias and linear friction. The second value also shows faults of the wrist, because
+    large torques of the shoulder do not hide them.
     """
     fit = quick_fit_of(robot, motions, duration)
     if fit is None:
@@ -42,17 +42,17 @@ def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[f
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class QuickFit:
-    """The fit of friction alone."""
+    """A fit of friction only."""
 
     balance: Balance
     residual: Array  # (rows,)
-    held: tuple[tuple[int, str], ...]  # joint and name of friction that would be negative
+    held: tuple[tuple[int, str], ...]  # joint and name of friction that is held at 0
 
     def of_motors(self, couplings: Array) -> tuple[Array, Array]:
-        """Return residuals and torques of each motor in each window, (n, windows); NaN where there is none.
+        """Return residuals and torques of each motor in each window, (n, windows); NaN if a window lacks a row.
 
-        Torques at the motors do not depend on the couplings that are given; a motor's needs the rows of all joints with
-        which it turns, in the same window. `couplings` are those of the robot of this fit.
+        Torques at the motors do not depend on the assumed couplings. A motor's torque needs the rows of all joints that
+        it turns with, in the same window. `couplings` are those of the robot of this fit.
         """
         rows, n = self.balance.rows, len(couplings)
         windows = max(summing.windows.edges.size for summing in self.balance.summings)
@@ -74,7 +74,7 @@ class QuickFit:
 def quick_fit_of(
     robot: Robot, motions: Sequence[Motion], duration: float, mode: str = URDF
 ) -> QuickFit | None:
-    """Return the fit with linear friction and the URDF's inertias, or free ones; None where nothing moves."""
+    """Return the fit with linear friction and the URDF's inertias, or free ones; None if nothing moves."""
     balance = balance_of(robot, motions, duration, basis_of(robot, mode))
     rows = balance.rows
     if not rows.torque.size:
@@ -93,8 +93,8 @@ def quick_fit_of(
 class LinearSystem:
     """A balance with linear friction and the inertias of a mode."""
 
-    kept: list[int]  # the balance's columns of friction
-    table: Array  # (rows, columns), the target last
+    kept: list[int]  # friction columns of the balance
+    table: Array  # (rows, columns); the target is the last one
     least: Array  # lower bounds of the parameters
 
     def products(self, balance: Balance) -> Products:
@@ -104,8 +104,8 @@ class LinearSystem:
 
 
 def linear_system(balance: Balance, columns: InertiaColumns) -> LinearSystem:
-    """Return the columns of linear friction and of inertias; the balance must hold these."""
-    # A rotor's inertia that no motion separates from the links' would make the columns dependent.
+    """Return the columns of linear friction and of inertias; the balance must contain them."""
+    # An inseparable rotor inertia would make the columns dependent.
     kept = balance.columns_of((PLAIN,) * len(balance.places), columns.dropped)
     target = balance.rows.torque - columns.known(balance)
     return LinearSystem(
@@ -116,7 +116,7 @@ def linear_system(balance: Balance, columns: InertiaColumns) -> LinearSystem:
 
 
 def thinned(motion: Motion) -> Motion:
-    """Return a motion with every k-th sample; what is moving stays so where all intervals between are."""
+    """Return a motion with every k-th sample. An interval counts as moving if all of its original intervals move."""
     every = max(1, motion.time.size // _SAMPLES)
     kept = np.arange(0, motion.time.size, every)
 

@@ -1,4 +1,4 @@
-"""What the block bootstrap of a robot's estimate draws from: sums of the fit over quarters of blocks."""
+"""Input of the block bootstrap of a robot's estimate: sums of the fit over quarters of blocks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jointid.robot.result.bootstrap import RobotDraws
 
 
 def draws_of(balance: Balance, fit: Fit, prior: PriorRows) -> RobotDraws:
-    """Return the sums of a fit; what is known beforehand of further parameters stands behind its own."""
+    """Return the sums of a fit; priors of further parameters come after its own."""
     rows = balance.rows
     weight = 1.0 / fit.scatter[rows.joint]
     length = segment_length(rows.start, rows.stop, rows.piece)

@@ -1,7 +1,7 @@
-"""Which velocity of each joint is used: the one that is derived from positions, or the one in the recording.
+"""Choice of each joint's velocity: derived from positions, or from the recording.
 
-A recorded velocity may be late or filtered; a derived one suffers from wrong stamps and coarse positions. The torque
-balance decides: it is fitted with each, and predicts stretches of time that were held out.
+A recorded velocity may be late or filtered. A derived velocity suffers from wrong stamps and coarse positions. The
+torque balance decides: it is fitted with each of them, and predicts held-out stretches of time.
 """
 
 from __future__ import annotations
@@ -33,12 +33,10 @@ from jointid.robot.result.finding_types import TYPES, listed
 
 Array = NDArray[np.float64]
 
-_NOISIER = (
-    10.0  # times the noise of the derived velocity, which by local bends errs more than its noise
-)
-_SURE = 3.0  # standard errors by which held-out stretches are better predicted
+_NOISIER = 10.0  # times the noise of the derived velocity; high, because local curvature adds errors to that noise
+_SURE = 3.0  # standard errors by which the prediction of held-out stretches is better
 _MATTERS = 0.1  # of the squared residual: a smaller gain changes no value
-_SAMPLES = 40_000  # of a recording that are looked at
+_SAMPLES = 40_000  # samples of a recording that are used
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -47,7 +45,7 @@ class VelocityChoice:
 
     request: Request
     alignment: Alignment
-    # (n,), held-out residuals of the torque with derived and recorded velocities; None where these were not compared
+    # (n,), held-out residuals of the torque with derived and recorded velocities; None if not compared
     derived: Array | None = None
     recorded: Array | None = None
 
@@ -55,7 +53,7 @@ class VelocityChoice:
 def with_better_velocities(
     recordings: Sequence[RobotRecording], robot: Robot, request: Request, shift: object
 ) -> VelocityChoice:
-    """Return the identification on one clock, each joint with the velocity that predicts its torque better."""
+    """Return the identification on one clock, with the velocity of each joint that predicts its torque better."""
     every = tuple(range(robot.n))
     at_motor = [(robot.side or run.side) == "motor" for run in recordings]
     there = all(
@@ -67,7 +65,8 @@ def with_better_velocities(
     except InputError:
         if not there:
             raise
-        request = replace(request, recorded=every)  # noise of the derived ones hides all motion
+        # noise of the derived velocities hides all motion
+        request = replace(request, recorded=every)
         return VelocityChoice(request=request, alignment=aligned(recordings, robot, request, shift))
     if not there:
         return VelocityChoice(request=request, alignment=found)
@@ -85,7 +84,7 @@ def with_better_velocities(
             for motions in (derived_motions, recorded_motions)
         ]
     )
-    # With its own delay each: that of a velocity which is as late as the torque is 0.
+    # Each velocity has its own delay: for a velocity that is as late as the torque, the delay is 0.
     totals = np.nansum(np.log(left), axis=(2, 3))
     derived, recorded = left[[0, 1], np.argmin(totals, axis=1)]
     gain = np.log(derived) - np.log(recorded)
@@ -105,7 +104,7 @@ def with_better_velocities(
 
 
 def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]:
-    """The finding that says where the recorded velocity is used, and why."""
+    """Yield the finding of joints with the recorded velocity, and the reason."""
     joints = choice.request.recorded
     if not joints:
         return
@@ -137,9 +136,9 @@ def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]
 def _motions(
     recordings: Sequence[RobotRecording], attempt: Attempt, request: Request
 ) -> tuple[list[Motion], list[Motion], tuple[int, ...]]:
-    """Motions with derived velocities, with recorded ones of some joints, and these joints.
+    """Return motions with derived velocities, motions with recorded ones of some joints, and these joints.
 
-    They are those whose recorded velocity is not far noisier than the derived one.
+    These joints have a recorded velocity that is not far noisier than the derived one.
     """
     robot, mask = attempt.robot, (request.slowest, request.mask_standstill)
     parts, derived = [], []
@@ -159,7 +158,7 @@ def _motions(
     compared = tuple(np.flatnonzero(noises[1] < _NOISIER * noises[0]).tolist())
     if compared and compared != every:
         recorded = [Motion.of(part, robot, *mask, compared) for part in parts]
-    # The same rows for both.
+    # the same rows for both
     for place, (first, other) in enumerate(zip(derived, recorded, strict=True)):
         flags = {
             name: getattr(first, name) | getattr(other, name) for name in ("moving", "motor_moving")
@@ -191,7 +190,7 @@ def _misfits(attempt: Attempt, mode: str, motions: Sequence[Motion], delays: lis
 
 
 def _powers(rows: Rows, joints: int, folds: int) -> Array:
-    """Squared torque of each stretch and joint."""
+    """Return the squared torque of each stretch and joint."""
     key = folds_of(rows) * joints + rows.joint
     power = np.bincount(key, rows.torque**2, folds * joints)
     return np.asarray(power, dtype=np.float64).reshape(folds, joints)

@@ -1,8 +1,8 @@
-"""Where the recording's positions count from: the URDF's zero, or a quarter or half turn away from it.
+"""Zero of the recording's positions: the URDF's zero, or a quarter or half turn from it.
 
-A controller and a URDF often call different poses zero. Then gravity and the links' inertia of every pose are wrong,
-and the balance with the URDF's inertias leaves much of the torque unexplained, also with friction of any size. Other
-zeros are tried joint by joint.
+A controller and a URDF often define zero at different poses. Then the gravity torque and the links' inertia are wrong
+in every pose. With the URDF's inertias the balance has a large residual, also with friction of any size. Other zeros
+are tried joint by joint.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ from jointid.robot.motion.motion import Motion
 
 Array = NDArray[np.float64]
 
-_POOR = 0.12  # of the torque: less is not looked into
+_POOR = 0.12  # of the torque: a smaller residual is not examined
 _TURNS = (0.5 * np.pi, -0.5 * np.pi, np.pi)
-_BETTER = 0.7  # of the best misfit so far: what one more turned joint has to reach
-_CLEARLY = 0.5  # of the misfit without any: what all of them together have to reach, and that it is poor no more
+_BETTER = 0.7  # of the smallest residual so far: required of one more turned joint
+_CLEARLY = 0.5  # of the residual without offsets: required of all offsets together; also a residual below `_POOR`
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Zeros:
-    """Zero offsets that were looked for."""
+    """Result of the search for zero offsets."""
 
-    offsets: tuple[float, ...]  # [rad]; all 0 where no others fit clearly better
+    offsets: tuple[float, ...]  # [rad]; all 0 if no others fit clearly better
     before: float  # relative residual of all joints with the URDF's inertias, without the offsets
-    after: float  # the same with them
+    after: float  # the same with the offsets
 
     @property
     def found(self) -> bool:
-        """Whether there are any."""
+        """Whether any offset is not 0."""
         return any(each != 0.0 for each in self.offsets)
 
 
 def zeros_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Zeros:
-    """Return the offsets among quarter turns with which the URDF's inertias fit."""
+    """Return the multiples of a quarter turn with which the URDF's inertias fit."""
     thin = [thinned(motion) for motion in motions]
     turned = np.zeros(robot.n)
     best = before = _misfit(robot, thin, turned, duration)

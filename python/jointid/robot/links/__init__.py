@@ -1,1 +1,1 @@
-"""What a robot is: its links, joints and motors, from a URDF and facts."""
+"""Description of a robot: its links, joints and motors, from a URDF and facts."""

@@ -1,4 +1,4 @@
-"""Whether a body can have given inertial parameters."""
+"""Check whether a body can have given inertial parameters."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_NEGATIVE = 1e-9  # of the largest eigenvalue: what rounding makes
+_NEGATIVE = 1e-9  # of the largest eigenvalue: limit of rounding errors
 
 
 def possible(inertial: Array) -> bool:
     """Return whether bodies of positive density everywhere can have these inertial parameters, shape (links, 10).
 
     They can if the matrix of second moments, first moments and mass is positive semidefinite (Wensing, Kim and Slotine
-    2018); then inertias obey the triangle inequality, too. The order is mass, first moments, Ixx, Ixy, Iyy, Ixz, Iyz,
-    Izz about the frame.
+    2018). Then the inertias also satisfy the triangle inequality. The order is mass, first moments, Ixx, Ixy, Iyy, Ixz,
+    Iyz, Izz about the frame.
     """
     for each in inertial:
         values = np.linalg.eigvalsh(moments_of(each))

@@ -1,4 +1,4 @@
-"""What is known of a robot besides its URDF, from a file."""
+"""Facts of a robot that its URDF does not contain, from a file."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ KEYS = (
     *("gravity", "side", "torque_constants", "torque_scales", "directions", "models", "drive"),
 )
 
-_FACTS = TableOf(Plain())  # `Robot` says more of each value
+_FACTS = TableOf(Plain())  # `Robot` checks each value in detail
 
 
 def read_facts(path: Path) -> dict[str, Any]:
-    """Return the arguments of `Robot.from_urdf` that a facts file holds, or name the file and what is wrong in it."""
+    """Return the arguments of `Robot.from_urdf` from a facts file, or name the file and the fault in it."""
     try:
         found = _FACTS.read(read_toml(path), "")
     except InputError as error:
@@ -51,7 +51,7 @@ def read_facts(path: Path) -> dict[str, Any]:
             raise InputError(
                 "numbers are expected", argument="zero_offsets_deg", value=degrees, place=path.name
             ) from None
-    # TOML has no null: "free" stands for an inertia that is identified.
+    # TOML has no null: "free" means an inertia that is identified.
     rotors = found.get("rotor_inertias")
     if isinstance(rotors, list):
         found["rotor_inertias"] = [None if each == "free" else each for each in rotors]
@@ -59,7 +59,7 @@ def read_facts(path: Path) -> dict[str, Any]:
 
 
 def _check_tables(table: dict[str, Any], place: str, header: str = "") -> None:
-    """Refuse a list or word of the robot that stands below a table's header, and so belongs to the table."""
+    """Refuse a list or word of the robot below a table's header, because it belongs to that table."""
     for key, value in table.items():
         if isinstance(value, dict):
             _check_tables(value, place, f"{header}.{key}".lstrip("."))
@@ -73,7 +73,7 @@ def _check_tables(table: dict[str, Any], place: str, header: str = "") -> None:
 
 
 def _of_joints(tables: dict[str, Any], place: str) -> dict[str, Any]:
-    """Facts of single joints; what is not named is not left out."""
+    """Return facts of single joints; facts that are not named keep their default."""
     models = {}
     for name, table in tables.items():
         if not isinstance(table, dict) or set(table) != {"model"}:

@@ -1,4 +1,4 @@
-"""Which column of a recording is which joint of a robot."""
+"""Match the columns of a recording with the joints of a robot."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.recording.wide.robot_signals import LISTED
 
 
 def joint_columns(joints: Sequence[str], recording: RobotRecording) -> list[int]:
-    """Return the recording's column of each joint of a robot, as `Robot.columns_of` describes it."""
+    """Return the recording's column of each joint of a robot, as described in `Robot.columns_of`."""
     names = recording.names
     if all(joint in names for joint in joints):
         return [names.index(joint) for joint in joints]
@@ -29,7 +29,7 @@ def joint_columns(joints: Sequence[str], recording: RobotRecording) -> list[int]
 
 
 def _numbered(joint: str, names: Sequence[str]) -> str | None:
-    """The recording's joint that has the number at the end of a joint's name; None if there is none."""
+    """Return the recording's joint that has the number at the end of a joint's name; None if there is none."""
     digits = joint[len(joint.rstrip("0123456789")) :]
     try:
         return joint_named(int(digits), names, "") if digits else None
@@ -38,7 +38,7 @@ def _numbered(joint: str, names: Sequence[str]) -> str | None:
 
 
 def _lacking(joints: Sequence[str], recording: RobotRecording) -> InputError:
-    """The error for a recording that lacks joints of the robot, with the line that names those it has."""
+    """Return the error for a recording that lacks joints of the robot, with a line that corrects it."""
     names = recording.names
     both = f"the robot has the joints {', '.join(joints)}, the recording {', '.join(names)}"
     renamed = "give the recording's joints the URDF's names"

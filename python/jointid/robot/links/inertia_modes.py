@@ -1,4 +1,4 @@
-"""What of the links' inertias may be identified: nothing, a scale a link, or base parameters."""
+"""Modes of identifying the links' inertias: not identified, one scale for each link, or base parameters."""
 
 from typing import Literal
 

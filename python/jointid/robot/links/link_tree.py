@@ -1,4 +1,4 @@
-"""A robot's links as numbers: how they hang on each other, where they are, what they weigh."""
+"""A robot's links as numbers: their connections, positions and inertias."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ INERTIAL_UNITS = ("kg", *("kg·m",) * 3, *("kg·m²",) * 6)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LinkTree:
-    """Links and the joints of one degree of freedom that move them; link k is moved by joint k."""
+    """Links and the joints of one degree of freedom that move them; joint k moves link k."""
 
     names: tuple[str, ...]  # of the joints
-    # link that each joint sits on, before its own; -1: the base, which stands still
+    # parent link of each joint, an earlier one; -1: the base, which does not move
     parents: tuple[int, ...]
-    rotations: Array  # (n, 3, 3), of a joint's frame at position 0, to its parent's frame
+    rotations: Array  # (n, 3, 3), from a joint's frame at position 0 to its parent's frame
     translations: Array  # (n, 3) [m]
     axes: Array  # (n, 3), unit vectors in the joint's own frame
     prismatic: tuple[bool, ...]  # whether a joint slides along its axis
     inertias: Array  # (n, 10), in the order of `INERTIAL`
     gravity: Array  # (3,), acceleration in the base's frame [m/s²]
-    # joints that move and are left out; they stand at 0. Not known of a robot that was read from JSON
+    # moving joints of the URDF that are left out; they stay at 0. Unknown for a robot that was read from JSON
     locked: tuple[str, ...] = ()
-    # how far each joint may move by the URDF's limits [rad or m]; None: not known
+    # range of each joint by the URDF's limits [rad or m]; None: unknown
     spans: tuple[float, ...] | None = None
 
     @property
@@ -38,7 +38,7 @@ class LinkTree:
         return tuple((i, k) for k in range(len(self.names)) for i in self.carriers(k))
 
     def carriers(self, link: int) -> tuple[int, ...]:
-        """Joints between the base and a link, the base's side first."""
+        """Return the joints between the base and a link, from the base on."""
         found: list[int] = []
         while link >= 0:
             found.append(link)

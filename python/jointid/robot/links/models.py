@@ -1,6 +1,6 @@
 """The friction model of each joint as text, and its terms.
 
-The text is a name, with ``:asymmetric`` where the directions differ and ``:load_friction`` where the load adds to it.
+The text is a name, plus ``:asymmetric`` if the directions differ and ``:load_friction`` if the load adds friction.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ def terms_of(model: str) -> list[_core.Term]:
 
 
 def linear_terms(model: str) -> list[_core.Term]:
-    """Return the terms whose basis has no shape parameter."""
+    """Return the terms without a shape parameter."""
     return [term for term in terms_of(model) if not term.shapes]
 
 
 def shaped_term(model: str) -> _core.Term | None:
-    """Return the term whose basis has a shape parameter, if the model has one."""
+    """Return the term with a shape parameter, if the model has one."""
     return next((term for term in terms_of(model) if term.shapes), None)
 
 
 def friction_models(
     model: object, names: Sequence[str], usual: Sequence[str] | None = None
 ) -> list[str]:
-    """Return the text of each joint's model, from one for all or a mapping; joints without one have the `usual` one."""
+    """Return the text of each joint's model, from one for all or a mapping. Joints without a model get `usual`."""
     if isinstance(model, Mapping) and not (model and set(model) <= set(FIELDS)):
         for name in model:
             if name not in names:
@@ -102,7 +102,7 @@ MODELS = tuple(
     for model in _core.models()
     if sum(len(term.shapes) for term in terms_of(model.name)) <= 1
 )
-"""Of a robot's joint: at most one shape parameter."""
+"""Models for a robot's joint: they have at most one shape parameter."""
 PLAIN = next(name for name in MODELS if shaped_term(name) is None)
 SHAPED = next(name for name in MODELS if shaped_term(name) is not None)
-"""What "auto" tries: `PLAIN`, and this model where it predicts better."""
+"""The model that "auto" compares with `PLAIN`; it is used if it predicts better."""

@@ -1,10 +1,9 @@
 """Momentum and forces of a moving tree of links as columns of its inertial parameters, for many samples at once.
 
-By Lagrange's equation ``d/dt (∂T/∂v) - ∂T/∂q + ∂U/∂q`` is the torque of the joints. Both parts are linear in the
-links' inertial parameters, and need position and velocity only. With the axis S of joint i and the velocity V of
-link k as spatial vectors in the frame of link k, momentum is ``S · h``, ``∂T/∂q`` is ``(V_i x S) · h`` and ``∂U/∂q``
-is ``-S · f``, where h is the link's spatial momentum and f that of a link that moves with the acceleration of
-gravity.
+Lagrange's equation gives the torque of the joints: ``d/dt (∂T/∂v) - ∂T/∂q + ∂U/∂q``. Both parts are linear in the
+links' inertial parameters, and need position and velocity only. Let the axis S of joint i and the velocity V of link k
+be spatial vectors in the frame of link k. Then momentum is ``S · h``, ``∂T/∂q`` is ``(V_i x S) · h``, and ``∂U/∂q`` is
+``-S · f``. Here h is the spatial momentum of the link, and f the momentum of a link with gravity as its velocity.
 """
 
 from __future__ import annotations
@@ -21,8 +20,8 @@ Spatial = tuple[Array, Array]  # linear part at the frame's origin, angular part
 def columns_of(tree: LinkTree, position: Array, velocity: Array) -> tuple[Array, Array]:
     """Return the columns of momentum and of force, (pairs, 10, samples), in the order of `LinkTree.pairs`.
 
-    They are by the link's inertial parameters. The force is ``∂T/∂q - ∂U/∂q``: the momentum's rate is the torque plus
-    this.
+    They are columns of the link's inertial parameters. The force is ``∂T/∂q - ∂U/∂q``. The rate of the momentum is the
+    torque plus this force.
     """
     samples = position.shape[1]
     pairs = tree.pairs
@@ -59,7 +58,7 @@ def columns_of(tree: LinkTree, position: Array, velocity: Array) -> tuple[Array,
 
 
 def _placement(tree: LinkTree, k: int, position: Array) -> tuple[Array, Array]:
-    """Rotation (3, 3, samples) and origin (3, samples) of a link's frame in its parent's."""
+    """Return rotation (3, 3, samples) and origin (3, samples) of a link's frame in its parent's."""
     rotation, origin, axis = tree.rotations[k], tree.translations[k], tree.axes[k]
     if tree.prismatic[k]:
         shift = origin[:, None] + (rotation @ axis)[:, None] * position
@@ -82,14 +81,14 @@ def _axis(tree: LinkTree, k: int, samples: int) -> Spatial:
 
 
 def _moved(vector: Spatial, turned: Array, shift: Array) -> Spatial:
-    """A parent's spatial motion vector in its child's frame."""
+    """Return a parent's spatial motion vector in its child's frame."""
     linear, angular = vector
     linear = linear + _cross(angular, shift)
     return _back(turned, linear), _back(turned, angular)
 
 
 def _back(turned: Array, vector: Array) -> Array:
-    """The transposed rotation times the vector."""
+    """Return the transposed rotation times the vector."""
     result: Array = turned[0] * vector[0]
     result += turned[1] * vector[1]
     result += turned[2] * vector[2]
@@ -105,12 +104,12 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 def _crossed(a: Spatial, b: Spatial) -> Spatial:
-    """Spatial cross product of two motion vectors."""
+    """Return the spatial cross product of two motion vectors."""
     return _cross(a[1], b[0]) + _cross(a[0], b[1]), _cross(a[1], b[1])
 
 
 def _product(s: Spatial, v: Spatial, result: Array) -> Array:
-    """``s · (inertia v)`` by the ten inertial parameters."""
+    """Return ``s · (inertia v)`` per inertial parameter (ten)."""
     (sl, sa), (vl, va) = s, v
     result[0] = sl[0] * vl[0] + sl[1] * vl[1] + sl[2] * vl[2]
     result[1:4] = _cross(sl, va)

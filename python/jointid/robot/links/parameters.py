@@ -1,4 +1,4 @@
-"""The parameters of a robot's joint: those of the core's table of terms, and those that only a robot has."""
+"""The parameters of a robot's joint: those in the core's table of terms, and those that only a robot has."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from jointid import _core
 from jointid.robot.links.models import LOAD, MODELS, PLAIN, linear_terms, modelled, terms_of
 
 LINEAR_TERMS = {term.key: term for model in MODELS for term in linear_terms(model)}
-"""Terms of the speed without shape parameters that some model has, by key."""
+"""Terms of the speed without shape parameters that any model has, by key."""
 CONSTANT, VISCOUS = (
     next(term for term in linear_terms(PLAIN) if term.basis == basis)
     for basis in ("constant", "linear")
 )
 POSITION_GAIN = "position_gain"
-"""Of a joint with a drive whose gain is not known."""
+"""Parameter of a joint with a drive of unknown gain."""
 DIFFERENCE = f"{VISCOUS.name}_difference"
-"""Of joints with asymmetric friction; half the difference of the constant term is in the offset."""
+"""Parameter of joints with asymmetric friction; half the difference of the constant term is in the offset."""
 MOTOR_TERMS = {f"motor_{term.name}": term for term in linear_terms(PLAIN)}
 """Friction of a motor that turns with several joints."""
 
 
 def parameter_facts(*models: str) -> dict[str, tuple[str, str, str]]:
-    """Return what each parameter of a joint with one of these models means, and its unit of a hinge and of a slide.
+    """Return the meaning and units of each parameter of joints with these models: meaning, unit of a hinge, of a slide.
 
-    In the order of tables.
+    The order is that of tables.
     """
     keys = {term.key for model in models for term in terms_of(model)}
     found: dict[str, tuple[str, str, str]] = {}
@@ -60,11 +60,11 @@ PARAMETERS = tuple(parameter_facts(*MODELS, modelled(PLAIN, load_friction=True))
 FRICTION = frozenset(PARAMETERS) - {
     *("torque_offset", "rotor_inertia", "inertia_scale", POSITION_GAIN)
 }
-"""Those that are friction."""
+"""Names of friction parameters."""
 SHAPES = frozenset(name for model in MODELS for term in terms_of(model) for name in term.shapes)
 JOINT_FRICTION = (*dict.fromkeys(term.name for term in LINEAR_TERMS.values()), LOAD.name)
 LINEAR_FRICTION = (*JOINT_FRICTION, *MOTOR_TERMS)
-"""Friction without shape parameters: of joints on their own speed and load, and with that of motors."""
+"""Friction without shape parameters: of joints on their own speed and load, and of motors on theirs."""
 
 
 def least_of(term: _core.Term) -> float:

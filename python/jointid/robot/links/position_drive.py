@@ -1,4 +1,4 @@
-"""The loop that drives each joint of a robot from wanted positions, where no torque is logged."""
+"""The position loop of each joint, which gives the torque from wanted positions if no torque is logged."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ _LONGEST = 0.5  # [s]
 class PositionDrive:
     """Torque = kp · (wanted position - position) - kd · velocity, within its limits; on the side of the recording.
 
-    The loop runs continuously in the motor. The wanted position reaches it some time after its row, and holds until
-    the next one.
+    The loop runs continuously in the motor. The wanted position takes effect some time after its row, and holds until
+    the next one takes effect.
     """
 
-    # [N·m/rad or N/m], one a joint; None: identified, from what the links weigh
+    # [N·m/rad or N/m], one for each joint; None: identified from the weight of the links
     kp: tuple[float | None, ...]
-    # [N·m·s/rad or N·s/m]; 0 where it is not known: it is then part of the viscous coefficient
+    # [N·m·s/rad or N·s/m]; 0 if it is not known: it is then part of the viscous coefficient
     kd: tuple[float, ...]
     torque_limits: tuple[float, ...] | None = None  # [N·m or N]
-    hold: str = "zoh"  # "linear": the wanted position moves evenly from row to row
-    delay: tuple[float, ...] | None = None  # [s], from a row to its effect; None: found
+    hold: str = "zoh"  # "linear": the wanted position is interpolated from row to row
+    delay: tuple[float, ...] | None = None  # [s], from a row to its effect; None: identified
 
     @classmethod
     def of(cls, drive: object, count: int) -> Self:
-        """Return the drive of so many joints from a mapping, with one value for all joints or one for each."""
+        """Return the drive of `count` joints from a mapping, with one value for all joints or one for each."""
         if not isinstance(drive, Mapping):
             raise InputError(
                 f"a table with {' and '.join(KEYS[:2])} is expected", argument="drive", value=drive
@@ -88,24 +88,24 @@ class PositionDrive:
         )
 
     def torque_of_command(self, wanted: Array) -> Array:
-        """The part of the torque that a late command moves, as a mean until the next sample; (n, samples).
+        """Return the torque from the wanted position alone, as a mean until the next sample; (n, samples).
 
-        A held command makes a ripple that velocities from sampled positions do not have. So the mean is that of the
-        torque without the ripple, and not the held value: the difference looks like inertia, kp · (row's period)² / 12.
+        A held command causes a ripple that velocities from sampled positions do not contain. So this is the mean of the
+        torque without ripple, not of the held value. The difference would look like inertia: kp · (row's period)² / 12.
         """
         return self._stiffness * (
             _bent(wanted, 1.0 / 12.0) if self.hold == "zoh" else _means(wanted)
         )
 
     def torque_of_state(self, time: Array, position: Array) -> Array:
-        """The rest of the torque, meant over each interval: exact for the damping, which needs no velocity."""
+        """Return the other part of the torque, as a mean over each interval; exact for damping without any velocity."""
         slope = np.diff(position, axis=1, append=position[:, -1:]) / np.diff(
             time, append=2.0 * time[-1] - time[-2]
         )
         return -self._stiffness * _means(position) - np.array(self.kd)[:, None] * slope
 
     def torque_at(self, error: Array, velocity: Array) -> Array:
-        """The torque at one instant, (n,), without its limits."""
+        """Return the torque at one instant, (n,), without its limits."""
         return self._stiffness[:, 0] * error - np.array(self.kd) * velocity
 
     @property
@@ -113,7 +113,7 @@ class PositionDrive:
         return np.array([each or 0.0 for each in self.kp])[:, None]
 
     def limited(self, torque: Array) -> Array:
-        """Torques within the limits."""
+        """Return torques within the limits."""
         if self.torque_limits is None:
             return torque
         most = np.array(self.torque_limits)[:, None]
@@ -125,16 +125,16 @@ class PositionDrive:
         return tuple(joint for joint, each in enumerate(self.kp) if each is None)
 
     def of_unit_gain(self) -> PositionDrive:
-        """The drive of what is identified alone, with gains of 1."""
+        """Return a drive with gains of 1 for the identified gains, and 0 for all others."""
         kp = tuple(1.0 if each is None else 0.0 for each in self.kp)
         return replace(self, kp=kp, kd=(0.0,) * len(kp), torque_limits=None)
 
     def with_gains(self, gains: Mapping[int, float]) -> PositionDrive:
-        """The drive with the gains that were found."""
+        """Return the drive with the gains that were found."""
         return replace(self, kp=tuple(gains.get(k, each) for k, each in enumerate(self.kp)))
 
     def document(self) -> dict[str, Any]:
-        """The drive in JSON's types, as `of` takes it."""
+        """Return the drive in JSON's types, as an argument of `of`."""
         found: dict[str, Any] = {
             "kp": list(self.kp),
             "kd": list(self.kd),
@@ -148,21 +148,21 @@ class PositionDrive:
 
 
 def _means(rows: Array) -> Array:
-    """Means over the intervals of a smooth signal; the last is that sample's."""
+    """Return means of a smooth signal over the intervals; the last mean is the last sample."""
     bent = _bent(rows, -1.0 / 12.0)
     following = np.concatenate([bent[:, 1:], rows[:, -1:]], axis=1)
     return np.asarray(0.5 * (bent + following))
 
 
 def _bent(rows: Array, share: float) -> Array:
-    """Rows with a share of their second differences."""
+    """Return rows plus a share of their second differences."""
     found = rows.copy()
     found[:, 1:-1] += share * np.diff(rows, 2, axis=1)
     return found
 
 
 def _values(drive: Mapping[str, Any], key: str, count: int) -> tuple[float | None, ...]:
-    """Numbers, or None where "free" stands."""
+    """Return numbers, or None for "free"."""
     each = drive[key]
     if isinstance(each, str) or is_finite(each):
         each = [each] * count
@@ -191,7 +191,7 @@ def _numbers(
 
 
 def facts_of_drive(names: Sequence[str]) -> str:
-    """Return the line of a facts file that gives joints a position drive, and what to write there."""
+    """Return the line of a facts file that gives joints a position drive, with the values to fill in."""
     order = ", ".join(names)
     return (
         "state the loop that makes torques of its wanted positions, in a facts file above its tables: "
@@ -203,9 +203,9 @@ def facts_of_drive(names: Sequence[str]) -> str:
 def facts_of_scales(
     drive: PositionDrive | None, scales: Sequence[float], before: Sequence[float] | None
 ) -> dict[str, object]:
-    """Return the facts that multiply the joints' torques in all: the gains of a drive, unless a sign changes.
+    """Return the facts that apply factors to the joints' torques: the gains of a drive, unless a sign changes.
 
-    `before` are the scales that were stated.
+    `before` are the stated scales.
     """
     if drive is None or min(scales) < 0.0:
         return {"torque_scales": [*scales]}

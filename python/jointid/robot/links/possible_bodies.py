@@ -1,9 +1,10 @@
-"""Bodies that have given base parameters, as nearly as these are known, and are like the URDF's otherwise.
+"""Find bodies that have given base parameters within their errors and are otherwise close to the URDF's.
 
-Base parameters are combinations; many sets of links have the same. Sought is the one that bodies can have:
-the least squared distance of the base parameters, in their standard errors, plus a little of the entropic divergence of
-each link's matrix of moments from the URDF's (Lee, Wensing and Park 2020). Both are convex, and the divergence grows
-beyond all bounds where a body ends to be possible: Newton's method from the URDF's links finds the one minimum.
+Base parameters are combinations, so many sets of links have the same ones. The search finds the physically consistent
+set with the smallest sum of two terms. The first is the squared distance of the base parameters, in standard errors.
+The second is a small weight times the entropic divergence of each link's matrix of moments from the URDF's (Lee,
+Wensing and Park 2020). Both terms are convex, and the divergence is infinite at the limit of possible bodies. So
+Newton's method from the URDF's links finds the one minimum.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from jointid.robot.links.bodies import moments_of, possible
 Array = NDArray[np.float64]
 
 _LIGHTEST = 0.01  # of the links' mean mass
-_SMALLEST = 0.01  # [m]: thinner is hardly a link
+_SMALLEST = 0.01  # [m]: a link is hardly thinner
 _TOGETHER = (1.0, 0.1, 0.01, 1e-3, 1e-4)  # weights of the divergence, one after the other
-_NEAR_ENOUGH = 0.01  # from this weight on, what is left of the distance is taken away
+_NEAR_ENOUGH = 0.01  # from this weight on, the remaining distance is removed
 _STEPS = 400
-_HEAVY = 10.0  # how many times a link's inertia a motor behind its gear usually has
-_SETTLED = 1e-9  # of the decrease that Newton's method foresees
-_SHORTEST = 1e-9  # step
+_HEAVY = 10.0  # usual ratio of the inertia of a motor behind its gear to its link's
+_SETTLED = 1e-9  # of the decrease that Newton's method predicts
+_SHORTEST = 1e-9  # shortest step
 _BY_CHANCE = 0.003  # probability of a larger distance if bodies have the true base parameters
 # Matrix of moments by each of the ten parameters of a link.
 _CHANGES = np.array([moments_of(each) for each in np.eye(10)])
@@ -33,11 +34,11 @@ _CHANGES = np.array([moments_of(each) for each in np.eye(10)])
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PossibleBodies:
-    """Links that can be."""
+    """Physically consistent links."""
 
     inertial: Array  # (links, 10)
-    distance: float  # of their base parameters from the given ones, in standard errors
-    by_chance: bool  # whether so large a distance may be chance
+    distance: float  # distance of their base parameters from the given ones, in standard errors
+    by_chance: bool  # True if a distance of this size may be chance
 
 
 def nearest_possible(
@@ -45,8 +46,8 @@ def nearest_possible(
 ) -> PossibleBodies:
     """Return the possible links nearest to the base parameters `wanted`, which are `base` times inertial parameters.
 
-    `precision` is the inverse of their covariance, positive definite. A column of `discs`, (10 n, motors), is what a
-    unit of a motor's inertia adds to links that cannot be told from it: the URDF's links lack it.
+    `precision` is the inverse of the covariance of `wanted`, positive definite. A column of `discs`, (10 n, motors), is
+    the effect of a unit of motor inertia on links that no motion separates from it. The URDF's links lack this inertia.
     """
     start = _as_bodies(urdf)
     search = _Search(
@@ -72,7 +73,7 @@ def nearest_possible(
 
 
 def _as_bodies(inertial: Array) -> Array:
-    """The nearest links with some mass and extent."""
+    """Return the nearest links with some mass and size."""
     lightest = _LIGHTEST * float(np.maximum(inertial[:, 0], 0.0).mean()) or _LIGHTEST
     found = np.empty_like(inertial)
     for number, each in enumerate(inertial):
@@ -89,14 +90,14 @@ def _as_bodies(inertial: Array) -> Array:
 
 
 def _parameters(moments: Array) -> Array:
-    """The ten parameters of a link with this matrix of moments."""
+    """Return the ten parameters of a link with this matrix of moments."""
     turning = np.trace(moments[:3, :3]) * np.eye(3) - moments[:3, :3]
     xx, xy, xz, yy, yz, zz = turning[np.triu_indices(3)]
     return np.array([moments[3, 3], *moments[:3, 3], xx, xy, yy, xz, yz, zz])
 
 
 def _with_base(inertial: Array, wanted: Array, base: Array, sizes: Array) -> Array:
-    """The links with exactly these base parameters, by the smallest change in terms of the links' own sizes."""
+    """Return the links with exactly these base parameters, by the smallest change relative to the links' sizes."""
     mass = sizes[:, :1]
     turning = np.sqrt((sizes[:, 4] + sizes[:, 6] + sizes[:, 9])[:, None] / mass)
     scale = np.hstack([mass, *(mass * turning,) * 3, *(mass * turning**2,) * 6]).ravel()
@@ -106,7 +107,7 @@ def _with_base(inertial: Array, wanted: Array, base: Array, sizes: Array) -> Arr
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Search:
-    """Damped Newton steps; the variables are the links' parameters, and behind them the motors' inertias."""
+    """Damped Newton steps; the variables are the links' parameters, then the motors' inertias."""
 
     urdf: Array  # (n, 10)
     wanted: Array  # (count,)
@@ -115,7 +116,7 @@ class _Search:
     usual: Array  # (motors,), sizes of the motors' inertias
 
     def minimum(self, at: Array, weight: float) -> Array:
-        """The minimum with one weight of the divergence."""
+        """Return the minimum for one weight of the divergence."""
         now = self._value(at, weight)
         for _ in range(_STEPS):
             slope, curvature = self._derivatives(at, weight)
@@ -176,5 +177,5 @@ def _inverse(link: Array) -> Array:
 
 
 def _products(matrix: Array) -> Array:
-    """Traces of the products with the changes of a link's moments."""
+    """Return traces of the products with the changes of a link's moments."""
     return np.asarray(np.einsum("iab,ab->i", _CHANGES, matrix))

@@ -21,7 +21,7 @@ _MOST = {
 
 
 def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[float]) -> LinkTree:
-    """Return the links that some joints of a URDF move, by default all; its other joints stand at zero."""
+    """Return the links that some joints of a URDF move, by default all; its other joints stay at zero."""
     try:
         import pinocchio
     except ModuleNotFoundError:
@@ -51,7 +51,9 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
     if not kept:
         raise InputError("the URDF has no moving joint", argument="path", value=path.name)
     expected = [name for name in names if name in kept]
-    if kept != expected:  # the other facts' lists would go to other joints than their author means
+    if (
+        kept != expected
+    ):  # the values of other lists would belong to other joints than the author intends
         raise InputError(
             "the order of the URDF is expected, as in all other lists: " + ", ".join(expected),
             argument="joints",
@@ -78,7 +80,7 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
 
 
 def _span(model: Any, name: str) -> float:
-    """How far a joint may move by the URDF's limits; infinity where it has none."""
+    """Return the range of a joint by the URDF's limits; infinity if it has none."""
     joint = model.joints[model.getJointId(name)]
     if joint.nq != 1:
         return float("inf")
@@ -87,7 +89,7 @@ def _span(model: Any, name: str) -> float:
 
 
 def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]], bool]:
-    """A joint's axis, and whether it slides along it."""
+    """Return a joint's axis, and whether it slides along it."""
     joint = model.joints[model.getJointId(name)]
     if joint.nv != 1:
         raise InputError(
@@ -105,7 +107,7 @@ def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
 
 
 def _xml(path: Path) -> str:
-    """The text of a URDF; what is no XML is refused before pinocchio complains of it on the terminal."""
+    """Return the text of a URDF. Invalid XML is refused here, because pinocchio would print its own complaint."""
     try:
         content = path.read_bytes()
     except FileNotFoundError:
@@ -137,7 +139,7 @@ def _xml(path: Path) -> str:
 
 
 class _Elements:
-    """What of a URDF is counted: pinocchio goes down a chain by recursion, and takes the cube of its links."""
+    """Limits on a URDF's size: pinocchio follows chains by recursion, and its cost grows with the cube of the links."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -30,14 +30,14 @@ _GRAVITY = (0.0, 0.0, -9.81)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Robot:
-    """A robot's links, joints and motors; made by `from_urdf`.
+    """A robot's links, joints and motors. `from_urdf` makes it.
 
     Attributes
     ----------
     tree : LinkTree
         Links, joints and inertias, from the URDF.
     names : tuple of str
-        Joints; every list with one value per joint has this order.
+        Names of the joints; every list with one value per joint has this order.
     gear_ratios : tuple of float or None
         Motor angle per angle of its joint, signed.
     couplings : ndarray, shape (n, n)
@@ -51,7 +51,7 @@ class Robot:
     side : str or None
         "joint" or "motor": the side of positions and torques in recordings; None: as their headers say.
     name : str
-        The URDF's.
+        Name of the robot in the URDF.
     torque_scales : tuple of float or None
         Factors by which the recorded torques are multiplied; None: 1.
     directions : tuple of float or None
@@ -123,10 +123,10 @@ class Robot:
             The URDF's joint positions at the recording's 0 [rad or m]; a controller often counts from another pose.
             Default: 0, or multiples of 90 degrees if `identify` finds that the URDF's inertias fit only with these.
         side : {"joint", "motor"}, optional
-            Side of positions and torques in recordings. Default: as their headers say.
+            Side of positions and torques in recordings. Default: the side in their headers.
         gravity : sequence of float or "free", optional
-            In the base's frame [m/s²]. "free" identifies its direction, for a robot on a stand or hanging. Default
-            (0, 0, -9.81): the base stands upright.
+            Gravity in the base's frame [m/s²]. "free" identifies its direction, for a robot on a stand or hanging.
+            Default (0, 0, -9.81): the base stands upright.
         torque_constants : sequence of float, optional
             Motor torque per recorded current [N·m/A], one per joint; negative if a positive current turns the joint
             backwards. Gear ratios convert the torques to the joints; without them the constants are the joints'.
@@ -230,7 +230,7 @@ class Robot:
 
     @property
     def coupled(self) -> NDArray[np.bool_]:
-        """Motors that turn with several joints, or not with their own."""
+        """Whether each motor turns with several joints, or not with its own."""
         return np.array(
             [np.any(np.delete(row, k) != 0.0) for k, row in enumerate(self.couplings)], dtype=bool
         )
@@ -238,8 +238,9 @@ class Robot:
     def columns_of(self, recording: RobotRecording) -> list[int]:
         """Return the recording's column of each joint.
 
-        Joints are matched by name. If no name fits and the number of joints is the same, they are taken in the order
-        that was listed when loading, otherwise by number if the recording numbers them, otherwise in order.
+        Joints are matched by name. If no name fits and the number of joints is the same, they are taken in the order of
+        `joints` when loading. Without that order, they are matched by number if the recording numbers them, otherwise
+        in order.
 
         Raises
         ------
@@ -281,7 +282,7 @@ def _numbers(argument: str, values: Sequence[float], count: int) -> list[float]:
 
 
 def _factors(argument: str, values: Sequence[float] | None, count: int) -> tuple[float, ...] | None:
-    """Factors that are not 0; directions are 1 and -1."""
+    """Return factors that are not 0; directions are 1 or -1."""
     if values is None:
         return None
     found = _numbers(argument, values, count)
@@ -320,7 +321,7 @@ def _couplings(
 
 
 def _named_couplings(couplings: Mapping[str, Mapping[str, float]], names: list[str]) -> Array:
-    """The matrix; what is not named is as without couplings."""
+    """Return the matrix; couplings that are not named keep their default."""
     matrix = np.eye(len(names))
     for motor, row in couplings.items():
         if motor not in names:

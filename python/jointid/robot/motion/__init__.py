@@ -1,1 +1,1 @@
-"""How a robot moves: its recordings on one clock, velocities from positions."""
+"""Motion of a robot: its recordings on one clock, and velocities from positions."""

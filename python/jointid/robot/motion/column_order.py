@@ -1,4 +1,4 @@
-"""A robot's recording with its columns exchanged."""
+"""Exchange columns of a robot's recording."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Whole = NDArray[np.int64]
 def reordered(
     recording: RobotRecording, robot: Robot, order: Whole | None, torque_order: Whole | None
 ) -> RobotRecording:
-    """Return a recording in which each joint has the columns that `order` says; None leaves them."""
+    """Return a recording in which each joint has the columns at its place in `order`; None keeps the columns."""
     columns = np.array(robot.columns_of(recording))
     fields = recording.fields()
     moving, pushing = (

@@ -1,4 +1,4 @@
-"""Torques that a position drive makes of wanted positions, and how they change with the delay of these."""
+"""Torques of a position drive from wanted positions, and their change with the delay of these positions."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ class Driven:
 
     drive: PositionDrive
     time: Array
-    wanted: Array  # (n, samples), positions, on the recording's side
-    command: Array  # what follows the wanted position, there
-    state: Array  # the rest, there
-    factor: Array  # (n,), to the torque at the joint
+    wanted: Array  # (n, samples), wanted positions, on the recording's side
+    command: Array  # torque that follows the wanted position, on the recording's side
+    state: Array  # the rest of the torque, on the recording's side
+    factor: Array  # (n,), factor to the torque at the joint
 
     @classmethod
     def of(
         cls, recording: RobotRecording, drive: PositionDrive, columns: list[int], factor: Array
     ) -> Self:
-        """Return the parts of some columns of a recording."""
+        """Return the torques from some columns of a recording."""
         wanted = recording.reference
         if wanted is None or not np.all(np.isfinite(wanted[:, columns])):
             lacking = [
@@ -61,7 +61,7 @@ class Driven:
         )
 
     def torque(self, delay: Array | None = None) -> Array:
-        """Return the torques at the joints, (n, samples), if the wanted positions act by further delays later [s]."""
+        """Return the torques at the joints, (n, samples), if the wanted positions act later by further delays [s]."""
         command = self.command
         if delay is not None:
             command = np.array(
@@ -71,7 +71,7 @@ class Driven:
 
 
 def earlier(time: Array, values: Array, late: float) -> Array:
-    """Return the values of a smooth signal some time before each sample [s], by cubics through four samples."""
+    """Return the values of a smooth signal `late` seconds before each sample, by cubics through four samples."""
     place = np.interp(time - late, time, np.arange(time.size, dtype=np.float64))
     first = np.clip(np.floor(place).astype(np.int64) - 1, 0, time.size - 4)
     x = place - first
@@ -85,5 +85,5 @@ def earlier(time: Array, values: Array, late: float) -> Array:
 
 
 def is_held(recording: RobotRecording, robot: Robot) -> bool:
-    """Whether a torque is the mean until the next sample, as one that is held."""
+    """Return whether a torque is held until the next sample, so that each value is the mean until then."""
     return robot.drive is not None or recording.torque_hold == "zoh"

@@ -1,4 +1,4 @@
-"""A velocity in the recording beside the positions: how late it is, its noise, and how it moves the joint."""
+"""A recorded velocity: its delay, its noise, and the motion that it gives by integration."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_SLOW = 0.3  # [s]: over so much, positions are surer than a recorded velocity
-_WHOLE = 3.0  # [s], over which a velocity's error drifts away, against its delay
+_SLOW = 0.3  # [s]: over longer times, positions are more accurate than a recorded velocity
+_WHOLE = 3.0  # [s], longest time before a velocity's error drifts, to find its delay
 _ROUNDS = 3
 _SURE = 3.0  # standard errors of a delay
 _CLUSTER = 0.3  # [s] of motion that counts as one observation
@@ -23,7 +23,7 @@ _LONGEST = 0.05  # [s]
 def in_time(velocity: Array, derived: Recording) -> Array:
     """Return a recorded velocity on the positions' clock.
 
-    Its integral is late by as much as it is itself: it differs from the position by the delay times the velocity.
+    The integral has the same delay: it differs from the position by the delay times the velocity.
     """
     time, delay = derived.time, 0.0
     cluster = np.unique((time // _CLUSTER).astype(np.int64), return_inverse=True)[1]
@@ -46,29 +46,29 @@ def in_time(velocity: Array, derived: Recording) -> Array:
 
 
 def noise_of(velocity: Array, derived: Recording) -> Array:
-    """Standard deviation of a recorded velocity's noise, the same at each sample."""
+    """Return the standard deviation of a recorded velocity's noise, the same at each sample."""
     after = [gap.index for gap in derived.gaps]
     noise = _core.position_noise(derived.time, velocity, after, derived.sample_period)
     return np.full(velocity.size, noise.sigma)
 
 
 def integrated(velocity: Array, derived: Recording) -> Array:
-    """Position as a recorded velocity moves it from sample to sample, near the recorded one over longer times.
+    """Return the position: a recorded velocity integrated from sample to sample, near the recorded position over time.
 
-    The mask and the travel between samples follow it: a coarse position stands still and jumps.
+    The mask and the travel between samples use it, because a coarse position stands still and jumps.
     """
     travelled = _travelled(velocity, derived)
     return np.asarray(travelled + _mean(derived.position - travelled, derived, _SLOW))
 
 
 def _travelled(velocity: Array, derived: Recording) -> Array:
-    """The velocity's integral; between stretches it has no meaning."""
+    """Return the velocity's integral; it has no meaning between stretches."""
     means = 0.5 * (velocity[1:] + velocity[:-1])
     return np.concatenate([[0.0], np.cumsum(means * np.diff(derived.time))])
 
 
 def _mean(values: Array, derived: Recording, duration: float) -> Array:
-    """Moving averages of each stretch without a gap, shorter at its ends."""
+    """Return moving averages of each stretch without a gap; they are shorter at its ends."""
     found = np.empty_like(values)
     half = max(1, round(0.5 * duration / derived.sample_period))
     edges = [0, *(gap.index + 1 for gap in derived.gaps), values.size]

@@ -1,8 +1,8 @@
-"""Velocities whose noise is loud at some samples, taken from their quiet neighbours.
+"""Replace velocities at samples with large noise by values from neighbours with small noise.
 
-The velocity of noisy positions is smoothed over as many samples as the motion lets be seen. By chance, some samples
-have far fewer, and up to a hundred times the usual noise. Noise at the ends of windows draws every inertia that is
-identified towards zero, and what is missing then looks like a torque that is early.
+Noisy positions are smoothed over as many samples as the motion allows. By chance, some samples have far fewer, and up
+to a hundred times the usual noise. Noise at the ends of windows biases every identified inertia towards zero. The
+missing inertia then looks like an early torque.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_NOISY = 3e-4  # of the velocity: less noise imitates no early torque, and what is smoothed costs more than it gains
+_NOISY = 3e-4  # of the velocity: smaller noise causes no such error, and smoothing would do more harm than good
 _LOUD = 2.0  # times the median of the noise
 _REACH = 25  # samples on both sides
 _ALIKE = 3.0  # standard deviations of the sample's own noise
-_SINGULAR = 1e-9  # of the weights: a sample whose neighbours are all loud
+_SINGULAR = 1e-9  # of the weights: below it, all neighbours have large noise
 
 
 def quiet_velocity(velocity: Array, noise: Array) -> Array:
-    """Return a velocity whose loud samples follow their quiet neighbours, where these do not contradict them.
+    """Return a velocity with its loud samples replaced by quiet neighbours, unless these contradict them.
 
-    A velocity with little noise is returned as it is. A parabola is fitted to the samples on both sides, weighted by
-    their noise, a standard deviation of each. At a reversal or where a joint breaks away, it differs from the sample by
-    more than noise does, and the sample stays.
+    A velocity with little noise is returned unchanged. `noise` is the standard deviation at each sample. A parabola is
+    fitted to the samples on both sides, weighted by their noise. At a reversal or a breakaway it differs from the
+    sample by more than the noise. Then the sample stays.
     """
     usual = float(np.median(noise))
     loud = np.flatnonzero(noise > _LOUD * usual)

@@ -1,4 +1,4 @@
-"""What a recording says of a robot: positions, velocities and torques of its joints, and where they may be used."""
+"""Motion from a recording of a robot: positions, velocities and torques of its joints, and which samples are usable."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from jointid.robot.motion.reversals import away_from_reversals
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-_UNKNOWNS = 6  # of a joint's balance, for the length of its windows
-_STILL = 8.0  # standard deviations that the velocity of a short standstill reaches, smoothed with the motion beside it
-_COARSE = 0.015  # [s], between samples: what a reversal blurs matters
+_UNKNOWNS = 6  # assumed number of unknowns in a joint's balance, for the length of its windows
+_STILL = 8.0  # standard deviations that the smoothed velocity of a short standstill can reach
+_COARSE = 0.015  # [s], between samples: with longer steps, the blur at a reversal matters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,19 +39,21 @@ class Motion:
     velocity: Array
     torque: Array
     velocity_noise: Array  # (n,), usual standard deviation of each velocity
-    # of the motors, divided by their gear ratios, counted from their own zero
+    # positions of the motors, divided by their gear ratios, counted from their own zero
     motor_position: Array
     motor_velocity: Array  # the same
-    # (n, samples - 1): the joint moves between two samples, without a gap. Where noise may hide a short standstill,
-    # it does not count as moving: friction has any value there.
+    # (n, samples - 1): True if the joint moves between two samples, without a gap. An interval in which noise may hide
+    # a short standstill does not count as moving, because friction has any value there.
     moving: Flags
-    motor_moving: Flags  # the same of the motors
-    noise_window: Array  # (n,), duration of a window that the noise of each velocity asks for [s]
-    at_motor: bool  # whether positions were recorded at the motors
-    # whether a torque holds from its sample to the next one, as a command does; otherwise it is straight between them
+    motor_moving: Flags  # the same for the motors
+    # (n,), duration of a window that is suitable for the noise of each velocity [s]
+    noise_window: Array
+    at_motor: bool  # True if positions were recorded at the motors
+    # True if a torque holds from its sample to the next one, as a command does; otherwise it is interpolated linearly
     torque_held: bool = False
-    driven: Driven | None = None  # what makes the torque of wanted positions; None: it was recorded
-    # (n, samples), torque per gain of the joints with a gain that is identified; None: there are none
+    # parts of the torque from wanted positions; None: the torque was recorded
+    driven: Driven | None = None
+    # (n, samples), torque per gain of the joints with an identified gain; None: there are no such joints
     of_unit_gain: Array | None = None
 
     @classmethod
@@ -63,7 +65,7 @@ class Motion:
         mask_standstill: bool = True,
         recorded: Collection[int] = (),
     ) -> Motion:
-        """Return the motion of a recording; below its `min_speed` [rad/s or m/s] a joint's friction is not used.
+        """Return the motion of a recording. Below its `min_speed` [rad/s or m/s] a joint's friction is not used.
 
         Velocities are derived from positions, except of the joints `recorded`.
         """
@@ -127,7 +129,7 @@ class Motion:
         )
 
     def torque_late_by(self, delay: Array) -> Array:
-        """Return the torques, (n, samples), without delays of theirs; of a drive, with delays of its command [s]."""
+        """Return the torques, (n, samples), with further delays removed; with a drive, its command is delayed [s]."""
         if self.driven is not None:
             return self.driven.torque(delay)
         late = [
@@ -138,13 +140,13 @@ class Motion:
 
 
 def _fast(velocity: Array, noise: Array) -> Flags:
-    """Intervals that are certainly no short standstill, which noise hides; friction has any value there."""
+    """Return intervals that certainly contain no short standstill hidden by noise; friction has any value there."""
     fast = np.abs(velocity) >= _STILL * noise
     return np.asarray(fast[:, 1:] & fast[:, :-1])
 
 
 def recorded_velocity(recording: RobotRecording, robot: Robot, at_motor: bool) -> Array | None:
-    """The velocities in a recording, one row a joint, of motors divided by the gear ratios; None if one is missing."""
+    """Return recorded velocities, a row for each joint, for motors divided by gear ratios; None if one is missing."""
     columns = robot.columns_of(recording)
     velocity = recording.velocity
     if velocity is None or recording.velocity_derived or np.isnan(velocity[:, columns]).any():
@@ -168,9 +170,9 @@ def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:
 
 
 def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, bool]:
-    """Positions and torques, one row a joint, and whether the positions are of the motors.
+    """Return positions and torques, one row for each joint, and whether the positions are those of the motors.
 
-    Torques are at the joints, positions of motors divided by the gear ratios.
+    Torques are at the joints. Positions of motors are divided by the gear ratios.
     """
     columns = robot.columns_of(recording)
     way = np.array(robot.directions or (1.0,) * robot.n)
@@ -191,11 +193,11 @@ def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, b
     geared = robot.gear_ratios is not None or recording.gear_ratio is not None or not by_current
     needed = at_motor or (
         torque is None and geared
-    )  # a joint's constant may be that of a motor without a gear
+    )  # without a gear, a joint's constant may be that of the motor
     ratios = _ratios(recording, robot, columns) if needed else np.ones(robot.n)
     recorded = torque if torque is not None else motor_torque
     assert recorded is not None
-    # Before couplings: they spread what one joint lacks over all.
+    # Before couplings, because they spread a missing torque of one joint over all joints.
     present = np.all(np.isfinite(recorded[:, columns]), axis=0)
     if not present.all():
         raise InputError(
@@ -211,7 +213,7 @@ def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, b
 
 
 def _driven(recording: RobotRecording, robot: Robot) -> Driven | None:
-    """What a position drive makes of wanted positions, at the joints."""
+    """Return the torques of a position drive from wanted positions, at the joints."""
     if robot.drive is None:
         return None
     columns = robot.columns_of(recording)
@@ -223,7 +225,7 @@ def _driven(recording: RobotRecording, robot: Robot) -> Driven | None:
 
 
 def ratios_of_positions(recording: RobotRecording, robot: Robot) -> Array:
-    """Recorded positions per position of the joints, signed; without couplings."""
+    """Return recorded positions per position of the joints, signed; without couplings."""
     directions = np.array(robot.directions or (1.0,) * robot.n)
     if (robot.side or recording.side) != MOTOR:
         return directions
@@ -239,7 +241,7 @@ def _of_unit_gain(recording: RobotRecording, robot: Robot) -> Array | None:
 
 
 def _of_currents(recording: RobotRecording, robot: Robot, columns: list[int]) -> Array:
-    """The motors' torques of a recording that has currents only."""
+    """Return the motors' torques of a recording that has currents only."""
     if recording.current is None:
         raise InputError(
             "the recording has no torque",
@@ -274,7 +276,7 @@ def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Arra
 
 
 def _derived(recording: RobotRecording, position: Array, name: str) -> Recording:
-    """One row of positions as a recording, whose velocity is derived from them."""
+    """Return one row of positions as a recording, to derive its velocity from them."""
     try:
         return Recording(time=recording.time, position=position, torque=np.zeros(position.size))
     except InputError as error:

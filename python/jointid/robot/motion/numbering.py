@@ -1,7 +1,7 @@
-"""The number of each row on an even clock, by stamps that are late by chance, although rows are lost.
+"""The number of each row on an even clock, although stamps are late by chance and rows are lost.
 
-Stamps keep their position within the sample period, even where rows are missing. A row has the number of the period in
-which its stamp lies; where a stamp is late by more than a period, the next rows and the positions say so.
+Stamps keep their position within the sample period, even if rows are missing. A row has the number of the period that
+contains its stamp. If a stamp is late by more than a period, the next rows and the positions decide.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-_FEWEST = 200  # rows
-_BLOCK = 64  # rows of which a phase is taken at once
-_LOOKED_AT = 64  # blocks by which the period is found
-_SPREAD = 0.15  # of the usual step: so near to it is the period
-_GROUP = 16  # blocks, then groups of them, whose phases are compared
-_FINE = 0.25  # periods by which a frequency may be off at the end of a group
-_COHERENT = 0.12  # mean length of the phases' sum; of random stamps it is 0
-_BINS, _SMOOTH = 50, 5  # of the phases' histogram
-_EDGE = 0.05  # of the histogram's height above its lowest place: there a period begins
-_EARLY = 0.5  # of a period: only a stamp at its end may be of the next one
-_REACH = 4  # samples on both sides of an interval over which the speed is taken
+_FEWEST = 200  # smallest number of rows
+_BLOCK = 64  # rows for one value of the phase
+_LOOKED_AT = 64  # blocks that are used to find the period
+_SPREAD = 0.15  # of the usual step: largest difference of the period from it
+_GROUP = 16  # number of blocks, then of groups of them, with compared phases
+_FINE = 0.25  # largest error of a frequency at the end of a group, in periods
+_COHERENT = 0.12  # least mean length of the phases' sum; it is 0 for random stamps
+_BINS, _SMOOTH = 50, 5  # bins of the phases' histogram, and the width of its smoothing
+_EDGE = 0.05  # of the histogram's height above its minimum: a period begins at this height
+_EARLY = 0.5  # of a period: only a stamp at the end of a period may belong to the next one
+_REACH = 4  # samples on both sides of an interval that give its speed
 _NORMAL = 1.4826  # standard deviation over median deviation
-_FINEST = 1e-6  # of the longest way in an interval: less noise is not believed
-_CLEAR = 0.15  # periods: an interval whose length the positions know so well
-_DENSE = 3  # times as many periods as rows: over more, the speed changes
-_NEAR = 12  # rows within which a misplaced jump comes back
+_FINEST = 1e-6  # of the longest distance in an interval: smaller noise is not plausible
+_CLEAR = 0.15  # periods: largest error of an interval's length from positions
+_DENSE = 3  # largest ratio of periods to rows: over more periods, the speed changes
+_NEAR = 12  # rows within which a misplaced jump is reversed
 
 
 def row_numbers(time: Array, position: Array) -> Whole | None:
-    """Return the number of each row on an even clock, the first 0; None where the stamps show no such clock.
+    """Return the number of each row on an even clock, starting at 0; None if the stamps show no such clock.
 
     Parameters
     ----------
@@ -49,10 +49,10 @@ def row_numbers(time: Array, position: Array) -> Whole | None:
         return None
     within = cycles - _beginning(cycles % 1.0)
     number = np.floor(within).astype(np.int64)
-    # A stamp that is too early for its row has the number of the row before, and the next number is free.
+    # A stamp that is too early for its row gets the number of the row before. Then the next number is free.
     early = (number[1:-1] <= number[:-2]) & (number[2:] >= number[1:-1] + 2)
     number[1:-1] += early & (within[1:-1] % 1.0 > _EARLY)
-    # A stamp that is late by a period or more takes a number of the rows after it.
+    # A stamp that is late by a period or more gets a number of the rows after it.
     index = np.arange(time.size)
     number = np.minimum.accumulate((number - index)[::-1])[::-1] + index
     number = _by_positions(number, position)
@@ -60,7 +60,7 @@ def row_numbers(time: Array, position: Array) -> Whole | None:
 
 
 def _cycles(time: Array) -> Array | None:
-    """Periods of the stamps' common clock since the first one; None where there is no such clock."""
+    """Return periods of the stamps' common clock since the first one; None if there is no such clock."""
     usual = float(np.median(np.diff(time)))
     blocks = time.size // _BLOCK
     table = time[: blocks * _BLOCK].reshape(blocks, _BLOCK)
@@ -83,7 +83,7 @@ def _cycles(time: Array) -> Array | None:
         frequency += change
         phases = phases * np.exp(-2j * np.pi * change * centres)
         tolerance *= 2.0 / _GROUP
-    # A clock that drifts against the other: its phase over groups of blocks.
+    # If one clock drifts against the other: its phase over groups of blocks.
     edges = np.arange(0, blocks, _GROUP)
     drifting = np.add.reduceat(phases, edges)
     if np.abs(drifting).sum() < _COHERENT * table.size:
@@ -96,7 +96,7 @@ def _cycles(time: Array) -> Array | None:
 
 
 def _beginning(phase: Array) -> float:
-    """Where in the phases a period begins: before the stamps' most frequent phase, where there are fewest."""
+    """Return the phase at which a period begins: before the most frequent phase, at the minimum of the histogram."""
     height = np.bincount((phase * _BINS).astype(int) % _BINS, minlength=_BINS).astype(float)
     smooth = sum(
         (np.roll(height, k) for k in range(-(_SMOOTH // 2), _SMOOTH // 2 + 1)), 0.0 * height
@@ -112,7 +112,7 @@ def _beginning(phase: Array) -> float:
 
 
 def _by_positions(number: Whole, position: Array) -> Whole:
-    """Numbers whose jumps are moved by a few rows where the positions clearly say so."""
+    """Return numbers with jumps moved by a few rows if the positions clearly show it."""
     passed, change = np.diff(number), np.zeros(number.size - 1, dtype=np.int64)
     steps = Steps.of(number, position)
     known = np.sum(steps.speed**2, axis=1)
@@ -130,7 +130,7 @@ def _by_positions(number: Whole, position: Array) -> Whole:
 
 
 def share_of_stamps(time: Array, number: Whole, position: Array) -> tuple[float, float]:
-    """How far the samples' instants follow the stamps, not the even clock of their numbers, and its standard error.
+    """Return the weight of the stamps, against an even clock, in the samples' instants, and its standard error.
 
     1: samples were taken when their stamps say; 0: on the even clock. The error is infinite where nothing moves.
     """
@@ -150,15 +150,15 @@ def share_of_stamps(time: Array, number: Whole, position: Array) -> tuple[float,
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Steps:
-    """How far joints that move travel from row to row, in standard deviations of that: (intervals, joints)."""
+    """Travel of moving joints from row to row, in units of its standard deviation: (intervals, joints)."""
 
-    rows: Whole  # intervals without a long gap near
+    rows: Whole  # intervals without a long gap nearby
     travel: Array
-    speed: Array  # per period, over some rows about the interval
+    speed: Array  # per period, over some rows around the interval
 
     @classmethod
     def of(cls, number: Whole, position: Array) -> Self:
-        """Return it for rows with these numbers."""
+        """Return the travel for rows with these numbers."""
         wide = 2 * _REACH + 1
         periods = number[wide:] - number[:-wide]
         dense = np.flatnonzero(periods <= _DENSE * wide)

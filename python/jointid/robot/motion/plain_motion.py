@@ -1,4 +1,4 @@
-"""A robot's signals as they were given, filtered alike: what a quick regression by hand begins with.
+"""A robot's signals as recorded, with the same filter for all: the start of a quick regression by hand.
 
 Nothing here comes from the identification: no mask, no window, no derived velocity, no delay, no repaired stamps.
 """
@@ -22,12 +22,12 @@ from jointid.robot.motion.motion import part_of, recorded_velocity, signals_of
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-PERIOD = 0.05  # [s], of the moving average
-_LEAST = 5  # samples in it
-_FINER = 4  # times shorter is the average before products of signals are made
+PERIOD = 0.05  # [s], period of the moving average
+_LEAST = 5  # smallest number of samples in it
+_FINER = 4  # factor by which the average is shorter before products of signals are formed
 _EACH = 10  # samples that are kept of one average
 _PIECE, _PIECES = 2_000, 10  # samples that are kept of a stretch, and stretches of all recordings
-_SHORTEST = 40  # of these: less is no motion
+_SHORTEST = 40  # of these samples: fewer are not usable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,29 +35,30 @@ class PlainSignals:
     """A stretch of a recording on an even clock, all at the joints; rows are joints: (n, samples)."""
 
     position: Array  # counted from the recording's own zeros
-    velocity: Array  # slope of the filtered position
+    velocity: Array  # derivative of the filtered position
     torque: Array
-    recorded: Array | None  # the velocity in the recording
+    recorded: Array | None  # recorded velocity
     step: float  # [s]
-    period: float  # the moving average that fits the recording's rate [s]
-    whole: Flags  # (samples,), where no gap is near
+    period: float  # period of the moving average, for the recording's rate [s]
+    whole: Flags  # (samples,), True if no gap is near
 
 
 def plain_signals(recordings: Sequence[RobotRecording], robot: Robot) -> list[PlainSignals]:
-    """Return recordings in stretches; of long ones some, evenly spread."""
+    """Return recordings in stretches; from long ones some stretches, evenly spaced."""
     return [_stretch(robot, run) for run in stretches(recordings, _PIECES)]
 
 
 def stretches(recordings: Sequence[RobotRecording], most: int) -> list[RobotRecording]:
-    """Return at most so many stretches of recordings, evenly spread."""
+    """Return at most `most` stretches of recordings, evenly spaced."""
     pieces = [piece for run in recordings for piece in _pieces(run)]
     count = min(len(pieces), most)
-    middles = (np.arange(count) + 0.5) * len(pieces) / max(count, 1)  # many stand still at the ends
+    # because many recordings stand still at the ends
+    middles = (np.arange(count) + 0.5) * len(pieces) / max(count, 1)
     return [part_of(*pieces[int(middle)]) for middle in middles]
 
 
 def _rate(run: RobotRecording) -> tuple[float, float, int]:
-    """The usual step, the average's period, and how many samples are one."""
+    """Return the usual step, the average's period, and the number of samples per kept sample."""
     step = float(np.median(np.diff(run.time)))
     period = max(PERIOD, _LEAST * step)
     return step, period, max(1, round(period / _EACH / step))
@@ -106,7 +107,7 @@ def _stretch(robot: Robot, run: RobotRecording) -> PlainSignals:
 
 
 def velocity_of(run: RobotRecording, robot: Robot, at_motor: bool) -> Array | None:
-    """The recorded velocity at the joints."""
+    """Return the recorded velocity at the joints."""
     found = recorded_velocity(run, robot, at_motor)
     if found is None or not at_motor:
         return found
@@ -116,9 +117,10 @@ def velocity_of(run: RobotRecording, robot: Robot, at_motor: bool) -> Array | No
 def link_columns(
     robot: Robot, position: Array, velocity: Array, step: float, directions: Array
 ) -> Array:
-    """Torques of all joints by changes of the links' inertial parameters, shape (n, columns, samples).
+    """Return torques of all joints per change of the links' inertial parameters, shape (n, columns, samples).
 
-    They are the momentum's slope less the force of motion and gravity; `step` is in s, `directions` is (10 n, columns).
+    They are the derivative of the momentum minus the force of motion and gravity. `step` is in s, `directions` is
+    (10 n, columns).
     """
     offsets = np.array(robot.zero_offsets or (0.0,) * robot.n)[:, None]
     momentum, force = columns_of(robot.tree, position + offsets, velocity)

@@ -1,4 +1,4 @@
-"""What a call of `identify` asks for of a robot, checked."""
+"""Arguments of `identify` for a robot, checked."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jointid.robot.motion.motion import Motion
 
 Array = NDArray[np.float64]
 
-_ENOUGH = 10_000  # windows
+_ENOUGH = 10_000  # number of windows
 _LONGEST = 0.1  # [s]: longer windows blur reversals and leave few
 
 
@@ -62,9 +62,9 @@ def least_speeds(
 
 
 def duration_of(windows: float | None, motions: Sequence[Motion], total: float) -> float:
-    """Return the duration of the windows [s]: as given, or so that there are as many, or as the velocities' noise asks.
+    """Return the duration of the windows [s]: from `windows`, or suitable for the noise of the velocities.
 
-    Of a long recording, `total` seconds, windows may be longer than that: there are enough of them.
+    With a recording of `total` seconds that is long enough, windows may be longer, because there are enough of them.
     """
     if windows is not None:
         number = isinstance(windows, int | float) and not isinstance(windows, bool) and windows > 0
@@ -79,6 +79,6 @@ def duration_of(windows: float | None, motions: Sequence[Motion], total: float) 
                 value=windows,
             )
         return float(duration)
-    # The noisiest joint does not decide for the others: longer windows blur their reversals.
+    # The noisiest joint does not decide for the others, because longer windows blur their reversals.
     longest = max(float(np.median(motion.noise_window)) for motion in motions)
     return min(max(longest, total / _ENOUGH), _LONGEST)

@@ -1,7 +1,7 @@
-"""Intervals near a reversal or a standstill, where a velocity that is derived from few samples is wrong.
+"""Intervals near a reversal or a standstill, where a velocity derived from few samples is wrong.
 
-Dry friction jumps there, and with it the acceleration. A smooth velocity misses it by a quarter of the jump times the
-sample period, always in the same direction: that looks like a delay of the torque.
+Dry friction and acceleration jump there. A smooth velocity has an error of a quarter of the jump times the sample
+period, always in the same direction. This error looks like a delay of the torque.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _REACH = 2  # intervals on both sides
 
 
 def away_from_reversals(moving: Flags, velocity: Array) -> Flags:
-    """Return the intervals of motion, (n, samples - 1), that are some intervals away from its ends."""
+    """Return the intervals of motion, (n, samples - 1), without those near the ends of motion."""
     turned = ~moving | (velocity[:, 1:] * velocity[:, :-1] <= 0.0)
     for _ in range(_REACH):
         near = turned.copy()

@@ -1,4 +1,4 @@
-"""Constant delays of a robot's torques against its positions, as given and as taken away."""
+"""Constant delays of a robot's torques against its positions, as stated and as removed."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from jointid.robot.motion.driven import earlier
 Array = NDArray[np.float64]
 
 Shift = Mapping[str, float | Sequence[float] | Mapping[str, float]]
-"""Delays by signal, of all joints alike, one a joint, or by joints' names [s]; positive: the signal is late."""
+"""Delays by signal [s]: one for all joints, one for each, or by joints' names; positive: the signal is late."""
 
 FILTER = "torque_filter"
-"""Key of a `shift` for the time constants of low-pass filters of first order that the torques passed [s]."""
+"""Key of a `shift` for the time constants of the torques' first-order low-pass filters [s]."""
 _DRIVE = ("torque", "motor_torque")
 _FEWEST = 8  # samples
 COMMAND = "reference"
 
 
 def requested_delay(shift: object, robot: Robot) -> Array | None:
-    """Return the delay of each joint that a call or a drive states [s]; None where it is to be found."""
+    """Return the delay of each joint that a call or a drive states [s]; None if it is to be identified."""
     if shift is not None:
         return torque_shift(shift, robot)
     if robot.drive is not None and robot.drive.delay is not None:
@@ -36,9 +36,9 @@ def requested_delay(shift: object, robot: Robot) -> Array | None:
 
 
 def torque_shift(shift: object, robot: Robot) -> Array:
-    """Return the torque's delay of each joint [s] from a `shift` of `identify`, or name what is wrong with it.
+    """Return the torque's delay of each joint [s] from a `shift` of `identify`, or name the fault in it.
 
-    With a drive that makes the torque, it is that of the wanted position's effect.
+    With a drive, it is the delay of the wanted position's effect.
     """
     if not isinstance(shift, Mapping):
         checked_shift(shift)
@@ -102,14 +102,14 @@ def _of_joints(shift: Mapping[str, Any], key: str, robot: Robot) -> Array:
 
 
 def _moved(robot: Robot) -> str:
-    """The signal that is late."""
+    """Return the name of the signal that is late."""
     return "torque" if robot.drive is None else COMMAND
 
 
 def shift_option(
     delay: Array, robot: Robot, lag: Array | None = None
 ) -> dict[str, float | dict[str, float]]:
-    """Return delays and filters as a call takes them: one for all joints if they are alike, otherwise by name."""
+    """Return delays and filters as an argument of a call: one for all joints if they are alike, otherwise by name."""
     found: dict[str, float | dict[str, float]] = {}
     for key, values in ((_moved(robot), delay), (FILTER, lag)):
         if values is None or not values.any():
@@ -125,14 +125,14 @@ def shift_option(
 def on_the_clock_of_positions(
     recording: RobotRecording, robot: Robot, delay: Array, lag: Array | None
 ) -> RobotRecording:
-    """Return a recording with torques without their filters, then without their delays [s]."""
+    """Return a recording with the torques' filters undone, then their delays removed [s]."""
     if lag is not None:
         recording = without_lag(recording, robot, lag)
     return without_delay(recording, robot, delay)
 
 
 def without_lag(recording: RobotRecording, robot: Robot, lag: Array) -> RobotRecording:
-    """Return a recording with torques as they were before a low-pass filter of first order with time constants [s]."""
+    """Return a recording with torques before their first-order low-pass filter; `lag`: its time constants [s]."""
     if not lag.any():
         return recording
     fields = recording.fields()
@@ -147,11 +147,11 @@ def without_lag(recording: RobotRecording, robot: Robot, lag: Array) -> RobotRec
 
 
 def without_delay(recording: RobotRecording, robot: Robot, delay: Array) -> RobotRecording:
-    """Return a recording with torques moved to the positions' clock; delays [s] are of motors' torques, where recorded.
+    """Return a recording with torques moved to the positions' clock; delays [s] belong to the recorded torques.
 
-    Of a robot with a drive, wanted positions are moved to where they act. Torques are interpolated linearly between
-    their samples, which for a held torque is the mean over the interval. Samples at the ends, where a moved signal is
-    not known, are left out.
+    With a drive, wanted positions are moved to the time of their effect. Torques are interpolated linearly between
+    their samples; for a held torque this is the mean over the interval. Samples at the ends without a known moved
+    signal are removed.
     """
     if not delay.any():
         return recording

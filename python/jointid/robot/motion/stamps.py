@@ -1,4 +1,4 @@
-"""The clock of a robot's recording: where the host's stamps are late by chance, and the samples were even."""
+"""The clock of a robot's recording: detect an even clock if the host's stamps are late by chance."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from jointid.robot.motion.numbering import row_numbers, share_of_stamps
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-_BLOCK = 50  # samples: among so many, one stamp is hardly late
-_AWAY = 1.0  # periods by which the earliest stamps may leave an even clock; lost samples leave it by more
-_EVEN = 0.3  # of the stamps' scatter: so far the samples of an even clock follow it at most
-_SURE = 3.0  # standard errors of that
+_BLOCK = 50  # samples: in such a block, at least one stamp is nearly punctual
+_AWAY = 1.0  # periods by which the earliest stamps may deviate from an even clock; lost samples cause more
+_EVEN = 0.3  # of the stamps' scatter: samples of an even clock follow it at most by this share
+_SURE = 3.0  # standard errors of that share
 
 
 def on_even_clock(recording: RobotRecording) -> RobotRecording:
-    """Return the recording with even stamps, if its positions say that it was sampled evenly; otherwise itself.
+    """Return the recording with even stamps if its positions show an even clock; otherwise return it unchanged.
 
-    A host that stamps what it receives is late by another time each sample, and the derived velocities are
-    wrong by as much. A lost sample leaves a jump of whole periods. Samples that were truly uneven keep their stamps.
+    A host that stamps received samples has a different delay at each sample, and derived velocities get the same
+    relative error. A lost sample leaves a jump of whole periods. Samples that were truly uneven keep their stamps.
     """
     number = row_numbers(recording.time, recording.position)
     if number is None:
@@ -45,7 +45,7 @@ def all_on_even_clocks(recordings: Sequence[RobotRecording]) -> list[RobotRecord
 
 
 def _numbers_without_loss(time: Array) -> Whole | None:
-    """Numbers of rows whose stamps are late by several periods; None where some are lost or the clock is uneven."""
+    """Return numbers of rows with stamps late by several periods; None if rows are lost or the clock is uneven."""
     number = np.arange(time.size)
     step, begin = np.polyfit(number, time, 1)
     late = time - begin - step * number

@@ -1,1 +1,1 @@
-"""What is identified of a robot: values, findings, verdict, tables, files."""
+"""Results of a robot's identification: values, findings, verdict, tables, files."""

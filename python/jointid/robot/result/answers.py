@@ -1,4 +1,4 @@
-"""A robot's answer in a few lines: the verdict, a line for each joint, the first finding, and what to do about it."""
+"""A robot's answer in a few lines: the verdict, a line for each joint, the first finding, and its advice."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from jointid.robot.result.record import RobotEstimateRecord
 from jointid.robot.result.verdict import judged_robot
 
 FINDINGS = 1
-"""An answer shows so many in full."""
+"""Number of joints that an answer shows in full."""
 
 
 def answer(
     estimate: RobotEstimateRecord, action: Callable[[Action], str] = str, saved: str = ""
 ) -> str:
-    """Return the answer in at most 7 lines and one for each joint, the worst joint first where it is not usable.
+    """Return the answer: at most 7 lines plus one for each joint, with the worst joint first if it is not usable.
 
-    `action` words an advice; `saved` is the file that has the estimate.
+    `action` gives the text of an advice. `saved` is the file of the estimate.
     """
     verdict = judged_robot(estimate)
     lines = [
@@ -34,7 +34,7 @@ def answer(
 
 
 def lines_of_joints(estimate: RobotEstimateRecord, models: Mapping[str, str]) -> list[str]:
-    """Return a line for each joint with its friction, and its model where `models` has one."""
+    """Return a line for each joint with its friction, and its model if `models` contains it."""
     joints = list(estimate.joints.values())
     if judged_robot(estimate).level == "not usable":
         joints.sort(key=lambda joint: -joint.relative_residual)

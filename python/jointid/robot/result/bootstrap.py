@@ -1,4 +1,4 @@
-"""The block bootstrap of a robot's estimate: stretches of time, with all joints in them, are drawn anew."""
+"""Block bootstrap of a robot's estimate: it resamples stretches of time, with all joints in each."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RobotDraws:
-    """The fit's sums over quarters of blocks: what is drawn from. No recording is kept."""
+    """Sums of the fit over quarters of blocks, which the bootstrap resamples. It keeps no recording."""
 
     cells: Cells
     block: float  # length [s]
-    lower: Array  # bounds of the parameters, in the order of `RobotEstimate.parameters`' labels
-    upper: Array  # the same
+    lower: Array  # lower bounds of the parameters, in the order of `RobotEstimate.parameters`
+    upper: Array  # upper bounds of the parameters, in the same order
     values: Array
     labels: tuple[tuple[int | None, str], ...]
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
-        """Leave the sums out of a pickled estimate."""
+        """Omit the sums from a pickled estimate."""
         return _nothing, ()
 
 
@@ -41,7 +41,7 @@ def bootstrapped(
     count: int,
     seed: int,
 ) -> Bootstrap:
-    """Return the block bootstrap of all parameters of joints of these names; see `RobotEstimate.bootstrap`."""
+    """Return the block bootstrap of all parameters of joints with these names; see `RobotEstimate.bootstrap`."""
     count = whole_number("n", count, 20, 1_000_000)
     seed = whole_number("seed", seed, 0, 2**64 - 1)
     if source is None:
@@ -70,10 +70,10 @@ def bootstrapped(
 
 
 def _widening(source: RobotDraws) -> float:
-    """Return the factor by which errors of so few blocks are larger than the draws say.
+    """Return the factor by which errors from so few blocks are larger than the draws show.
 
-    A fit takes part of each block's error away, as much as it has parameters for the blocks: the correction of
-    MacKinnon and White (1985, HC1) with a block as one observation, and the parameters of one joint.
+    A fit absorbs a part of each block's error, in proportion to its parameters per block. This is the correction of
+    MacKinnon and White (1985, HC1), with a block as one observation and the parameters of one joint.
     """
     joints = [joint for joint, _ in source.labels if joint is not None]
     blocks, each = source.cells.blocks, len(joints) / max(1, len(set(joints)))

@@ -57,7 +57,7 @@ _COMPARISON = Record(
             },
             other=Plain(),
         ),
-        "estimate": Unchecked(),  # it has a reader of its own
+        "estimate": Unchecked(),  # it has its own reader
     },
     {"bootstrap": Plain()},
 )
@@ -94,14 +94,14 @@ def _row(d: Mapping[str, Any]) -> ComparedRobotModel:
 
 
 def _winner(d: Mapping[str, Any]) -> int:
-    """Return the place of the winner among the rows; -1 if it is none of them."""
+    """Return the index of the chosen row; -1 if it is none of them."""
     wanted = (d["winner"]["inertia"], d["winner"]["model"])
     candidates = [(row["inertia"], row["model"]) for row in d["rows"]]
     return candidates.index(wanted) if wanted in candidates else -1
 
 
 def _contradictions(d: Mapping[str, Any], joints: list[str]) -> Iterator[tuple[str, str]]:
-    """Places where fields, each right by itself, do not fit together."""
+    """Yield the places of fields that are valid alone but contradict each other."""
     if _winner(d) < 0:
         yield "winner", "this is none of the rows"
     named = f"the robot has {', '.join(joints)}, in this order"

@@ -1,4 +1,4 @@
-"""What `compare` returns of a robot: a row for each candidate, the winner, and each joint's model."""
+"""Result of `compare` for a robot: a row for each candidate, the chosen candidate, and each joint's model."""
 
 from __future__ import annotations
 
@@ -24,22 +24,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RobotComparison(KeptResult):
-    """What `compare` returns of a robot.
+    """Comparison of inertias and friction models of a robot.
 
     Attributes
     ----------
     rows : tuple of ComparedRobotModel
-        In the order of the call.
+        The candidates, in the order of the call.
     winner : ComparedRobotModel
+        The chosen candidate.
     models : mapping of str to str
-        The model of each joint, chosen by the same rule with the winner's inertia.
+        The model of each joint, chosen by the same rule with the chosen inertia.
     reason : str
-        Why the winner was chosen, in a sentence.
+        Reason of the choice, in a sentence.
     estimate : RobotEstimate
-        Of all recordings, with the winner's inertia and each joint's model.
+        Estimate from all recordings, with the chosen inertia and each joint's model.
     settings : mapping
-        Folds, what each held out ("block", "recording" or "recordings"), duration of the windows, and candidates that
-        could not be fitted with the reason for each ("left_out").
+        Number of folds, the held-out part ("block", "recording" or "recordings"), duration of the windows, and
+        "left_out": candidates without a fit, with the reason for each.
     """
 
     rows: tuple[ComparedRobotModel, ...]
@@ -53,7 +54,7 @@ class RobotComparison(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         from jointid.robot.result.overview import made_by
 
         left_out = self._left_out.items()
@@ -83,7 +84,7 @@ class RobotComparison(KeptResult):
         )
 
     def report(self, verbose: bool = False) -> str:
-        """Return the winner, a line for each joint, and the first finding, as text.
+        """Return the chosen candidate, a line for each joint, and the first finding, as text.
 
         Parameters
         ----------
@@ -100,7 +101,7 @@ class RobotComparison(KeptResult):
         return printable("\n".join([*lines, f"winner: {self.winner.name}", self.reason]))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; the winner's estimate as in `RobotEstimate.to_dict`."""
+        """Return everything in JSON's types; the estimate has the format of `RobotEstimate.to_dict`."""
         from jointid.robot.result.comparison_reading import KIND, SCHEMA
 
         rows = [asdict(row) for row in self.rows]
@@ -128,17 +129,18 @@ class RobotComparison(KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the comparison that a JSON text holds; `bootstrap` of its estimate needs the recordings.
+        """Return the comparison from a JSON text; `bootstrap` of its estimate needs the recordings.
 
         Parameters
         ----------
         text : str
-            From `to_json`.
+            JSON text from `to_json`.
 
         Raises
         ------
         InputError
-            Not JSON, not a robot's comparison, another schema, or a value that cannot be used; names the place in it.
+            The text is not JSON or not a robot's comparison, has another schema, or holds an invalid value. The message
+            names the place in the text.
         """
         from jointid.robot.result.comparison_reading import comparison_fields
 
@@ -163,7 +165,7 @@ class RobotComparison(KeptResult):
         return data_frame(rows, index=["inertia", "model"])
 
     def cells(self) -> list[list[str]]:
-        """The table of the candidates, without its head."""
+        """Return the table of the candidates, without its head."""
         return [
             [
                 row.inertia,
@@ -177,7 +179,7 @@ class RobotComparison(KeptResult):
         ]
 
     def joint_cells(self) -> list[list[str]]:
-        """Each joint's held-out residual, a row a candidate, and its model."""
+        """Return each joint's held-out residual, one row for each candidate, and its model."""
         found = [
             [row.name, *(f"{100.0 * row.mean_of(joint):.2f} %" for joint in row.joints)]
             for row in self.rows
@@ -185,7 +187,7 @@ class RobotComparison(KeptResult):
         return [*found, ["chosen", *self.models.values()]]
 
     def setting(self) -> str:
-        """How it was compared, in a sentence."""
+        """Return the setting of the comparison, in a sentence."""
         unit = {
             "block": "block of the recording",
             "recording": "recording",
@@ -215,7 +217,7 @@ _HEAD = ["inertia", "model", "parameters", "held-out residual", "± std. error",
 def answer_of_comparison(
     found: RobotComparison, action: Callable[[Action], str] = str, saved: str = ""
 ) -> str:
-    """Return the winner with each joint's model and values, in at most 7 lines and one for each joint."""
+    """Return the chosen candidate with each joint's model and values, in at most 7 lines plus one for each joint."""
     estimate, winner = found.estimate, found.winner
     others = sorted((row for row in found.rows if row != winner), key=lambda row: row.score)
     runner_up = f", next {others[0].name} {_score(others[0])}" if others else ""

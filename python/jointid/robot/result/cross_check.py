@@ -8,20 +8,20 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Compared:
-    """One parameter, from both fits.
+    """One parameter in both fits.
 
     Attributes
     ----------
     value, stderr : float
-        Of the identification.
+        Value and standard error of the identification.
     second, second_stderr : float or None
-        Of the cross-check.
+        Value and standard error of the cross-check.
     spread : float or None
-        How far the value moves with other filters and rows of the cross-check.
+        Largest change of the value with other filters and rows of the cross-check.
     agrees : bool or None
-        None: the cross-check does not determine the value.
+        Whether both values agree. None: the cross-check does not determine the value.
     reason : str
-        Why it does not determine the value.
+        Reason why the cross-check does not determine the value.
     """
 
     value: float
@@ -40,13 +40,13 @@ class CrossCheck:
     Attributes
     ----------
     parameters : mapping of str to Compared
-        By the names of `RobotEstimate.parameters`.
+        Compared values, by the names of `RobotEstimate.parameters`.
     residuals : mapping of str to (float, float)
-        Joint → residual over torque in the rows of the cross-check: with the identified values, and with its own.
+        Joint → residual over torque in the rows of the cross-check, with the identified values and with its own values.
     agrees : bool or None
-        None: nothing was compared.
+        Whether both fits agree. None: no value was compared.
     reason : str
-        Why there is no cross-check.
+        Reason why there is no cross-check.
     explained : bool
         Whether both fits agree once the named facts are corrected, or with the advised models.
     """

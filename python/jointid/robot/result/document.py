@@ -1,4 +1,4 @@
-"""A robot's estimate in JSON's types: complete enough to use it, and to draw its page again."""
+"""A robot's estimate in JSON's types: complete enough to use it and to draw its report page again."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jointid.robot.result.record import RobotEstimateRecord
 from jointid.robot.result.verdict import judged_robot
 
 SCHEMA = 2
-"""2: links, joints and windows are in it, so that it can be read back; an infinite number is the text "inf"."""
+"""Version 2 contains links, joints and windows, to restore the estimate. An infinite number is the text "inf"."""
 KIND = "jointid robot"
 
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from jointid.estimate.types_of_findings import FindingType
 
-_LONGEST = 90  # characters of a title
+_LONGEST = 90  # longest title, in characters
 _COLUMNS = "check the order and the names of the columns"
 
-# In the order of docs/robot_reference.md: what spoils everything first.
+# Order of docs/robot_reference.md: findings that spoil everything come first.
 TYPES = {
     each.code: each
     for each in (
@@ -285,13 +285,13 @@ TYPES = {
 
 
 def listed(names: Sequence[str], most: int = 3) -> str:
-    """Names as a title has them: the first, and how many more."""
+    """Return names for a title: the first ones, and the number of the others."""
     if len(names) <= most:
         return " and ".join(filter(None, (", ".join(names[:-1]), names[-1]))) if names else ""
     return f"{', '.join(names[:most])} and {len(names) - most} more"
 
 
 def titled(what: str, numbers: str) -> str:
-    """A title with its numbers; without them where names are too long for both (the details have them)."""
+    """Return a title with numbers; without them if both are too long. The details contain the numbers."""
     whole = f"{what} ({numbers})"
     return whole if len(whole) <= _LONGEST else what

@@ -1,4 +1,4 @@
-"""What a robot's recording and fit show."""
+"""Findings from a robot's recording and fit."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ from jointid.robot.links.parameters import LINEAR_FRICTION, POSITION_GAIN
 from jointid.robot.result.finding_types import TYPES, listed
 from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 
-_STANDING = 0.1  # of the time: worth saying
+_STANDING = 0.1  # of the time: a larger share is reported
 _MOSTLY = 0.35
-_VAGUE = 0.25  # a standard error, of the value
-_MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
+_VAGUE = 0.25  # standard error over value: above it, a value is uncertain
+# difference of a link's scale from 1, and its ratio to the standard error
+_MATTERS, _SURE = 0.05, 3.0
 _POOR = 0.15  # of the torque
-_DOUBTFUL = 0.05  # of the torque: worth an inspection of the given facts
+_DOUBTFUL = 0.05  # of the torque: above it, the facts should be checked
 _LEFT_OUT = "this motion says nothing about friction and is left out"
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
@@ -32,7 +33,7 @@ _RANK = {"blocking": 0, "warning": 1, "info": 2}
 def findings_of(
     estimate: RobotEstimateRecord, columns: InertiaColumns, torques: Mapping[str, Torques]
 ) -> tuple[Finding, ...]:
-    """Return an estimate's findings, the most severe first; torques are by the parameters' names."""
+    """Return an estimate's findings, the most severe first; `torques` are by the parameters' names."""
     found = [
         *_standing(estimate),
         *(
@@ -46,7 +47,7 @@ def findings_of(
 
 
 def ranked(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Return the most severe findings first, and warnings with a call that takes them away before the others."""
+    """Return findings with the most severe first, and warnings with a correcting call before other warnings."""
 
     def rank(found: Finding) -> tuple[int, bool]:
         called = any(each.kind == "call" for each in found.advice)
@@ -56,7 +57,7 @@ def ranked(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def doubtful_joints(estimate: RobotEstimateRecord) -> list[int]:
-    """Joints whose balance says that something that was given is wrong: much is left, or friction would be negative."""
+    """Return joints with a large residual or negative friction, which shows that a fact may be wrong."""
     return [
         number
         for number, joint in enumerate(estimate.joints.values())
@@ -66,7 +67,7 @@ def doubtful_joints(estimate: RobotEstimateRecord) -> list[int]:
 
 
 def _standing(estimate: RobotEstimateRecord) -> Iterator[Finding]:
-    """Joints that hardly move one by one, and in one sentence those that stand still now and then."""
+    """Yield findings of joints that hardly move, one by one, and one finding of joints that sometimes stand still."""
     shares = {name: joint.residuals.standing for name, joint in estimate.joints.items()}
     for name, share in shares.items():
         if share > _MOSTLY:
@@ -182,5 +183,5 @@ def _of_inertia(estimate: RobotEstimateRecord, columns: InertiaColumns) -> Itera
 
 
 def _far(scale: float, stderr: float) -> bool:
-    """Whether a scale is another than 1, by its error and by what matters."""
+    """Return whether a scale differs from 1 by more than its error and by a relevant amount."""
     return abs(scale - 1.0) > max(_MATTERS, _SURE * stderr)

@@ -1,4 +1,4 @@
-"""The friction of a robot's joints at given speeds."""
+"""Friction of a robot's joints at given speeds."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ def friction_of(estimate: RobotEstimateRecord, velocity: Array) -> Array:
         values = np.array([_value(joint, name) for joint in joints])
         basis = _core.friction_basis(term.key, motors.ravel(), ()).reshape(motors.shape)
         total = total + (values * basis) @ couplings
-        if term.basis == VISCOUS.basis:  # a joint's own contains what the motors add at its speed
+        if (
+            term.basis == VISCOUS.basis
+        ):  # the viscous friction of a joint contains what the motors add at its speed
             total = total - (couplings**2).T @ values * velocity
     return np.asarray(total)
 

@@ -1,4 +1,4 @@
-"""What the JSON of a robot's estimate may hold."""
+"""Schema of the JSON of a robot's estimate."""
 
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.estimate.json_schema import FINDING, MATRIX, PARAMETER, RESIDUALS, VERDICT, WINDOWS
@@ -6,7 +6,7 @@ from jointid.robot.links.inertia_modes import MODES
 from jointid.robot.links.models import MODELS, modelled
 from jointid.robot.links.position_drive import HOLDS
 
-_MOST = 1000  # joints
+_MOST = 1000  # largest number of joints
 _ANY = Number(infinite=True, undefined=True)
 _SIZE = Number(low=-1e12, high=1e12)  # far beyond any robot, and its cube is still a number
 _TRIPLE = ListOf(_SIZE, 3, 3)
@@ -82,7 +82,7 @@ _CROSS_CHECK = Record(
         "explained": Flag(),
     }
 )
-# Only what is used again is declared. All else is there for people.
+# Only fields that are used again are declared. All other fields are for readers of the file.
 _SETTINGS = Record(
     {
         "window_duration": Number(low=1e-9, high=1e9),

@@ -1,4 +1,4 @@
-"""What a robot's estimate says of a recording that it need not have seen."""
+"""Prediction of a recording's torques by a robot's estimate."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotPrediction:
-    """How well an estimate predicts the torque of a recording.
+    """Accuracy of an estimate's prediction of a recording's torque.
 
     Attributes
     ----------
     joints : mapping of str to float
         Norm of each joint's residuals over the norm of its measured integrals.
     relative_residual : float
-        The same of all joints together.
+        The same ratio for all joints together.
     windows : int
+        Number of windows.
     """
 
     joints: Mapping[str, float]
@@ -63,7 +64,7 @@ def predict_robot(estimate: RobotEstimateRecord, recording: RobotRecording) -> R
 def motion_of(
     estimate: RobotEstimateRecord, recording: RobotRecording, *, mask_standstill: bool
 ) -> Motion:
-    """Return a recording's motion and torques as the estimate takes them: its clock, delays, lags and velocities."""
+    """Return a recording's motion and torques with the estimate's settings: clock, delays, filters and velocities."""
     robot, settings = estimate.robot, estimate.settings
     shift, recorded = settings.get("shift", {}), settings.get("recorded_velocity", ())
     return Motion.of(
@@ -78,7 +79,7 @@ def motion_of(
 
 
 def loading_of(estimate: RobotEstimateRecord) -> Array:
-    """Return the inertial parameters whose torque loads the gears, shape (10 n,)."""
+    """Return the inertial parameters that give the load of the gears, shape (10 n,)."""
     columns, joints = inertia_columns(estimate.robot, estimate.inertia), [*estimate.joints.values()]
     values = (
         [joints[joint].parameters["inertia_scale"].value for joint in columns.joints]
@@ -89,7 +90,7 @@ def loading_of(estimate: RobotEstimateRecord) -> Array:
 
 
 def _friction(estimate: RobotEstimateRecord, balance: Balance) -> Array:
-    """Integrals of friction, offsets and the rotors that the links' parameters do not contain."""
+    """Return the integrals of friction, offsets and the rotors that the links' parameters do not contain."""
     joints = list(estimate.joints.values())
     models = [joint.model for joint in joints]
     values: dict[tuple[int | None, str], float] = {

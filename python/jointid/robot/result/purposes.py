@@ -1,4 +1,4 @@
-"""How well a robot's estimate does what it is for, and how far values on their bounds may be off."""
+"""Accuracy of a robot's estimate for each purpose, and possible errors of values at their bounds."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 def held_of(balance: Balance, fit: Fit) -> dict[int, tuple[float, float]]:
-    """Return the interval of each coefficient that a bound holds, from its own joint's torque and parameters."""
+    """Return the interval of each coefficient held at a bound, from its own joint's torque and parameters."""
     found: dict[int, tuple[float, float]] = {}
     rows = balance.rows
     for joint in {fit.labels[place][0] for place in np.flatnonzero(fit.at_bound)} - {None}:
@@ -46,9 +46,9 @@ def held_of(balance: Balance, fit: Fit) -> dict[int, tuple[float, float]]:
 def torques_of(
     names: Sequence[str], balance: Balance, fit: Fit, joint: int | None = None
 ) -> Torques:
-    """Return how large torques are in the recorded motion: a joint's, or all, each in units of its residual.
+    """Return the size of torques in the recorded motion: of a joint or of all, in units of each residual.
 
-    The names are of all parameters, as `RobotEstimate.free` has them.
+    `names` are those of all parameters, as in `RobotEstimate.free`.
     """
     rows = balance.rows
     mine = np.full(rows.joint.size, True) if joint is None else rows.joint == joint
@@ -75,7 +75,7 @@ def within_of(
     estimate: RobotEstimateRecord,
     spread: Covariance,
 ) -> dict[str, float]:
-    """Return by purpose how far off what it needs may be, as a share of it: of all joints together."""
+    """Return by purpose the possible relative error of the quantity that it needs, for all joints together."""
     weight = 1.0 / fit.scatter[balance.rows.joint]
     columns = fit.jacobian[:, ~fit.at_bound] * weight[:, None]
     gram = columns.T @ columns

@@ -1,4 +1,4 @@
-"""A robot's estimate from its JSON."""
+"""Read a robot's estimate from its JSON."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from jointid.robot.result.record import RobotEstimateRecord, RobotJoint
 
 Saved = TypeVar("Saved", bound=RobotEstimateRecord)
 
-_TURNED = 1e-6  # by which a rotation may be none
+_TURNED = 1e-6  # tolerance of a rotation matrix
 _SINGULAR = 1e9
 
 
@@ -162,7 +162,7 @@ def _drive(d: Mapping[str, Any]) -> PositionDrive | None:
 
 
 def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Places where fields, each right by itself, do not fit together."""
+    """Yield the places of fields that are valid alone but contradict each other."""
     yield from _of_robot(d["robot"])
     names = [each["name"] for each in d["robot"]["joints"]]
     if list(d["joints"]) != names:

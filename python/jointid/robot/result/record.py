@@ -1,4 +1,4 @@
-"""The fields of a robot's estimate, for whatever shows, judges, saves or uses them."""
+"""Fields of a robot's estimate, without its methods."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ class RobotJoint:
     model : str
         For example "coulomb_viscous" or "stribeck:asymmetric".
     parameters : mapping of str to ParameterEstimate
-        At the joint: those of its model, such as "coulomb" and "viscous", and "torque_offset". "motor_coulomb" and
-        "motor_viscous" if its motor turns with several joints, "rotor_inertia" if it is identified, "inertia_scale"
-        with ``inertia="scaled"``.
+        Parameters at the joint: those of its model, such as "coulomb" and "viscous", and "torque_offset".
+        "motor_coulomb" and "motor_viscous" if its motor turns with several joints, "rotor_inertia" if it is identified,
+        "inertia_scale" with ``inertia="scaled"``.
     residuals : ResidualStatistics
     windows : WindowTable
-        Its `friction` is the torque minus everything except this joint's friction.
+        `friction` of the windows is the torque minus everything except this joint's friction.
     """
 
     name: str
@@ -51,7 +51,7 @@ class RobotJoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RobotEstimateRecord:
-    """The fields of a `RobotEstimate`, which describes them."""
+    """Fields of a `RobotEstimate`, which documents them."""
 
     joints: Mapping[str, RobotJoint]
     inertia: str
@@ -73,7 +73,7 @@ class RobotEstimateRecord:
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
-        """All parameters, named as in `free`: "joint.name", and base parameters by their combination."""
+        """All parameters. Names are those of `free`, "joint.name"; for base parameters their combination."""
         of_joints = {
             f"{joint.name}.{name}": p
             for joint in self.joints.values()

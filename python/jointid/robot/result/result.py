@@ -1,4 +1,4 @@
-"""What `identify` returns of a robot."""
+"""Result of `identify` for a robot."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     Attributes
     ----------
     joints : mapping of str to RobotJoint
-        By the URDF's names.
+        Joints, by their names in the URDF.
     inertia : str
         "urdf", "scaled" or "free".
     base_parameters : mapping of str to ParameterEstimate
-        With ``inertia="free"``: the combinations of inertial parameters that motion shows.
+        The combinations of inertial parameters that the motion shows, with ``inertia="free"``.
     inertial : ndarray, shape (n, 10)
         Inertial parameters of all links: m, m·c, I about the joint's frame. With ``inertia="free"`` one of many sets
         with these base parameters: physically consistent and close to the URDF's, if the errors allow it. Do not
@@ -54,11 +54,11 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     robot : Robot
     settings : mapping
     seconds : float
-        Wall time.
+        Wall time [s].
     within : mapping of str to float
-        As `Estimate.within`, of all joints together.
+        Possible relative error for each purpose, as `Estimate.within`, of all joints together.
     draws : RobotDraws or None
-        What `bootstrap` needs; None where the estimate was read from a file.
+        Input of `bootstrap`; None if the estimate was read from a file.
     cross_check : CrossCheck or None
         An independent plain filtered least squares on the signals as recorded, and whether it agrees.
         None if the estimate was saved without it.
@@ -69,35 +69,35 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         from jointid.robot.result.overview import overview_of
 
         return overview_of(self)
 
     @property
     def verdict(self) -> Verdict:
-        """Whether the values may be used, and for what."""
+        """Verdict on the use of the values, for each purpose."""
         from jointid.robot.result.verdict import judged_robot
 
         return judged_robot(self)
 
     def friction(self, velocity: ArrayLike) -> Array:
-        """Friction torque of all joints at given speeds, including the friction of coupled motors.
+        """Return the friction torque of all joints at given speeds, including the friction of coupled motors.
 
         Parameters
         ----------
         velocity : array_like, shape (n,) or (samples, n)
-            Of the joints [rad/s or m/s].
+            Speeds of the joints [rad/s or m/s].
 
         Returns
         -------
         ndarray
-            Of the same shape [N·m or N].
+            Friction, of the same shape [N·m or N].
 
         Raises
         ------
         InputError
-            Not one number per joint.
+            `velocity` has not one finite number for each joint.
         """
         from jointid.robot.result.friction import friction_of
 
@@ -116,12 +116,12 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return friction_of(self, speeds)
 
     def predict(self, recording: RobotRecording) -> RobotPrediction:
-        """Predict the torques of a recording, and compare them with the measured ones over the same kind of windows.
+        """Predict the torques of a recording, and compare them with the measured ones, as integrals over windows.
 
         Parameters
         ----------
         recording : RobotRecording
-            Of the same robot, usually one that was not used for the estimate.
+            A recording of the same robot, usually not the one of the estimate.
 
         Returns
         -------
@@ -152,7 +152,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         n : int
             Number of draws, 20 to 1,000,000. Default 1000.
         seed : int
-            The same seed gives the same result, on any number of threads. Default 0.
+            Seed of the draws. The same seed gives the same result, on any number of threads. Default 0.
 
         Returns
         -------
@@ -193,7 +193,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return text_summary(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result in JSON's types; everything but `draws` is in it."""
+        """Return the result in JSON's types. It contains everything except `draws`."""
         from jointid.robot.result.document import document_of
 
         return document_of(self)
@@ -206,12 +206,13 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimate that a JSON text holds; everything but `bootstrap` works with it.
+        """Return the estimate from a JSON text. Everything except `bootstrap` works with it.
 
         Raises
         ------
         InputError
-            Not JSON, not a robot's estimate, another schema, or a field that cannot be used; names the place in it.
+            The text is not JSON or not a robot's estimate, has another schema, or holds an invalid field. The message
+            names the place in the text.
 
         Examples
         --------

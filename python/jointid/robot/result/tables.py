@@ -1,4 +1,4 @@
-"""A robot's estimate as text."""
+"""Tables of a robot's estimate, as text."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from jointid.robot.result.verdict import judged_robot
 
 
 def shown_parameters(estimate: RobotEstimateRecord) -> list[str]:
-    """Names of the parameters that some joint has, in the order of the table."""
+    """Return the names of the parameters that any joint has, in the order of the table."""
     present = {name for joint in estimate.joints.values() for name in joint.parameters}
     return [name for name in PARAMETERS if name in present]
 
 
 def head(estimate: RobotEstimateRecord) -> list[str]:
-    """The table's head."""
+    """Return the table's head."""
     units: dict[str, str] = {}
     for joint in estimate.joints.values():
         for name, parameter in joint.parameters.items():
@@ -35,7 +35,7 @@ def head(estimate: RobotEstimateRecord) -> list[str]:
 
 
 def rows(estimate: RobotEstimateRecord) -> list[list[str]]:
-    """One row a joint, in the order of the head."""
+    """Return one row for each joint, in the order of the head."""
     names = shown_parameters(estimate)
     return [
         [
@@ -61,7 +61,7 @@ def _codes(estimate: RobotEstimateRecord, name: str) -> str:
 
 
 def quality(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
-    """How good the fit is and what it rests on, as label and text."""
+    """Return the quality of the fit and its inputs, as pairs of label and text."""
     inertia = {
         "urdf": "as the URDF has it",
         "scaled": "the URDF's, scaled link by link",
@@ -90,7 +90,7 @@ def quality(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
 
 
 def _turning(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
-    """Which motors turn with several joints, and what was taken away of zeros and delays."""
+    """Return which motors turn with several joints, and the zeros, delays and filters that were removed."""
     robot, found = estimate.robot, []
     for motor in map(int, robot.coupled.nonzero()[0]):
         row = robot.couplings[motor]
@@ -107,7 +107,7 @@ def _turning(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
 
 
 def base_rows(estimate: RobotEstimateRecord) -> list[list[str]]:
-    """The table of base parameters: value, error, unit, combination."""
+    """Return the table of base parameters: value, error, unit, combination."""
     return [
         [
             number(p.value),
@@ -120,12 +120,12 @@ def base_rows(estimate: RobotEstimateRecord) -> list[list[str]]:
 
 
 def text_summary(estimate: RobotEstimateRecord) -> str:
-    """The table of the joints."""
+    """Return the table of the joints."""
     return printable("\n".join(aligned([head(estimate), *rows(estimate)])))
 
 
 def text_report(estimate: RobotEstimateRecord, action: Callable[[Action], str] = str) -> str:
-    """The estimate as text; `action` words the advice of a finding."""
+    """Return the estimate as text; `action` gives the text of an advice."""
     lines = [f"jointid robot estimate — {estimate.robot.name}; value ± standard error", ""]
     lines += [*judged_robot(estimate).lines(), ""]
     lines += [*aligned([head(estimate), *rows(estimate)]), ""]

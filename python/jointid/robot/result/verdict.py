@@ -1,4 +1,4 @@
-"""Whether the numbers of a robot's estimate may be used, and for what."""
+"""Verdict on the use of a robot's estimate, for each purpose."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from jointid.robot.result.record import RobotEstimateRecord
 
 _COMPENSATED = FRICTION | {"torque_offset"}
 _IMPOSSIBLE = "impossible_inertia"
-_BIASED = {"signal_lag", "unexamined_causes"}  # they bias values, nobody knows by how much
+_BIASED = {"signal_lag", "unexamined_causes"}  # findings that bias values by an unknown amount
 
 
 def judged_robot(estimate: RobotEstimateRecord) -> Verdict:
     """Judge a robot's estimate by its findings; parameters are named as in `RobotEstimate.free`.
 
-    Not usable: a blocking finding, or a joint of whose windows less than 90 % of the variance is explained; for
-    compensation and simulation also a friction on its bound that may be more than a tenth of its joint's; for
-    simulation also links that no body can be. Usable with care: a warning. Otherwise usable.
+    Not usable: a blocking finding, or a joint with less than 90 % of its windows' variance explained. For compensation
+    and simulation also a friction at its bound that may exceed a tenth of its joint's friction. For simulation also
+    links that are not physically consistent. Usable with care: a warning. Otherwise usable.
     """
     every = (*_objections(estimate), *_unexplained(estimate))
     objections = [each for each in every if each.code != _IMPOSSIBLE]
@@ -30,7 +30,7 @@ def judged_robot(estimate: RobotEstimateRecord) -> Verdict:
         "simulation": use_by([*every, *bounded], names, lambda _: True),
         "monitoring": use_by(to_changes(objections, estimate.parameters), names, lambda _: True),
     }
-    # Where a value is known to move, chance alone does not say how good it is.
+    # If a value is known to be biased, its standard error does not describe its accuracy.
     moved = {
         found.code
         for found in estimate.warnings
@@ -55,7 +55,7 @@ def _objections(estimate: RobotEstimateRecord) -> Iterable[Objection]:
 
 
 def _unexplained(estimate: RobotEstimateRecord) -> Iterable[Objection]:
-    """Joints whose torque the balance does not explain."""
+    """Yield objections for joints with a torque that the balance does not explain."""
     for joint in estimate.joints.values():
         explained = joint.residuals.r_squared
         if joint.residuals.windows and not explained >= EXPLAINED:

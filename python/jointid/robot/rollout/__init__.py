@@ -1,1 +1,1 @@
-"""A robot's estimate rolled out: the arm moves by the logged torques, and its positions are held against the log."""
+"""Simulation of a robot's estimate: logged torques move the arm, and its positions are compared with the log."""

@@ -1,4 +1,4 @@
-"""A robot's links and friction as a mechanism that moves: mass matrix, bias, rows of dry friction."""
+"""A robot's links and friction as a simulated mechanism: mass matrix, bias, directions of dry friction."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ROTOR, _OFFSET = "rotor_inertia", "torque_offset"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arm:
-    """What moves.
+    """The simulated mechanism.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Arm:
     rotors : ndarray, shape (n, n)
         Inertia of the motors at the joints.
     estimate : RobotEstimateRecord or None
-        Whose friction acts; None: no friction.
+        Estimate of the friction; None: no friction.
     """
 
     model: Any
@@ -40,12 +40,12 @@ class Arm:
 
     @classmethod
     def of(cls, estimate: RobotEstimateRecord) -> Arm:
-        """Return the arm as identified.
+        """Return the arm with identified values.
 
         Raises
         ------
         InputError
-            No bodies can have the identified inertias.
+            The identified inertias are not physically consistent.
         """
         if estimate.consistent is False and estimate.inertia == "free":
             raise InputError(
@@ -64,7 +64,7 @@ class Arm:
 
     @classmethod
     def nominal(cls, estimate: RobotEstimateRecord) -> Arm:
-        """Return the arm as the URDF has it: without friction, with the rotors that were stated."""
+        """Return the arm of the URDF, without friction and with the stated rotor inertias."""
         stated = [known or 0.0 for known in estimate.robot.rotor_inertias]
         return cls._made(estimate, estimate.robot.tree.inertias, np.array(stated), None)
 
@@ -81,7 +81,7 @@ class Arm:
         return cls(model, model.createData(), couplings.T @ (rotors[:, None] * couplings), friction)
 
     def mass(self, position: Array) -> Array:
-        """Return the mass matrix, with the motors."""
+        """Return the mass matrix, including the motors."""
         import pinocchio
 
         upper = np.triu(pinocchio.crba(self.model, self.data, position))
@@ -99,7 +99,7 @@ class Arm:
         return self._values(_OFFSET)
 
     def _values(self, name: str) -> Array:
-        """A parameter of all joints, 0 where a joint has none."""
+        """Return a parameter of all joints, 0 if a joint has none."""
         if self.estimate is None:
             return np.zeros(self.model.nv)
         found = (joint.parameters.get(name) for joint in self.estimate.joints.values())
@@ -124,7 +124,7 @@ class Arm:
         return np.vstack([eye, robot.couplings[robot.coupled]])
 
     def friction_sizes(self, velocity: Array, under_load: Array) -> Array:
-        """Return how large friction is at most in each of the rows, at these speeds and loads of the joints."""
+        """Return the largest friction in each direction, at these speeds and loads of the joints."""
         if self.estimate is None:
             return np.zeros(0)
         robot, joints = self.estimate.robot, list(self.estimate.joints.values())
@@ -138,7 +138,7 @@ class Arm:
         for name, term in MOTOR_TERMS.items():
             values = self._values(name)
             if term.basis == VISCOUS.basis:
-                # A joint's own contains what the motors add at its speed.
+                # The viscous friction of a joint contains what the motors add at its speed.
                 own = own - (robot.couplings**2).T @ values * velocity
                 at_motors = at_motors + values * np.abs(motors)
             else:
@@ -149,7 +149,7 @@ class Arm:
 
 
 def _mechanism(tree: LinkTree, inertial: Array) -> Any:
-    """The links as pinocchio moves them."""
+    """Return the links as a pinocchio model."""
     import pinocchio
 
     model = pinocchio.Model()

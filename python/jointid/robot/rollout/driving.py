@@ -1,4 +1,4 @@
-"""What drives a robot along a log: its torques as logged, or its position loop with the logged commands."""
+"""Torques along a log: logged torques, or those of the position loop with logged commands."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Driving(Protocol):
     """Torques of the joints along a log."""
 
     def push(self, row: int, share: float, state: State) -> Push:
-        """Return the torques a share of the time from a row to the next one."""
+        """Return the torques at a time between two rows; `share` is its share of the interval after `row`."""
 
 
 def driving_of(motion: Motion, robot: Robot, recording: RobotRecording) -> Driving:
-    """Return what drives the robot in a recording, of which `motion` is."""
+    """Return the driving torques of a recording; `motion` is that of the recording."""
     if motion.driven is None:
         return _Logged(motion.torque, motion.torque_held)
     zeros = np.array(robot.zero_offsets or (0.0,) * robot.n)

@@ -1,4 +1,4 @@
-"""`simulate` of a robot along its logs: the logged torques, or its loop and the wanted positions, move the arm."""
+"""`simulate` of a robot along its logs, moved by logged torques or by its position loop."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from jointid.robot.rollout.stepping import State, moved
 Array = NDArray[np.float64]
 
 STEP = 1e-3
-"""Longest integration step by default [s]."""
+"""Default of the longest integration step [s]."""
 HORIZON = 0.5
-"""Length of a stretch of logged torques by default [s]: errors of an open loop grow without a bound."""
+"""Default length of a stretch with logged torques [s]: errors of an open loop grow without a limit."""
 
 LONGEST = 20.0
-"""Time of each recording that is simulated [s]: more of it says the same."""
+"""Simulated time of each recording [s]: more time adds no information."""
 
 _OUT_OF_BOUNDS = 1e6  # rad/s
 
@@ -40,13 +40,13 @@ def rollout_robot(
 ) -> Rollout:
     """Simulate a robot along logs by their torques or by its position loop, and compare the positions.
 
-    Each stretch of `horizon` seconds begins at the logged positions and velocities; a closed loop needs only one.
-    Of each recording at most the first 20 s are simulated.
+    Each stretch of `horizon` seconds starts from the logged positions and velocities; a closed loop needs only one.
+    At most the first 20 s of each recording are simulated.
 
     Returns
     -------
     Rollout
-        One run for each recording and joint; `before` is the error of the URDF without friction.
+        One run for each recording and joint; `before` is the error with the URDF's values and no friction.
     """
     runs = [recordings] if isinstance(recordings, RobotRecording) else list(recordings)
     if not runs:
@@ -93,7 +93,7 @@ def rollout_robot(
 def _along(
     arm: Arm, motion: Motion, driving: Driving, horizon: float | None, longest: float
 ) -> tuple[Array, Array]:
-    """Positions and velocities (n, samples) that what drives the arm gives."""
+    """Return positions and velocities (n, samples) of the simulated motion."""
     time = motion.time
     position, velocity = np.empty_like(motion.position), np.empty_like(motion.velocity)
     slopes = np.gradient(motion.velocity, time, axis=1)

@@ -1,4 +1,4 @@
-"""One step of an arm with set-valued dry friction: a joint that sticks stands still."""
+"""One step of an arm with set-valued dry friction, so that a joint that sticks stands still."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid.robot.rollout.arm import Arm
 
 Array = NDArray[np.float64]
 
-_SWEEPS = 50  # of projected Gauss-Seidel; a few settle it
+_SWEEPS = 50  # of projected Gauss-Seidel; a few are enough to converge
 _SETTLED = 1e-10
 
 
@@ -26,7 +26,7 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """Torques of the joints, and by how much they fall per speed that is gained."""
+    """Torques of the joints, and their decrease per increase of speed."""
 
     torque: Array
     damping: Array
@@ -35,7 +35,7 @@ class Push:
 def moved(arm: Arm, state: State, push: Push, duration: float) -> State:
     """Return the state after a duration [s].
 
-    The acceleration of the step before stands for this one's in the load of the gears.
+    The load of the gears uses the acceleration of the previous step.
     """
     position, velocity = state.position, state.velocity
     mass = arm.mass(position) + duration * np.diag(push.damping)
@@ -50,10 +50,10 @@ def moved(arm: Arm, state: State, push: Push, duration: float) -> State:
 
 
 def _impulse(response: Array, speeds: Array, reach: Array) -> Array:
-    """The impulses within their reach that bring the speeds to rest, or act against them with all their reach."""
+    """Return impulses within their limits that stop the speeds, or that act against them with the full limit."""
     found = -np.sign(speeds) * reach
     if (np.sign(speeds + response @ found) == np.sign(speeds)).all():
-        return np.asarray(found)  # nothing comes to rest
+        return np.asarray(found)  # no joint comes to rest
     diagonal = np.diag(response)
     for _ in range(_SWEEPS):
         before = found.copy()
